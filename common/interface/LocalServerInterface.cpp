@@ -10,7 +10,7 @@
 namespace hermes {
 namespace {
 
-constexpr int acceptedAtOnce = 4; // then others have their turn
+constexpr int peersAtOnce = 4; // then others have their turn
 constexpr uint ownerOnly = 0600;
 constexpr int sendBufferBytes = 1 << 20;
 
@@ -92,7 +92,7 @@ void LocalServerInterface::close() {
 }
 
 void LocalServerInterface::takePeers() {
-    for (int i = 0; i < acceptedAtOnce; ++i) {
+    for (int i = 0; i < peersAtOnce; ++i) {
         const int descriptor = ::accept4(descriptor_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (descriptor < 0)
             return;

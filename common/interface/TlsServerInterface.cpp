@@ -18,7 +18,7 @@ namespace {
 const QString source = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
 constexpr std::size_t mostHandshakes = 16; // at the same time, then the oldest goes
-constexpr int acceptedAtOnce = 1;          // to begin a handshake takes a millisecond
+constexpr int handshakesAtOnce = 1;        // to begin a handshake takes a millisecond
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
 } // namespace
@@ -39,7 +39,7 @@ TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *par
     , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual()))
     , server_(std::make_unique<Server>()) {
     // As TcpServerInterface: peers who come faster than they are taken must not keep the event loop here.
-    server_->setMaxPendingConnections(acceptedAtOnce);
+    server_->setMaxPendingConnections(handshakesAtOnce);
     connect(server_.get(), &QTcpServer::newConnection, this, &TlsServerInterface::takePeers,
             Qt::QueuedConnection);
     revokedTimer_.setInterval(revokedPeriod);

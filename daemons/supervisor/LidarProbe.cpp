@@ -18,7 +18,7 @@
 namespace hermes::supervisor {
 namespace {
 
-constexpr int listen_ms = 1500, slice_ms = 50;
+constexpr int listenForTurns_ms = 1500, pollTurns_ms = 50;
 constexpr std::size_t modelByte = velodyne::packetSize - 1;
 
 /// A UDP port, closed with it.
@@ -86,10 +86,10 @@ std::vector<FoundLidar> LidarProbe::run(QStringList &problems) {
     QElapsedTimer listening;
     listening.start();
     // Also of who sends faster than this reads.
-    const auto goesOn = [this, &listening] { return listening.elapsed() < listen_ms && !isCancelled_; };
+    const auto goesOn = [this, &listening] { return listening.elapsed() < listenForTurns_ms && !isCancelled_; };
     while (goesOn()) {
         pollfd ready[] = {{data.descriptor(), POLLIN, 0}, {position.descriptor(), POLLIN, 0}};
-        ::poll(ready, 2, slice_ms);
+        ::poll(ready, 2, pollTurns_ms);
         std::array<std::uint8_t, 2048> bytes{};
         QString sender;
         while (data.failure() == 0 && goesOn()) {

@@ -35,7 +35,9 @@ class DriveError(Exception):
 
 
 class PathFollower:
-    """Velocities that lead along way points: pure pursuit of a point ahead, slower in bends, braking at the end."""
+    """Velocities that lead along way points: pure pursuit of a point ahead, slower in bends, braking at the end. Points are (x, y) in
+    metres; ValueError where they are fewer than two. speed is the largest one (m/s), turn_rate that of turning (rad/s), braking
+    the deceleration at the end (m/s^2). look_ahead is the way to the point ahead, tolerance ends the drive (both metres)."""
 
     WINDOW_M = 1.0  # where the robot may have got to since the last time; a path may cross itself
 
@@ -56,15 +58,16 @@ class PathFollower:
 
     @property
     def progress(self):
+        """The part of the path behind the robot, 0 to 1."""
         return self.way / self.length if self.length > 0 else 1.0
 
     def at(self, way):
-        """The point of the path after this way; beyond its end straight on."""
+        """The point (x, y) of the path after this way, metres; beyond its end straight on."""
         begin, _, (x, y), (dx, dy) = self.legs[bisect.bisect([leg[0] for leg in self.legs[1:]], way)]
         return x + (way - begin) * dx, y + (way - begin) * dy
 
     def nearest(self, x, y):
-        """The way to the point of the path that is nearest, from where the robot was on."""
+        """The way (metres) to the point of the path that is nearest, from where the robot was on."""
         ways = []
         for begin, length, (ax, ay), (dx, dy) in self.legs:
             if begin + length >= self.way and begin <= self.way + self.WINDOW_M:
@@ -73,7 +76,7 @@ class PathFollower:
         return min(ways, key=lambda way: math.dist(self.at(way), (x, y)))
 
     def command(self, x, y, theta):
-        """(vx, omega) from this pose, or None at the end."""
+        """(vx, omega), m/s and rad/s, from this pose (metres, radians, the frame of the points); None at the end."""
         if self.length - self.way > self.tolerance:
             self.way = self.nearest(x, y)
         left = self.length - self.way

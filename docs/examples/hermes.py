@@ -4,6 +4,8 @@
         print(matcher.call("daemon.status")["state"])
         for message in matcher.subscribe("pose", max_rate_hz=5):
             print(message["stamp"], message["data"])
+
+A daemon that cannot be reached, and a connection that breaks, raise OSError.
 """
 import collections
 import itertools
@@ -52,7 +54,7 @@ def own_socket(host, port):
 
 
 class Daemon:
-    """A connection to one daemon. Not for use from several threads at once."""
+    """A connection to one daemon, which answers within `timeout` seconds. Not for use from several threads at once."""
 
     def __init__(self, host="127.0.0.1", port=7400, timeout=5.0):
         self.socket = self.connect(host, port, timeout)
@@ -82,7 +84,7 @@ class Daemon:
         self.socket.close()
 
     def call(self, method, **params):
-        """The result of a command; raises DaemonError when the daemon refuses it."""
+        """The result of a command, whose parameters are `params`; raises DaemonError when the daemon refuses it."""
         request = {"jsonrpc": "2.0", "id": next(self.ids), "method": method, "params": params}
         self.socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
         while True:
@@ -93,7 +95,8 @@ class Daemon:
                 return message["result"]
 
     def subscribe(self, topic, **options):
-        """Yields the topic's messages {seq, stamp, dropped, data, ...} as they come, without end."""
+        """Yields the topic's messages as they come, without end: dictionaries with seq, stamp (seconds since the epoch), dropped
+        and data. Options are those of topics.subscribe, such as max_rate_hz."""
         subscription = self.call("topics.subscribe", topic=topic, **options)["subscription"]
         return self._messages(self.topics[subscription])
 

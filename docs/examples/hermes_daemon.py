@@ -18,6 +18,9 @@ class Refusal(Exception):
 
 
 class Daemon:
+    """A daemon with a name, settings {name: JSON schema with a default}, topics {name: what it has} and commands. A command is a
+    function that `method` has decorated; what it returns is the result, and Refusal is an error."""
+
     def __init__(self, name, title, settings, topics, version="1.0"):
         self.name, self.title, self.version = name, title, version
         self.schemas, self.topics = settings, {**topics, **COMMON_TOPICS}
@@ -51,17 +54,19 @@ class Daemon:
         return add
 
     def log(self, text, level="info"):
+        """Keeps a record and sends it to who follows the log. The level is debug, info, warning or error."""
         self.records = self.records[-999:] + [{"stamp": time.time(), "level": level, "source": self.name, "text": text}]
         self.publish("log", self.records[-1])
 
     def set_health(self, item, level, message):
-        """The level is ok, warn or error."""
+        """The state of a part of the daemon, with a message for people. The level is ok, warn or error."""
         state = {"name": item, "level": level, "message": message, "values": {}}
         if self.health.get(item) != state:
             self.health[item] = state
             self.publish("status", self.daemon_status())
 
     def publish(self, topic, data):
+        """Sends data (what JSON can hold) to all who follow the topic, to each no more often than it asked for."""
         now = time.time()
         for number, s in self.subscriptions.items():
             s["seq"] += s["topic"] == topic

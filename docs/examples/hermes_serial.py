@@ -210,7 +210,7 @@ class Pieces:
 
 
 class SerialDaemon:
-    """One daemon at the other end of a line. Not for use from several threads at once."""
+    """One daemon at the other end of a line, which answers within `timeout` seconds. Not for use from several threads at once."""
 
     def __init__(self, device, baud=115200, timeout=5.0):
         self.device, self.timeout, self.baud = device, timeout, baud

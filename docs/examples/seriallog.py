@@ -2,13 +2,15 @@
 
     for stamp, mono, data in chunks("recordings/run1/seriallogger-gps"):
         print(stamp, data)
+
+The files are NAME.raw, the bytes, and NAME.index, the time of each chunk of them.
 """
 import struct
 
 
 def chunks(base):
     """Yields (stamp, mono, bytes) of all bytes that came in together: seconds since the epoch, and of a clock that never
-    jumps. base: the path without .raw and .index."""
+    jumps. base: the path without .raw and .index. ValueError where the index is none."""
     with open(base + ".raw", "rb") as raw:
         data = raw.read()
     with open(base + ".index", "rb") as file:

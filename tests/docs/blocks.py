@@ -9,17 +9,19 @@ blocks.py PAGE... (docs/hermesctl.md), without one the blocks of all pages are c
 | python | run with docs/examples on PYTHONPATH |
 | cpp | compiled with vectorlib and run |
 | json | must be JSON, one value or one a line |
-| text, cmake, ini | shown only |
+| text, cmake, ini | shown only, unless a mark says more |
 
 Marks above a block, as HTML comments:
 
 | mark | meaning |
 |---|---|
 | not run: REASON | only shown |
+| only in a fresh Debian: REASON | only shown here; tests/docs/fresh.py runs it |
 | file: NAME | written to the file NAME in the folder of the page, not run |
 | until: TEXT | programs that go on: in the background until the end of the page; the next block is run when TEXT is printed |
 | for: SECONDS | each command is interrupted as by Ctrl-C after these seconds at the latest |
 | fails | the last command must fail |
+| output | what the block before prints, compared as that of console; of a program in C++ the numbers, too |
 | part of: FILE | the lines stand in this file of the project, in this order |
 
 tests/docs/before/PAGE.sh, when there is one, runs first: it makes the files and starts the daemons that the page takes for granted.
@@ -37,10 +39,12 @@ import pages
 
 BUILD = os.environ.get("HERMES_BUILD", os.path.join(pages.SOURCE, "build", "release"))
 SHOWN = {"text", "cmake", "ini"}
+FRESH = "only in a fresh Debian"
 RUN = {"sh", "console", "python", "cpp", "json"}
 ISOLATED = ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc"] + ([] if os.geteuid() == 0 else ["--map-root-user"])
 PRELUDE = """
 set -u
+FOLDER=$PWD
 background() {  # TEXT FILE: runs FILE until TEXT is printed, and lets it go on
     bash -e "$2" >"$2.out" 2>&1 &
     for _ in $(seq 600); do
@@ -53,11 +57,11 @@ background() {  # TEXT FILE: runs FILE until TEXT is printed, and lets it go on
 """
 
 
-def reason_shown(block):
-    """Why a block is not run, or None."""
-    if "not run" in block.marks:
-        return block.marks["not run"] or "without a reason"
-    return None
+def is_run(block):
+    """Whether the page's script runs or writes it."""
+    if block.marks.keys() & {"not run", "part of"}:
+        return False
+    return bool(block.marks.keys() & {"file", "output"}) or block.language in RUN - {"json"}
 
 
 def is_json(text):
@@ -76,7 +80,7 @@ def judge(block):
     """A complaint about a block that needs no run, or None."""
     if block.language not in SHOWN | RUN:
         return f"language {block.language} is none of {', '.join(sorted(SHOWN | RUN))}"
-    if "not run" in block.marks and len(block.marks["not run"]) < 8:
+    if any(len(block.marks[mark]) < 8 for mark in ("not run", FRESH) if mark in block.marks):
         return "a block that is not run needs a reason"
     if block.language == "json" and "not run" not in block.marks and not is_json(block.text):
         return "is no JSON, nor is each of its lines"
@@ -102,49 +106,63 @@ def commands(console):
     return found
 
 
-def is_like(printed, actual):
-    """Whether the actual output has the printed lines, in order, with any numbers, and anything where they say "..."."""
+def is_like(printed, actual, numbers=False):
+    """Whether the actual output has the printed lines, in order, and anything where they say "...". numbers: whether they must agree."""
     def words(text):
-        return re.sub(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", "#", re.sub(r"\s+", " ", text)).strip()
+        text = re.sub(r"\s+", " ", text).strip()
+        return text if numbers else re.sub(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", "#", text)
     pattern = ".*".join(re.escape(words(part)).replace(r"\ ", " ") for part in printed.split("..."))
     return re.search(pattern, words(actual), re.S) is not None
 
 
 class Script:
-    """The bash script of a page, and what must be seen of each block."""
+    """The bash script of blocks, and what must be seen of each. It is run in the folder, whatever that is called there."""
 
     def __init__(self, folder):
         self.folder, self.text, self.outputs = folder, PRELUDE, []
 
     def write(self, name, text):
+        """The path of the file in the script."""
         path = os.path.join(self.folder, name)
         if not os.path.realpath(os.path.dirname(path)).startswith(os.path.realpath(self.folder)) or os.path.islink(path):
             sys.exit(f"{name}: is the project's own, a block is not written there")
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
-        return path
+        return f'"$FOLDER/{name}"'
 
-    def add(self, block, number):
+    def add_all(self, blocks):
+        for number, block in enumerate(blocks):
+            if "output" in block.marks and (number == 0 or blocks[number - 1].marks.keys() & {"file", "output"}):
+                sys.exit(f"{block}: is the output of no block that is run")
+            following = blocks[number + 1] if number + 1 < len(blocks) else None
+            self.add(block, number, following if following and "output" in following.marks else None)
+
+    def add(self, block, number, shown):
+        """shown: the block that has the output of this one, or None."""
+        if "output" in block.marks:
+            return
         if "file" in block.marks:
             self.write(block.marks["file"], block.text)
             return
         self.text += f"echo '@@ {block}'\n"
+        output = None
+        if shown:
+            output = f'"$FOLDER/.blocks/{number}.out"'
+            self.outputs.append((shown, f"the block of line {block.line} in {block.language}", shown.text, os.path.join(self.folder, f".blocks/{number}.out")))
         if block.language == "python":
-            command = f"python3 .blocks/{number}.py"
-            self.write(f".blocks/{number}.py", block.text)
-            self.shell(block, number, command)
+            self.shell(block, number, "python3 " + self.write(f".blocks/{number}.py", block.text), output)
         elif block.language == "cpp":
-            self.write(f".blocks/{number}.cpp", block.text)
-            self.shell(block, number, f"g++ -std=c++17 -Wall -Wextra -Werror -O1 -I{pages.SOURCE}/vectorlib/include $(pkg-config --cflags eigen3) "
-                                      f".blocks/{number}.cpp -o .blocks/{number}.run\n.blocks/{number}.run")
+            source = self.write(f".blocks/{number}.cpp", block.text)
+            self.shell(block, number, f"g++ -std=c++17 -Wall -Wextra -Werror -O1 -Ivectorlib/include $(pkg-config --cflags eigen3) "
+                                      f"{source} -o .blocks/{number}.run\n.blocks/{number}.run", output)
         elif block.language == "console":
             for index, (command, output) in enumerate(commands(block.text)):
-                path = f".blocks/{number}-{index}.out"
-                self.shell(block, f"{number}-{index}", f"{command}", path)
-                self.outputs.append((block, command, output, os.path.join(self.folder, path)))
+                name = f".blocks/{number}-{index}"
+                self.shell(block, f"{number}-{index}", command, f'"$FOLDER/{name}.out"')
+                self.outputs.append((block, command, output, os.path.join(self.folder, name + ".out")))
         elif block.language == "sh":
-            self.shell(block, number, block.text)
+            self.shell(block, number, block.text, output)
 
     def shell(self, block, number, text, output=None):
         path = self.write(f".blocks/{number}.sh", text)
@@ -156,13 +174,30 @@ class Script:
                 if line.strip() and not line.strip().startswith("#"):
                     one = self.write(f".blocks/{number}-{index}.one.sh", line + "\n")
                     self.text += (f"timeout -s INT {block.marks['for']} bash -e {one}; code=$?\n"
-                                  f"[ $code = 0 ] || [ $code = 124 ] || {{ echo \"exit $code: \"; cat {one}; exit 1; }}\n")
+                                  f"[ $code = 0 ] || [ $code = 124 ] || {{ echo exit $code:; cat {one}; exit 1; }}\n")
             return
         redirect = f" >{output} 2>&1" if output else ""
         if "fails" in block.marks:
             self.text += f"set +e\n. {path}{redirect}\n[ $? != 0 ] || {{ echo 'did not fail'; exit 1; }}\n"
         else:
             self.text += f"set -e\n. {path}{redirect}\nset +e\n"
+
+    def end(self):
+        """Writes the script; its path in the folder."""
+        self.write(".blocks/page.sh", self.text + "echo '@@ end'\n")
+        return ".blocks/page.sh"
+
+    def complaint(self, title, output):
+        """What was wrong when the script printed this output, or None."""
+        last = output.rfind("@@ ")
+        if not output[last:].startswith("@@ end"):
+            return f"{title}: failed in the block after this line:\n{output[last:][:6000]}"
+        for block, command, printed, path in self.outputs:
+            with open(path, encoding="utf-8", errors="replace") as file:
+                actual = file.read()
+            if not is_like(printed, actual, numbers=block.language == "text" and command.endswith("in cpp")):
+                return f"{block}: {command}\n--- the page says\n{printed}--- it prints\n{actual[:6000]}"
+        return None
 
 
 def quoted(text):
@@ -185,9 +220,7 @@ def run(page):
     complaints = [f"{block}: {wrong}" for block in found for wrong in [judge(block)] if wrong]
     if complaints:
         sys.exit("\n".join(complaints))
-    to_run = [block for block in found if block.language in RUN - {"json"} and not block.marks.keys() & {"not run", "part of"}]
-    to_run += [block for block in found if block.language in SHOWN | {"json"} and "file" in block.marks]
-    to_run.sort(key=lambda block: block.line)
+    to_run = [block for block in found if is_run(block) and FRESH not in block.marks]
     if not to_run:
         print(f"{page}: nothing to run in {len(found)} blocks")
         return 0
@@ -197,9 +230,8 @@ def run(page):
         before = os.path.join(os.path.dirname(__file__), "before", os.path.basename(page)[:-3] + ".sh")
         if os.path.exists(before):
             script.text += f"echo '@@ {os.path.basename(before)}'\nset -e\n. {before}\nset +e\n"
-        for number, block in enumerate(to_run):
-            script.add(block, number)
-        path = script.write(".blocks/page.sh", script.text + "echo '@@ end'\n")
+        script.add_all(to_run)
+        path = script.end()
         environment = {**os.environ, "HOME": os.path.join(folder, ".home"), "XDG_RUNTIME_DIR": os.path.join(folder, ".home"),
                        "PATH": f"{BUILD}/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
                        "PYTHONPATH": os.path.join(pages.SOURCE, "docs", "examples"), "QT_QPA_PLATFORM": "offscreen"}
@@ -219,35 +251,32 @@ def run(page):
             output += "\ntook longer than 280 s\n"
         if os.environ.get("HERMES_SHOW"):
             print(output)
-        last = output.rfind("@@ ")
-        if not output[last:].startswith("@@ end"):
-            sys.exit(f"{page}: failed in the block after this line:\n{output[last:][:6000]}")
-        for block, command, printed, path in script.outputs:
-            with open(path, encoding="utf-8", errors="replace") as file:
-                actual = file.read()
-            if not is_like(printed, actual):
-                sys.exit(f"{block}: {command}\n--- the page says\n{printed}--- it prints\n{actual[:6000]}")
+        complaint = script.complaint(page, output)
+        if complaint:
+            sys.exit(complaint)
     shown = len(found) - len(to_run)
     print(f"{page}: {len(to_run)} of {len(found)} blocks run, {shown} only shown")
     return len(to_run)
 
 
 def count():
-    total = shown = 0
+    total = shown = fresh = 0
     for page in pages.names():
         for block in pages.blocks(page):
             total += 1
-            wrong, reason = judge(block), reason_shown(block)
+            wrong, reason = judge(block), block.marks.get("not run")
             if wrong:
                 sys.exit(f"{block}: {wrong}")
+            fresh += FRESH in block.marks
             if reason:
                 shown += 1
                 print(f"{block}: not run: {reason}")
-    print(f"{total} blocks in {len(pages.names())} pages, {shown} not run")
+    print(f"{total} blocks in {len(pages.names())} pages, {shown} not run, {fresh} run only by tests/docs/fresh.py")
 
 
 def check_itself():
     assert is_like("a: 1.5, ... c\n", "x\na: -7e3, b, c\n") and not is_like("a 1 b", "a b") and not is_like("abc", "abd")
+    assert is_like("a 1 ...", "a 1 b", numbers=True) and not is_like("a 1", "a 2", numbers=True)
     assert commands("$ a \\\n b\nout\n$ c\n") == [["a \\\n b", "out\n"], ["c", ""]]
 
 

@@ -4,7 +4,7 @@ import os
 import re
 
 SOURCE = os.environ.get("HERMES_SOURCE", os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..")))
-MARKS = {"not run", "file", "until", "for", "fails", "part of"}
+MARKS = {"not run", "file", "until", "for", "fails", "part of", "output", "only in a fresh Debian"}
 
 
 def names():
@@ -40,7 +40,7 @@ def blocks(page):
             else:
                 opened.text += line[opened.indent:] + "\n"
             continue
-        mark = re.fullmatch(r"\s*<!-- ([a-z ]+?)(?:: (.*))? -->", line)
+        mark = re.fullmatch(r"\s*<!-- ([A-Za-z ]+?)(?:: (.*))? -->", line)
         fenced = re.fullmatch(r"( *)(```+)(\w*)", line)
         if fenced:
             if not fenced[3]:

@@ -1,7 +1,7 @@
 # Builds the daemon of the page, of the libraries that the tested build has: bin/hermes-barometer.
 mkdir extension
-{ echo 'set(CMAKE_AUTOMOC OFF)'; cat barometer/CMakeLists.txt; } >extension/CMakeLists.txt
-cp barometer/main.cpp extension
+{ echo 'set(CMAKE_AUTOMOC OFF)'; cat docs/examples/barometer/CMakeLists.txt; } >extension/CMakeLists.txt
+cp docs/examples/barometer/main.cpp extension
 PYTHONPATH=tests/system:tests/support python3 -c 'import extensions, os
 extensions.configure(os.path.abspath("extension"), os.path.abspath("own"))
 extensions.link(os.path.abspath("own"), "bin/hermes-barometer")' >own.log 2>&1 || { cat own.log; false; }

@@ -37,6 +37,7 @@ public:
     std::size_t size() const { return leaders_.size(); }
     /// The bundles of a bucket are number begin(bucket) to begin(bucket + 1), longest first.
     std::size_t begin(std::size_t bucket) const { return starts_[bucket]; }
+    /// The bundle of a number; see begin().
     const Bundle &bundle(std::size_t number) const { return *order_[number].bundle; }
     /// The most length that this bucket and those after it can give; metres.
     double remaining(std::size_t bucket) const { return remaining_[bucket]; }

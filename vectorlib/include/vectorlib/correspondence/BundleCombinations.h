@@ -17,6 +17,7 @@ struct SamePose {
     double distance = 0.10; ///< metres
     double angle = 0.05;    ///< radians
 
+    /// Whether both transformations are one: nearer to each other than `distance` and `angle`.
     bool operator()(const Transformation2D &a, const Transformation2D &b) const {
         return (a.translation() - b.translation()).norm() < distance &&
                std::abs(wrapAngle(a.alpha() - b.alpha())) < angle;

@@ -12,19 +12,20 @@
 
 namespace vectorlib {
 
+/// Settings of CorrespondenceTracker: which pairs it takes, and how far it trusts the expected pose.
 struct TrackingSettings {
-    PermittedError permitted = {0.5, 0.5, 0.4};
+    PermittedError permitted = {0.5, 0.5, 0.4}; ///< of the expected pose
     double finalDistance =
         0.10;                 ///< root mean square distance from the line beyond which a pair is none; metres
     double finalAngle = 0.17; ///< the same for the angle between the segments; radians
     double minOverlap = 0.2;  ///< share of the shorter segment that must lie over the other
-    /// How far the expected pose may be wrong, standard deviations; decides where the lines leave a direction
-    /// open.
-    double expectedDeviationXY = 0.05;    ///< metres
-    double expectedDeviationAlpha = 0.10; ///< radians
-    /// Of one point from its static line, the line's own error included; weighs points against the expected
-    /// pose.
-    double pointDeviation = 0.15;   ///< metres
+    /// How far the expected pose may be wrong, a standard deviation; decides where the lines leave a
+    /// direction open. Metres.
+    double expectedDeviationXY = 0.05;
+    double expectedDeviationAlpha = 0.10; ///< the same of its heading; radians
+    /// Standard deviation of one point from its static line, the line's own error included; weighs points
+    /// against the expected pose. Metres.
+    double pointDeviation = 0.15;
     std::size_t minPairs = 2;       ///< fewer pairs are no match
     double minMatchedShare = 0.15;  ///< of the length of all dynamic edges; with less there is no match
     int rotations = 3;              ///< how many likely rotations are tried beside the expected one

@@ -6,6 +6,7 @@
 
 namespace vectorlib {
 
+/// Two segments that correspond, by their numbers in the two sets.
 struct CorrespondencePair {
     int fixed = 0;  ///< index into the static set
     int moving = 0; ///< index into the dynamic set
@@ -13,14 +14,14 @@ struct CorrespondencePair {
 
 /// A match of a dynamic set (scan) with a static one (map).
 struct Match {
-    Transformation2D pose; ///< moves the dynamic set onto the static one
-    std::vector<CorrespondencePair> pairs;
-    double reliability = 0;   ///< in [0, 1], of the pairs' directions; paper (28)
+    Transformation2D pose;                 ///< moves the dynamic set onto the static one
+    std::vector<CorrespondencePair> pairs; ///< the edges that correspond
+    double reliability = 0;                ///< in [0, 1], of the pairs' directions; paper (28)
     double ambiguity = 0;     ///< at the pose, weighted by length; m^2. Thesis (7.44), erratum 10
     double matchedLength = 0; ///< of the dynamic edges in pairs; metres
     double visibleLength = 0; ///< of all dynamic edges; metres
     double rms = 0;           ///< root mean square distance of the paired edges from their lines; metres
-    bool accepted = false;
+    bool accepted = false;    ///< false: the best found, not to be trusted
     /// Of (x, y, alpha) at the pose in the static frame, from the pairs alone: its inverse is their
     /// covariance.
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();

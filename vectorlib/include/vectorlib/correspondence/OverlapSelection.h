@@ -9,6 +9,7 @@
 
 namespace vectorlib {
 
+/// Settings of OverlapSelection.
 struct OverlapSettings {
     double minLength = 0.5;   ///< shorter edges of either set take no part; metres
     double maxAngle = 0.40;   ///< largest error of the expected heading; radians

@@ -14,6 +14,7 @@ struct PermittedError {
     double dy = 1.2;
     double dalpha = 1.26;
 
+    /// Whether a transformation is in the set, whose centre is the identity.
     bool holds(const Transformation2D &t) const {
         return std::abs(t.x()) <= dx && std::abs(t.y()) <= dy && std::abs(t.alpha()) <= dalpha;
     }

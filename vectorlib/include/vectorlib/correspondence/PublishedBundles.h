@@ -23,6 +23,7 @@ struct PublishedBundle {
         , alpha(first.alpha) {
         sums.stiffness = first.sums.stiffness;
     }
+    /// Takes a pair into the sums, not into `pairs`.
     void add(const PotentialPair &pair) {
         const double turn = wrapAngle(pair.alpha - alpha);
         const double shift = (pair.normal.dot(normal) < 0 ? -1 : 1) * pair.shift; // facing walls
@@ -54,6 +55,8 @@ public:
     double reliability = 0.10; ///< most of a bundle
     double ambiguity = 0.0025; ///< most of a bundle; m^2
 
+    /// Sorts pairs into bundles, and the bundles into buckets(). The bundles are in the order in which they
+    /// were founded; valid until the next call.
     const std::vector<PublishedBundle> &operator()(const std::vector<PotentialPair> &pairs) {
         bundles_.clear();
         for (std::size_t i = 0; i < pairs.size(); ++i)

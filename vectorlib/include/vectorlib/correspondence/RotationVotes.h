@@ -15,6 +15,7 @@ public:
         half_ = static_cast<int>(limit / bin) + 2;
         votes_.assign(static_cast<std::size_t>(2 * half_ + 1), 0.0);
     }
+    /// A pair asks for a rotation (radians); one beyond the limit is left out.
     void add(double alpha, double weight) {
         const int i = static_cast<int>(std::lround(alpha / bin)) + half_;
         if (i > 0 && i + 1 < static_cast<int>(votes_.size())) {

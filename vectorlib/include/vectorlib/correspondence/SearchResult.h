@@ -8,8 +8,17 @@
 namespace vectorlib {
 
 /// Why a solution is not accepted; the first of its faults in this order.
-enum class Fault { None, Reliability, Ambiguity, MatchedShare, NoEvidence, Discrepancy, NotPermitted };
+enum class Fault {
+    None,         ///< the solution is accepted
+    Reliability,  ///< the directions of its pairs are too much alike to fix the place
+    Ambiguity,    ///< its pairs contradict each other
+    MatchedShare, ///< too little of the dynamic set has partners
+    NoEvidence,   ///< too little of the static set would be seen from there
+    Discrepancy,  ///< what would be seen from there differs from what was seen
+    NotPermitted  ///< its transformation is not in the permitted set
+};
 
+/// The fault in words, for people.
 inline const char *describe(Fault fault) {
     switch (fault) {
     case Fault::None:
@@ -45,17 +54,18 @@ struct Solution {
 
 /// How a search ended.
 enum class SearchOutcome {
-    Complete,
-    Cut,
-    BadSettings,
-    NothingFixed,
-    NothingMoving,
-    NoPotentialPair,
-    TooManyPairs,
-    OneDirection,
-    NoCombination
+    Complete,     ///< every combination was considered
+    Cut,          ///< a bound ended the search: there may be better solutions
+    BadSettings,  ///< a setting or the expected transformation is not finite, negative or 0 where it must not
+    NothingFixed, ///< no usable segment of the static set is within reach
+    NothingMoving,   ///< no usable segment in the dynamic set
+    NoPotentialPair, ///< no permitted transformation brings any two segments together
+    TooManyPairs,    ///< more pairs near each other than the bounds of the settings
+    OneDirection,    ///< all potential pairs are parallel: the shift along them is not known
+    NoCombination    ///< no two directions agree on a transformation
 };
 
+/// The outcome in words, for people.
 inline const char *describe(SearchOutcome outcome) {
     switch (outcome) {
     case SearchOutcome::Complete:

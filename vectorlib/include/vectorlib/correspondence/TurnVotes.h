@@ -11,7 +11,7 @@ namespace vectorlib {
 /// A rotation that two scans may be apart, and how much of their surfaces would then face the same ways.
 struct TurnVote {
     int degrees = 0; ///< in [0, 360)
-    float votes = 0;
+    float votes = 0; ///< only their order has a meaning
 };
 
 /// Which rotations bring the surfaces of one scan to face as those of another: the histograms of the

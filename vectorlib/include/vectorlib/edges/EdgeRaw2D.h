@@ -9,9 +9,9 @@ namespace vectorlib {
 
 /// An edge for computing: a line segment and the sums of the points that it stands for.
 struct EdgeRaw2D {
-    TlsSums sums;
+    TlsSums sums;                  ///< of its points, in the frame of the segment
     LineSegment2D<double> segment; ///< free space on the left
-    double sigma = 0;              ///< metres
+    double sigma = 0;              ///< standard deviation of the points from the line; metres
 
     EdgeRaw2D() = default;
     EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_, double sigma_)
@@ -19,6 +19,7 @@ struct EdgeRaw2D {
         , segment(segment_)
         , sigma(sigma_) {}
 
+    /// The edge in the frame into which t leads.
     friend EdgeRaw2D operator*(const Transformation2D &t, EdgeRaw2D e) {
         e.sums = t * e.sums;
         e.segment = t * e.segment;

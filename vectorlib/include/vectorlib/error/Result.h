@@ -17,12 +17,15 @@ public:
     Result(Error error)
         : content_(std::in_place_index<1>, std::move(error)) {}
 
+    /// Whether there is a value.
     bool ok() const { return content_.index() == 0; }
     explicit operator bool() const { return ok(); }
 
     const T &value() const { return std::get<0>(content_); } ///< only when ok()
-    T &value() { return std::get<0>(content_); }
+    T &value() { return std::get<0>(content_); }             ///< only when ok()
+    /// Moves the value out; only when ok().
     T take() { return std::move(value()); }
+    /// The value, as of a pointer; only when ok().
     T &operator*() { return value(); }
     const T &operator*() const { return value(); }
     T *operator->() { return &value(); }

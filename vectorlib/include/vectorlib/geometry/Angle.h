@@ -4,6 +4,7 @@
 
 namespace vectorlib {
 
+/// Half a turn in radians.
 constexpr double pi = 3.14159265358979323846;
 
 /// The same angle in (-pi, pi]; radians. NaN and infinity give NaN.

@@ -13,10 +13,13 @@ struct Line2D {
 
     /// False for the default line, which has no direction (isotropic or empty data).
     bool isValid() const { return a != 0 || b != 0; }
+    /// Distance of a point from the line, positive on the side to which the normal points; metres.
     double signedDistance(Vector2D<double> p) const { return a * p.x + b * p.y + c; }
+    /// (a, b).
     Vector2D<double> normal() const { return {a, b}; }
     /// The direction whose left normal is (a, b).
     Vector2D<double> direction() const { return {b, -a}; }
+    /// The point of the line that is nearest to p.
     Vector2D<double> project(Vector2D<double> p) const { return p - normal() * signedDistance(p); }
 };
 

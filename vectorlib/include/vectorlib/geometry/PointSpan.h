@@ -25,6 +25,7 @@ public:
     const Vector2D<Scalar> &back() const { return data_[size_ - 1]; }
     const Vector2D<Scalar> *begin() const { return data_; }
     const Vector2D<Scalar> *end() const { return data_ + size_; }
+    /// The `count` points from number `first` on; all must be there.
     PointSpan part(std::size_t first, std::size_t count) const { return {data_ + first, count}; }
 
 private:

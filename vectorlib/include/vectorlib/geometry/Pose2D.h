@@ -16,6 +16,7 @@ struct Pose2D {
         const double c = std::cos(theta), s = std::sin(theta);
         return {x + c * inner.x - s * inner.y, y + s * inner.x + c * inner.y, wrapAngle(theta + inner.theta)};
     }
+    /// The frame that this pose is given in, as a pose in the frame of this one.
     Pose2D inverse() const {
         const double c = std::cos(theta), s = std::sin(theta);
         return {-c * x - s * y, s * x - c * y, wrapAngle(-theta)};

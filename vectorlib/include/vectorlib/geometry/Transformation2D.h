@@ -34,17 +34,21 @@ public:
     double cos() const { return cos_; }
     double sin() const { return sin_; }
     Vector2D<double> translation() const { return translation_; }
+    /// The pose whose transformation this is.
     Pose2D pose() const { return {x(), y(), alpha()}; }
 
+    /// A direction turned by alpha; it is not shifted.
     template <typename Scalar>
     Vector2D<Scalar> rotate(Vector2D<Scalar> v) const {
         return Vector2D<Scalar>(Vector2D<double>(cos_ * v.x - sin_ * v.y, sin_ * v.x + cos_ * v.y));
     }
+    /// The point p, moved.
     template <typename Scalar>
     Vector2D<Scalar> operator*(Vector2D<Scalar> p) const {
         return Vector2D<Scalar>(Vector2D<double>(cos_ * p.x - sin_ * p.y + translation_.x,
                                                  sin_ * p.x + cos_ * p.y + translation_.y));
     }
+    /// The segment s, moved.
     template <typename Scalar>
     LineSegment2D<Scalar> operator*(const LineSegment2D<Scalar> &s) const {
         return {*this * s.begin(), *this * s.end(), rotate(s.direction())};
@@ -60,6 +64,7 @@ public:
         r.translation_ = *this * o.translation_;
         return r;
     }
+    /// The transformation that takes every moved point back.
     Transformation2D inverse() const {
         Transformation2D r;
         r.cos_ = cos_;

@@ -54,6 +54,7 @@ struct Vector2D {
 
 static_assert(sizeof(Vector2D<float>) == 2 * sizeof(float), "a point is two numbers and nothing else");
 
+/// k times v.
 template <typename Scalar>
 constexpr Vector2D<Scalar> operator*(Scalar k, Vector2D<Scalar> v) {
     return v * k;

@@ -14,6 +14,7 @@
 
 namespace vectorlib {
 
+/// Settings of DriveRefiner: which scans it matches, which matches count, and how far the drive is trusted.
 struct DriveRefinerSettings {
     double keyWay = 0.5, keyTurn = 0.3; ///< between key scans; metres, radians
     /// Key scans that are nearer and less turned from each other are compared; metres, radians.

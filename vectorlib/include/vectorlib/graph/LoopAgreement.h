@@ -9,6 +9,7 @@
 
 namespace vectorlib {
 
+/// Settings of LoopAgreement: when two loops tell the same. A way is that of the drive.
 struct LoopAgreementSettings {
     double within = 30;                    ///< way on which loops are asked, at both of their ends; metres
     double along = 15;                     ///< least way on which they agree; metres
@@ -27,6 +28,7 @@ public:
         Transformation2D pose;
         double way; ///< since the start of the drive; metres
     };
+    /// A loop that waits for others, and its two ends.
     struct Waiting {
         PoseConstraint loop;
         End from, to;

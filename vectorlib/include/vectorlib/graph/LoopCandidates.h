@@ -15,6 +15,7 @@
 
 namespace vectorlib {
 
+/// Which scans of a drive may show one place.
 struct LoopCandidateSettings {
     double leastWay = 8;  ///< of the drive between two scans of a loop; metres
     double reach = 2;     ///< scans nearer than this show the same; metres
@@ -28,6 +29,7 @@ struct LoopCandidateSettings {
 /// The scans of a drive that may show the same place as its last one.
 class LoopCandidates {
 public:
+    /// A scan of the drive; metres and radians, variances in their squares.
     struct Scan {
         Pose2D tracked;                           ///< without any loop
         double varianceXY = 0, varianceAlpha = 0; ///< of the motion from the scan before
@@ -98,6 +100,7 @@ public:
         return chosen_;
     }
 
+    /// A scan that was found far from where the last one is thought to be.
     struct Far {
         std::size_t scan; ///< the one that looks most alike
         std::size_t among;

@@ -16,13 +16,16 @@
 
 namespace vectorlib {
 
+/// Settings of LoopCloser: which scans it compares, how far it trusts the drive, and when the poses are due
+/// to be moved.
 struct LoopCloserSettings : LoopCandidateSettings {
     double keyWay = 1, keyTurn = 0.6; ///< between key scans, which are compared; metres, radians
     double drift = 0.02;              ///< metres that the drive may go astray, for each metre of its way
     std::size_t perScan = 2;          ///< earlier passes that a scan is compared with, as the nearest ones
-    /// A loop that turns the scan by more, or moves it farther than the nearest scans are looked for, waits
-    /// until so many agree, and one more for each tenfold number of scans among which it was found; radians.
+    /// A loop that turns the scan by more (radians), or moves it farther than the nearest scans are looked
+    /// for, waits until others agree with it.
     double mostTurn = 0.5;
+    /// So many loops must agree then, and one more for each tenfold number of scans among which it was found.
     std::size_t farAgreeing = 4;
     /// Standard deviations of a metre that was tracked, and of a radian; metres, radians. Variances grow with
     /// the way, however many scans were made on it.
@@ -38,11 +41,10 @@ struct LoopCloserSettings : LoopCandidateSettings {
     std::size_t mostBridged = 3; ///< how many key scans back such a one is matched at most
     /// What a match has beside its own covariance: scans are never quite of one moment and one plane.
     double matchedXY = 0.02, matchedAlpha = 0.005;
-    /// A loop is news that misses the poses by more; metres, radians. Then they are due to be moved, unless
-    /// fewer key scans than this, or than this part of all, came since that was done last.
+    /// A loop is news that misses the poses by more; metres, radians. Then they are due to be moved.
     double newsXY = 0.05, newsAlpha = 0.02;
-    std::size_t fewKeys = 5;
-    double fewPart = 0.02;
+    std::size_t fewKeys = 5; ///< but not before so many key scans came since that was done last
+    double fewPart = 0.02;   ///< the same as a part of all key scans
 };
 
 /// How closing loops went.
@@ -82,8 +84,9 @@ public:
             last_.assign(points.begin(), points.end());
         }
     }
-    /// Whether a loop says that the poses are wrong, and whether it is time to move them.
+    /// Whether a loop says that the poses are wrong.
     bool hasNews() const { return news_; }
+    /// Whether it is time to move them.
     bool isDue() const {
         const auto few = static_cast<std::size_t>(settings.fewPart * double(keys_.size()));
         return news_ && keys_.size() - corrected_ >= std::max(settings.fewKeys, few);
@@ -163,6 +166,7 @@ public:
         double varianceXY = 0, varianceAlpha = 0; ///< of the motion
         double doubt = 0;                         ///< metres
     };
+    /// What LoopCloser found so far.
     struct Progress {
         LoopCounts counts;
         bool found = false, news = false; ///< loops since the last correction
@@ -177,9 +181,11 @@ public:
         Progress progress;
     };
 
-    // The parts of what it remembers; graph() is one, too.
+    /// The parts of Memory; graph() is one, too.
     const std::vector<Key> &keys() const { return keys_; }
+    /// All scans.
     const std::vector<OnTheWay> &onTheWay() const { return scans_; }
+    /// The motion since the last key scan.
     const SinceKey &sinceKey() const { return since_; }
     Progress progress() const { return {counts_, found_, news_, corrected_}; }
     /// Goes on with a drive as if it had seen it itself; nothing is matched. The numbers of keys and scans

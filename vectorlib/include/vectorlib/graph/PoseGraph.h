@@ -13,6 +13,7 @@
 
 namespace vectorlib {
 
+/// Settings of PoseGraph::optimise().
 struct PoseGraphSettings {
     /// Squared error of a constraint, in squared standard deviations, at which a doubtful one has a quarter
     /// of its weight: of three degrees of freedom one in a hundred has more.

@@ -46,7 +46,9 @@ public:
         return OdometryTrack(step.epoch, {{log_.scans[steps_.size() - 1].stamp, step.robot.pose(), {}, {}}});
     }
 
+    /// Repeated scans so far.
     std::size_t repetitions() const { return repeated_; }
+    /// Leaps so far.
     std::size_t leaps() const { return leaps_; }
 
 private:

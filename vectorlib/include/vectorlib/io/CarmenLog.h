@@ -14,6 +14,7 @@ enum class CarmenOdometryKind {
                ///< only
 };
 
+/// What readCarmenLog() does with damaged lines.
 struct CarmenOptions {
     bool skipDamaged = false; ///< count damaged lines instead of giving an error
     /// Count poses of the odometry that are no finite numbers below 1e7 m, of such a log, instead of giving

@@ -32,6 +32,7 @@ struct CarmenScan {
     std::optional<Transformation2D> wheelMotion;
     bool hasOdometry = true; ///< robotPose is a pose; else it was refused (CarmenOptions::refusesOdometry)
 
+    /// Whether a ray met something: its range is above 0 and less than maxRange.
     bool isReturn(std::size_t ray) const { return ranges[ray] > 0 && ranges[ray] < maxRange; }
     /// Appends the points of the rays with return, in the sensor's frame and in ray order.
     template <typename Scalar>

@@ -45,6 +45,7 @@ public:
 
     const std::optional<InputError> &error() const { return error_; }
     std::size_t line() const { return lines_.number(); }
+    /// An error at the row that was read last.
     InputError errorHere(std::string found, std::string expected) const {
         return lines_.errorHere(std::move(found), std::move(expected));
     }

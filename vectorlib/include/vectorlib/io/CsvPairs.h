@@ -5,6 +5,7 @@
 
 namespace vectorlib {
 
+/// Pairs of segments that readCsvPairs() read; metres.
 struct PairTable {
     std::vector<SegmentPair> pairs;
     bool hasWeights = false; ///< the file has a column `weight`

@@ -21,6 +21,7 @@ struct InputError {
     }
 };
 
+/// What was read, or why it could not be read.
 template <typename T>
 using Expected = Result<T, InputError>;
 

@@ -5,10 +5,11 @@
 namespace vectorlib {
 
 /// Writes pictures of scenes, plots, surfaces and tables as LaTeX, one after the other: a document that
-/// pdflatex compiles, or a fragment for \input, whose first lines name the packages that it needs. Text of
-/// any content is escaped. Thesis 4.2.2, LaTeXExport.
+/// pdflatex compiles, or a fragment to be included, whose first lines name the packages that it needs. Text
+/// of any content is escaped. Thesis 4.2.2, LaTeXExport.
 class LatexExport {
 public:
+    /// A document of its own, or a fragment that another document includes.
     enum class As { Document, Fragment };
 
     explicit LatexExport(std::ostream &out, const std::string &title = "", As as = As::Document)
@@ -45,12 +46,15 @@ public:
     void drawing(const Picture &picture, const LatexFrame &frame) {
         LatexPicture(picture, frame).write(out_);
     }
+    /// What the layers with a label mean.
     void legend(const std::vector<Picture::Layer> &layers) {
         out_ << "{\\small\\raggedright\n";
         LatexPicture::writeLegend(out_, layers);
         out_ << "\\par}\n\\bigskip\n";
     }
+    /// A plot; see writeLatex().
     void plot(const Plot &plot) { figure(plot); }
+    /// A surface; see writeLatex().
     void surface(const Surface &surface) { figure(surface); }
 
     /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
@@ -89,6 +93,7 @@ public:
         for (const SpacePlot &s : figures.spaces)
             figure(s);
     }
+    /// A paragraph; any text.
     void text(const std::string &paragraph) { out_ << latexText(paragraph) << "\n\n"; }
     /// What is LaTeX already.
     void latex(const std::string &code) { out_ << code; }

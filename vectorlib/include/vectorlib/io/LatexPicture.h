@@ -17,7 +17,7 @@ struct LatexFrame {
 
 namespace latex {
 
-/// #rrggbb as an expression of a colour, which needs no definition; what is no colour is black.
+/// `#rrggbb` as an expression of a colour, which needs no definition; what is no colour is black.
 inline std::string colour(const std::string &hex) {
     unsigned red = 0, green = 0, blue = 0;
     if (hex.size() != 7 || std::sscanf(hex.c_str(), "#%2x%2x%2x", &red, &green, &blue) != 3)
@@ -42,6 +42,7 @@ public:
         size_ = size * scale_;
     }
 
+    /// Writes the picture and its grid, without a legend.
     void write(std::ostream &out) const {
         out << "\\begin{tikzpicture}[line cap=round, line join=round]\n";
         writeGrid(out);

@@ -11,6 +11,8 @@ namespace vectorlib {
 
 namespace latex {
 
+/// Writes the points that the plot shows as coordinates of pgfplots, with a break where a point is not
+/// finite.
 inline void writeCoordinates(std::ostream &out, const Plot &plot,
                              const std::vector<std::pair<double, double>> &points) {
     out << " coordinates {";
@@ -99,6 +101,7 @@ void openAxis(std::ostream &out, const Figure &figure, const std::string &option
            "draw=none, font=\\small, /tikz/every even column/.append style={column sep=1em}}]\n";
 }
 
+/// Writes a curve with its band and its line of the legend; one of many points thinned().
 inline void writeCurve(std::ostream &out, const Plot &plot, const Curve &curve) {
     for (const auto &outline : outlinesOf(curve, plot)) {
         out << "\\addplot[draw=none, fill=" << colour(curve.colour) << ", fill opacity=0.25, forget plot]";

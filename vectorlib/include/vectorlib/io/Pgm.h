@@ -35,6 +35,7 @@ public:
         return p;
     }
 
+    /// Writes the picture; occupied cells are black, free ones white.
     void writePgm(std::ostream &out) const {
         out << "P5\n" << width_ << ' ' << height_ << "\n255\n";
         out.write(reinterpret_cast<const char *>(cells_.data()), static_cast<std::streamsize>(cells_.size()));

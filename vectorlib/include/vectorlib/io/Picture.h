@@ -11,12 +11,12 @@ namespace vectorlib {
 
 /// Colours with a meaning, the same in every picture; they stay apart for the colour-blind.
 namespace colour {
-constexpr const char *map = "#1b2a41";      // what is known: segments of a map, of a world, of the static set
-constexpr const char *points = "#8d99ae";   // what was measured
-constexpr const char *outliers = "#d62828"; // what was left out
-constexpr const char *estimate = "#0072b2"; // what was computed: trajectories, registered segments
-constexpr const char *reference = "#e69f00"; // what it is compared with
-constexpr const char *before = "#cc79a7";    // where the dynamic set was
+constexpr const char *map = "#1b2a41";    ///< what is known: segments of a map, of a world, of the static set
+constexpr const char *points = "#8d99ae"; ///< what was measured
+constexpr const char *outliers = "#d62828";  ///< what was left out
+constexpr const char *estimate = "#0072b2";  ///< what was computed: trajectories, registered segments
+constexpr const char *reference = "#e69f00"; ///< what it is compared with
+constexpr const char *before = "#cc79a7";    ///< where the dynamic set was
 
 /// For parts that need only be told from their neighbours, such as clusters.
 inline const char *distinct(std::size_t i) {
@@ -34,20 +34,30 @@ public:
 
     using Point = Vector2D<double>;
 
+    /// How the things of a layer are drawn.
     struct Style {
-        std::string colour; ///< #rrggbb
+        std::string colour; ///< as in CSS: `#rrggbb`
         double width = 1.5; ///< pixels; diameter of points
         std::string label;  ///< in the legend; none when empty
         bool dashed = false;
         bool normals = false; ///< of segments: a tick to the side that was free
     };
-    enum class Kind { Points, Segments, Path, Pose, Area };
+    /// What the points of a layer stand for.
+    enum class Kind {
+        Points,   ///< dots
+        Segments, ///< lines between two points each
+        Path,     ///< one line through all points
+        Pose,     ///< a circle with a tick in its heading
+        Area      ///< a filled polygon
+    };
+    /// Things of one kind and style, in the order in which they were added; metres.
     struct Layer {
         Kind kind;
         Style style;
         std::vector<Point> vertices; ///< of a pose one, of segments begins and ends in turn
         double heading = 0;          ///< of a pose
     };
+    /// A rectangle along the axes, from its lower left corner to its upper right one; metres.
     struct Box {
         Point low, high;
         Point size() const { return high - low; }
@@ -56,6 +66,7 @@ public:
     explicit Picture(std::string title)
         : title_(std::move(title)) {}
 
+    /// Adds a layer of dots.
     template <typename Scalar>
     void points(Style style, const std::vector<Vector2D<Scalar>> &points) {
         Layer &layer = add(Kind::Points, std::move(style));
@@ -73,6 +84,7 @@ public:
                                                std::to_string(clusters[c].size()) + " points"},
                    clusters[c]);
     }
+    /// Adds a layer of segments.
     template <typename Scalar>
     void segments(Style style, const std::vector<LineSegment2D<Scalar>> &segments) {
         Layer &layer = add(Kind::Segments, std::move(style));
@@ -82,6 +94,7 @@ public:
                 take(layer, Point(s.end()));
             }
     }
+    /// Adds a layer with one line through all points.
     void path(Style style, const std::vector<Point> &path) {
         Layer &layer = add(Kind::Path, std::move(style));
         for (const Point &p : path)
@@ -112,8 +125,8 @@ public:
             margin = std::max(margin, 1e-14 * std::abs(far)); // less would be lost by rounding
         return {box_.low - Point(margin, margin), box_.high + Point(margin, margin)};
     }
-    /// Where the lines of a grid are from low to high: every 1, 2 or 5 times a power of ten, at most about
-    /// ten along the longer side of the box.
+    /// From one line of a grid to the next, metres: 1, 2 or 5 times a power of ten, so that at most about ten
+    /// lines cross the longer side of the box.
     double gridStep() const {
         const Point size = box().size();
         const double wanted = std::max(size.x, size.y) / mostLines;
@@ -123,6 +136,7 @@ public:
                 return factor * power;
         return 10 * power;
     }
+    /// Where the lines of a grid are from low to high, at most one more than `most`.
     static std::vector<double> gridLines(double low, double high, double step, int most = mostLines) {
         std::vector<double> lines;
         // Counted: far from the origin a step more may be the same number.

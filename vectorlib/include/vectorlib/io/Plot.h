@@ -9,7 +9,7 @@
 
 namespace vectorlib {
 
-/// One curve of a plot: named, in a colour (#rrggbb), through its points. A point that is not finite
+/// One curve of a plot: named, in a colour (`#rrggbb`), through its points. A point that is not finite
 /// interrupts it.
 struct Curve {
     std::string label; ///< none in the legend when empty
@@ -75,8 +75,13 @@ struct Figures {
 
 /// What becomes of a point of a plot: not finite it interrupts its curve, without a place on a logarithmic
 /// axis it is left out.
-enum class PlotPlace { Shown, LeftOut, Break };
+enum class PlotPlace {
+    Shown,   ///< it is drawn
+    LeftOut, ///< its curve goes on without it
+    Break    ///< its curve is interrupted
+};
 
+/// What becomes of a point (x, y) of the plot.
 inline PlotPlace placeOf(const Plot &plot, std::pair<double, double> point) {
     constexpr double most = 1e300; // beyond which an axis around it is none
     if (!(std::abs(point.first) < most) || !(std::abs(point.second) < most))

@@ -27,6 +27,7 @@ class SvgPicture : public Picture {
 public:
     using Picture::Picture;
 
+    /// Writes the whole file.
     void write(std::ostream &out) {
         layOut();
         out << R"(<svg xmlns="http://www.w3.org/2000/svg" width=")" << Fixed{width_, 0} << R"(" height=")"

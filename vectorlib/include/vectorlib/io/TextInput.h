@@ -50,6 +50,7 @@ public:
     /// False when the last line ended with the input instead of a line feed: it may be cut short.
     bool terminated() const { return terminated_; }
     const std::string &name() const { return name_; }
+    /// An error at the line that was read last.
     InputError errorHere(std::string found, std::string expected) const {
         return {name_, number_, std::move(found), std::move(expected)};
     }
@@ -92,10 +93,12 @@ private:
     std::optional<InputError> error_;
 };
 
+/// Whether a character is a space or a tab.
 inline bool isBlank(char c) {
     return c == ' ' || c == '\t';
 }
 
+/// The text without the blanks at its ends.
 inline std::string_view trimmed(std::string_view text) {
     while (!text.empty() && isBlank(text.front()))
         text.remove_prefix(1);

@@ -25,6 +25,7 @@ enum class GlobalPairVerdict {
     NothingMoving  ///< the second scan shows too few surfaces
 };
 
+/// The verdict in words, for people.
 inline const char *describe(GlobalPairVerdict verdict) {
     switch (verdict) {
     case GlobalPairVerdict::Found:

@@ -16,6 +16,7 @@ struct GlobalSearchEffort {
     std::size_t rivals;     ///< refined too: those that are as consistent, though they explain less
 };
 
+/// Settings of GlobalPairMatcher: how widely it searches, and when a motion is found.
 struct GlobalPairSettings {
     GlobalSearchEffort quick{8, 12, 3, 1};
     GlobalSearchEffort wide{20, 64, 8, 4}; ///< where the quick search does not convince

@@ -41,6 +41,8 @@ public:
     double sameAlpha = 0.1; ///< radians
     MapRegistration registration;
 
+    /// Seeks the second map (`moving`) in the first (`fixed`), each in its own frame; metres. The motion
+    /// takes the second into the frame of the first. `fixed` is not changed; its search keeps buffers.
     MapAlignment operator()(VectorMap &fixed, const std::vector<MapEdge> &moving) {
         MapAlignment result;
         findPlaces(moving);

@@ -22,6 +22,7 @@ struct ScanReport {
     double totalMs() const { return segmentMs + vectorizeMs + matchMs + mapMs; }
 };
 
+/// Settings of MapBuilder.
 struct MapBuilderSettings {
     bool grow = true;         ///< false: only find the pose, leave the map as it is
     std::size_t minEdges = 2; ///< scans with fewer edges are skipped
@@ -30,8 +31,9 @@ struct MapBuilderSettings {
     double newEdgeLength = 0.15; ///< shorter unmatched edges do not enter the map; metres
     int lostBeforeRestart = 3;   ///< after so many lost scans in a row the map goes on from the expected pose
     /// Match each scan with the one before it first, for a better expectation: worth its time where scans lie
-    /// far apart. Then the deviations of an expected pose from such a match, in metres and radians.
+    /// far apart.
     bool matchPrevious = false;
+    /// How far a pose that such a match expects may be wrong: standard deviations; metres, radians.
     double previousDeviationXY = 0.01, previousDeviationAlpha = 0.005;
     TrackingSettings tracking; ///< from a pose that such a match expects
 };

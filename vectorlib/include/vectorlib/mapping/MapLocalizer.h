@@ -6,11 +6,11 @@
 
 namespace vectorlib {
 
+/// Settings of MapLocalizer.
 struct MapLocalizerSettings {
-    /// Scans that are sought in the whole map lie so far apart by odometry, or where that does not tell, so
-    /// many scans; metres, radians.
+    /// Scans that are sought in the whole map lie so far apart by odometry; metres, radians.
     double keyWay = 1, keyTurn = 0.6;
-    std::size_t keyScans = 5;
+    std::size_t keyScans = 5;              ///< the same in scans, where the odometry does not tell
     double sameXY = 0.5, sameAlpha = 0.17; ///< two ways to one place agree within this; metres, radians
     int lostBeforeDropped = 3;             ///< lost scans in a row that refute a place not yet confirmed
     int lostBeforeSearch = 10;             ///< in a row, after which the place is sought again
@@ -19,7 +19,7 @@ struct MapLocalizerSettings {
 
 /// A scan of the drive. Without a pose nothing tells where it was taken.
 struct LocalizedScan {
-    double stamp = 0;
+    double stamp = 0;           ///< seconds
     std::optional<Pose2D> pose; ///< of the sensor, map frame
     bool matched = false;       ///< else the pose is where the motion led
 };

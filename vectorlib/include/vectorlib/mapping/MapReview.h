@@ -5,6 +5,7 @@
 
 namespace vectorlib {
 
+/// Settings of MapReview: which walls are one, and which were seen through so often that they leave.
 struct MapReviewSettings {
     int known = 0;              ///< walls with smaller numbers were there before the drive: they stay
     double mergeWithin = 0.15;  ///< walls side by side that no two scans saw both of become one; metres
@@ -37,6 +38,8 @@ class MapReview {
 public:
     MapReviewSettings settings;
 
+    /// Changes the map as the scans of the drive tell, and counts what it changed. The poses of the drive are
+    /// in the map's frame.
     MapReviewCounts operator()(VectorMap &map, const ScanDrive &drive) {
         counts_ = {};
         mergeTwins(map, drive);

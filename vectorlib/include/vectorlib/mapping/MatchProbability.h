@@ -16,12 +16,12 @@ namespace vectorlib {
 struct MatchProbability {
     using Features = std::array<double, 5>;
 
-    /// Of the features, the ceiling, and how much a difference of fit tells. Fitted to the first half of the
+    /// Of the features. With the ceiling and the sharpness fitted to the first half of the
     /// pairs of five logs, neighbouring scans and ones farther apart, by hermes-vector experiment calibration
     /// --half 1 --log intel... (docs/algorithms.md has all of it).
     Features weights{-3.92, -10.99, 12.39, 2.44, -3.19};
-    double ceiling = 0.986; ///< however well two scans agree: corrected poses have errors, too
-    double sharpness = 36.7;
+    double ceiling = 0.986;  ///< however well two scans agree: corrected poses have errors, too
+    double sharpness = 36.7; ///< how much a difference of fit tells
 
     /// What tells whether the right solution is among those of a match that has some: a constant 1, the part
     /// that the best contradicts of what it explains or contradicts, what it loses by sliding, the logarithm
@@ -43,6 +43,7 @@ struct MatchProbability {
             sum += weights[i] * f[i];
         return ceiling / (1 + std::exp(-sum));
     }
+    /// Sets the probability of every solution of a match; they add up to at most `ceiling`.
     void operator()(GlobalPairMatch &match) const {
         if (match.solutions.empty())
             return;

@@ -16,6 +16,7 @@ struct TwinWalls {
     int witnesses = 0;       ///< scans that saw both at once, so far apart
 };
 
+/// Which walls ParallelTwins compares.
 struct ParallelTwinsSettings {
     std::int64_t minObservations = 3; ///< walls that were seen less often are left out
     double maxAngle = pi / 18;        ///< between the two; radians
@@ -53,6 +54,7 @@ public:
         });
         return pairs_;
     }
+    /// How much of the map is there twice: the lengths of all such pairs.
     TwinShare share(const VectorMap &map, const ScanDrive &drive) {
         TwinShare result;
         map.forEach([&](const MapEdge &e) {

@@ -31,6 +31,7 @@ struct PoseTrust {
                 std::log(0.01 + within(far)),
                 within(match.matchedLength / match.visibleLength)};
     }
+    /// The probability for these features, in [0, 1]; 0 where one of them is no number.
     double operator()(const Features &f) const {
         double sum = 0;
         for (std::size_t i = 0; i < f.size(); ++i)

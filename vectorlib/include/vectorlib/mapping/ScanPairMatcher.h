@@ -7,13 +7,14 @@
 
 namespace vectorlib {
 
+/// Settings of ScanPairMatcher: how far it trusts the expected motion, and what a match needs to be accepted.
 struct ScanPairSettings {
     double deviationXY = 0.15;    ///< of the expected motion, a standard deviation; metres
     double deviationAlpha = 0.10; ///< the same; radians
     TrackingSettings lines;       ///< of the first search
     /// A match with fewer points explained or more contradicted is searched for again, more widely.
     double enoughExplained = 0.5, fewContradicted = 0.10;
-    TrackingSettings wideLines = TrackingSettings::forPoorExpectation();
+    TrackingSettings wideLines = TrackingSettings::forPoorExpectation(); ///< of lines in the wider search
     double wideGate = 0.5;          ///< of points in the wider search; metres
     double expectationCost = 0.002; ///< in score, of one squared standard deviation from the expected motion
     /// What a match needs to be accepted; see PointAgreement.

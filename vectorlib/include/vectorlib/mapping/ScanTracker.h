@@ -14,11 +14,12 @@
 
 namespace vectorlib {
 
+/// Settings of ScanTracker.
 struct ScanTrackerSettings {
-    bool compensateMotion = true;
-    bool useOdometry = true;   ///< where a scan has any; else the motion is expected to go on as before
-    Pose2D sensorOnRobot;      ///< the odometry is that of the robot
-    TrackingSettings tracking; ///< where the pose is well expected
+    bool compensateMotion = true; ///< straighten scans that were taken while the sensor moved
+    bool useOdometry = true;      ///< where a scan has any; else the motion is expected to go on as before
+    Pose2D sensorOnRobot;         ///< pose of the sensor in the frame of the robot, whose odometry it is
+    TrackingSettings tracking;    ///< where the pose is well expected
     /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
     double moment = 0.5;
     std::int64_t relocalizeAfter = 10; ///< lost scans in a row; 0: never by itself
@@ -27,7 +28,7 @@ struct ScanTrackerSettings {
 
 /// Counts of all scans since the start or the last clear, and the time of each step; milliseconds.
 struct ScanTrackerCounts {
-    std::uint64_t scans = 0, matched = 0, lost = 0, skipped = 0;
+    std::uint64_t scans = 0, matched = 0, lost = 0, skipped = 0; ///< all, and those of each outcome
     /// Scans found in the map though the one before shows something else, and times that the map went on
     /// where the scan was expected, as it was lost for too long: the sensor may have been carried elsewhere
     /// there.
@@ -49,6 +50,7 @@ public:
 
     ScanTracker() { apply(ScanTrackerSettings()); }
 
+    /// Takes new settings; map and pose stay.
     void apply(const ScanTrackerSettings &settings) {
         settings_ = settings;
         builder.settings.matchPrevious = true;

@@ -8,6 +8,7 @@
 
 namespace vectorlib {
 
+/// When VectorMap makes one edge of several.
 struct VectorMapSettings {
     double maxSigma = 0.05; ///< edges are merged only while the points stay within this of one line; metres
     double joinDistance =
@@ -34,6 +35,7 @@ public:
         changed_.clear();
     }
 
+    /// Calls take(edge) for every edge of the map.
     template <typename Take>
     void forEach(Take take) const {
         for (const MapEdge &e : edges_)
@@ -127,6 +129,7 @@ public:
         MapEdge &known = edges_[static_cast<std::size_t>(number)];
         take(known, edge, known.observations);
     }
+    /// Takes the edge of that number out of the map; its slot stays.
     void remove(int number) {
         edges_[static_cast<std::size_t>(number)].observations = 0;
         --alive_;

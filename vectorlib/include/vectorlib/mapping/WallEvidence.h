@@ -18,6 +18,7 @@ struct PartEvidence {
     int through() const { return throughBefore + throughAfter; }
 };
 
+/// Settings of WallEvidence: when a part of a wall was seen, and when a scan saw through it.
 struct WallEvidenceSettings {
     double part = 0.2;          ///< walls are looked at in parts of about this length; metres
     double seenWithin = 0.15;   ///< a part is seen where the scan's edge is no farther from its line; metres
@@ -50,6 +51,7 @@ public:
     }
     /// Number of parts of a segment, all of one length.
     std::size_t parts(std::size_t wall) const { return starts_[wall + 1] - starts_[wall]; }
+    /// What the scans tell of a part of a segment; parts are numbered from its begin.
     const PartEvidence &part(std::size_t wall, std::size_t number) const {
         return evidence_[starts_[wall] + number];
     }

@@ -10,6 +10,7 @@ public:
     double maxAngle = 0.17;    ///< between the two; radians
     double maxDistance = 0.15; ///< of the edge from the wall's line, root mean square; metres
 
+    /// Takes the walls of a map as they are now.
     void index(const VectorMap &map) {
         grid_.clear();
         walls_.clear();

@@ -11,6 +11,7 @@ public:
         1.0; ///< after a longer pause, or a stamp that steps back, the velocity is forgotten; seconds
     double lastStepShare = 0.5; ///< of the last step in the velocity; less is smoother and later
 
+    /// The sensor was at `pose` at the time `stamp`; seconds.
     void update(const Pose2D &pose, double stamp) {
         const double seconds = stamp - stamp_;
         if (!known_ || !(seconds > 0) || seconds > maxGap) {
@@ -35,6 +36,7 @@ public:
     }
     /// All poses so far lie elsewhere: in another frame, or the map was corrected.
     void move(const Transformation2D &moved) { pose_ = (moved * Transformation2D(pose_)).pose(); }
+    /// Where it is expected at the time `stamp`, seconds: the last pose where the velocity is not known.
     Pose2D predict(double stamp) const {
         const double seconds = stamp - stamp_;
         if (!known_ || !(seconds > 0) || seconds > maxGap)

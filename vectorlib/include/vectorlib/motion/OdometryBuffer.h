@@ -17,11 +17,13 @@ public:
     static constexpr double longestForesight_s = 0.1;      ///< how far the last twist is trusted
     static constexpr double jump_m = 0.05, jump_rad = 0.1; ///< beyond what twice the speed explains
 
+    /// What became of a sample.
     enum class Outcome {
         Taken,
         OutOfOrder, ///< not later than the one before; left out
         Restarted   ///< does not follow from those before (reset, gap, clock set): a new epoch begins with it
     };
+    /// Takes the next sample.
     Outcome add(const OdometrySample &added) {
         Outcome outcome = Outcome::Taken;
         if (size_ > 0) {

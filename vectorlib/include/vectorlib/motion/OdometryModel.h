@@ -20,6 +20,7 @@ public:
     struct Deviations {
         double xy = 0, alpha = 0;
     };
+    /// An expected pose of the sensor in the map's frame, and how far it may be wrong.
     struct Expectation {
         Pose2D pose;
         std::optional<Deviations> deviations; ///< nothing where the odometry tells no covariance
@@ -27,7 +28,9 @@ public:
 
     /// The sensor's pose in the robot's frame.
     void setMount(const Pose2D &sensor) { mount_ = Transformation2D(sensor); }
+    /// Forgets the last pose: nothing is expected before the next update.
     void reset() { last_.reset(); }
+    /// The sensor was at `pose` (map frame) at the time `stamp` (seconds), which the track tells of.
     void update(const Pose2D &pose, const OdometryTrack &track, double stamp) {
         last_ = Last{track.epoch(), Transformation2D(pose), track.at(stamp), track.covarianceAt(stamp)};
     }

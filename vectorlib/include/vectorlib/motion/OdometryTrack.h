@@ -29,6 +29,8 @@ public:
         const OdometrySample &knot = knots_[knotBefore(stamp)];
         return Transformation2D(knot.pose * knot.twist.motion(stamp - knot.stamp));
     }
+    /// The covariance of the odometry at a time (seconds), between two samples in proportion; as
+    /// OdometrySample::covariance.
     std::optional<Eigen::Matrix3d> covarianceAt(double stamp) const {
         const std::size_t i = knotBefore(stamp);
         if (i + 1 == knots_.size() || !knots_[i].covariance || !knots_[i + 1].covariance)

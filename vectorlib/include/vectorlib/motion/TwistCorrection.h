@@ -29,6 +29,7 @@ public:
     double deviationAlpha = 1;    ///< the same; rad/s
     int iterations = 4;
 
+    /// The correction of a velocity, and what it is worth.
     struct Result {
         Twist2D twist;   ///< to be added to the velocity used
         double bend = 0; ///< how far this moves the points beside known edges, at most; metres

@@ -13,6 +13,7 @@ struct ViewComparison {
 
 /// Over a sector of directions: from right to left what either view sees there. They do not cross inside.
 struct SharedSector {
+    /// The points that the two views see at the ends of the sector; sensor frame, metres.
     Vector2D<double> expectedRight, expectedLeft, observedRight, observedLeft;
 };
 

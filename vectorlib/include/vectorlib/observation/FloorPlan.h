@@ -16,9 +16,13 @@ public:
     using Wall = LineSegment2D<double>;
     using Point = Vector2D<double>;
 
-    enum class Rooms { Different, Alike };
+    /// How the rooms of a plan differ.
+    enum class Rooms {
+        Different, ///< of different sizes
+        Alike      ///< told apart by their furniture alone
+    };
 
-    /// Rooms of different sizes, or rooms that only their furniture tells apart.
+    /// A plan with so many rooms.
     FloorPlan(unsigned seed, int rooms, Rooms kind = Rooms::Different)
         : random_(seed)
         , kind_(kind) {

@@ -14,6 +14,7 @@ class Frontier {
 public:
     double widestGap = pi / 6; ///< radians
 
+    /// The frontier of a view; valid until the next call.
     const std::vector<LineSegment2D<double>> &operator()(const std::vector<VisiblePart<double>> &view) {
         segments_.clear();
         for (std::size_t i = 0; i < view.size(); ++i)

@@ -34,6 +34,7 @@ public:
             }
         });
     }
+    /// The line of the edge that was added as number `edge`, from 0.
     const SightLine &line(std::size_t edge) const { return lines_[edge]; }
 
     /// What is seen, from right to left; valid until the next call.

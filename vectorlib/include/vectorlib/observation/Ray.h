@@ -7,6 +7,7 @@
 
 namespace vectorlib {
 
+/// The distance at which a ray meets nothing.
 constexpr double noHit = std::numeric_limits<double>::infinity();
 
 /// How far from the origin a ray of unit direction meets the segment from begin to end, whichever side it

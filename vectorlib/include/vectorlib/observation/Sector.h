@@ -44,9 +44,9 @@ inline double compareDistance(const SightLine &a, const SightLine &b, Vector2D<d
 
 /// An edge between two directions, under less than half a turn.
 struct Sector {
-    double right = 0, left = 0; ///< turnOf the two directions, right <= left
-    Vector2D<double> towardsRight, towardsLeft;
-    std::size_t edge = 0;
+    double right = 0, left = 0;                 ///< turnOf the two directions, right <= left
+    Vector2D<double> towardsRight, towardsLeft; ///< the two directions, of any length
+    std::size_t edge = 0;                       ///< number of the edge
 };
 
 /// Calls take(sector) for a sector, or, where it crosses the direction straight behind, for its two halves.

@@ -45,6 +45,7 @@ public:
         followed_ = 0;
         return true;
     }
+    /// The same without an end before all is done.
     bool follow(const std::vector<MapEdge> &slots) {
         return follow(slots, [] { return false; });
     }

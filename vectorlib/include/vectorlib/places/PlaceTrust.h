@@ -22,6 +22,7 @@ struct PlaceTrust {
     double oddsOfRival(double bestScore, double lead) const {
         return std::exp(-rival * relativeLead(bestScore, lead));
     }
+    /// A lead within 0 and `mostLead`.
     double clampedLead(double lead) const { return std::clamp(lead, 0.0, mostLead); }
     /// A lead to what the best place leaves unexplained: where map and scan agree in all else, a small one
     /// tells as much as a great one where they do not.

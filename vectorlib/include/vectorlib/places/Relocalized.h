@@ -11,8 +11,16 @@
 namespace vectorlib {
 
 /// Why a place is not accepted; the first of its faults in this order.
-enum class PlaceFault { None, Reliability, Explained, Contradicted, Doubtful, Alike };
+enum class PlaceFault {
+    None,         ///< the place is accepted
+    Reliability,  ///< the directions of the walls are too much alike to fix the place
+    Explained,    ///< too little of the scan lies on walls of the map
+    Contradicted, ///< what would be seen from there differs from what was seen
+    Doubtful,     ///< too little speaks for it
+    Alike         ///< another place fits alike
+};
 
+/// The fault in words, for people.
 inline const char *describe(PlaceFault fault) {
     switch (fault) {
     case PlaceFault::None:
@@ -62,7 +70,7 @@ struct Relocalized {
     std::size_t alike = 0;     ///< places that score nearly like the best
     std::size_t parts = 0;     ///< of the search: a wall of the scan on a wall of the map
     std::size_t searched = 0;  ///< of these parts
-    double ms = 0;
+    double ms = 0;             ///< time that the search took; milliseconds
 
     bool isFound() const { return outcome == Outcome::Found; }
     /// In words, for people.

@@ -11,9 +11,9 @@ namespace vectorlib {
 
 /// A point of a scan and the direction of the wall there, free space on its left; sensor frame.
 struct WallPoint {
-    Vector2D<float> position;
-    Vector2D<float> direction;
-    int object = 0; ///< by ScanObjects
+    Vector2D<float> position;  ///< metres
+    Vector2D<float> direction; ///< of unit length
+    int object = 0;            ///< by ScanObjects
 };
 
 /// Tells which points of a scan lie on one and the same object, so that what they say is said once. An object

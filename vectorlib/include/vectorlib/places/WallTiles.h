@@ -27,6 +27,7 @@ public:
     /// Of walls in tiles, some 100 bytes each at worst: walls beyond are refused.
     std::size_t mostEntries = 8000000;
 
+    /// The wall that was added under this number.
     const Wall &wall(int number) const { return walls_[static_cast<std::size_t>(number)]; }
     /// Tiles that had a wall at some time: the memory follows them.
     std::size_t tiles() const { return tiles_.size(); }
@@ -54,6 +55,7 @@ public:
         });
         return true;
     }
+    /// Takes out a wall that was added.
     void remove(int number) {
         forEachTile(wall(number), near, [&](std::int32_t i, std::int32_t j) {
             Tile &t = tiles_[static_cast<std::size_t>(table_.find(i, j))];

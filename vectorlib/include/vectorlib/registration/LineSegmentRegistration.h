@@ -55,6 +55,7 @@ public:
         ++pairs_;
         return true;
     }
+    /// The same for two segments.
     bool add(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
         return add({fixed, moving, weight});
     }
@@ -81,6 +82,7 @@ public:
         drop(1, sumsOf(pair));
         return true;
     }
+    /// The same for two segments.
     bool remove(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
         return remove({fixed, moving, weight});
     }

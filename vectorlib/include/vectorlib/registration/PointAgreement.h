@@ -14,7 +14,9 @@ struct FloatMotion {
         : cos(static_cast<float>(t.cos()))
         , sin(static_cast<float>(t.sin()))
         , translation(t.translation()) {}
+    /// A direction, turned.
     Vector2D<float> rotate(Vector2D<float> v) const { return {cos * v.x - sin * v.y, sin * v.x + cos * v.y}; }
+    /// A point, moved.
     Vector2D<float> operator*(Vector2D<float> p) const { return rotate(p) + translation; }
 };
 

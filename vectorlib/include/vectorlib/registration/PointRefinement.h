@@ -11,11 +11,12 @@ namespace vectorlib {
 
 /// Where a scan is expected, and how far that may be wrong: standard deviations.
 struct Expectation {
-    Transformation2D pose;
+    Transformation2D pose;        ///< moves the moving scan onto the fixed one
     double deviationXY = 0.15;    ///< metres
     double deviationAlpha = 0.10; ///< radians
 };
 
+/// Settings of PointRefinement.
 struct PointRefinementSettings {
     std::size_t mostPoints = 500; ///< of a scan with more, every n-th takes part
     double gate = 0.15;           ///< points farther apart are no pairs; metres

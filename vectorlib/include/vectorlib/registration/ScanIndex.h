@@ -34,6 +34,7 @@ public:
         findDirections();
     }
     int size() const { return size_; }
+    /// A point by its number; sensor frame, metres.
     Vector2D<float> point(int i) const { return {x_[at(i)], y_[at(i)]}; }
     /// Of the wall through the point and its neighbours, of unit length; zero for a point that stands alone.
     Vector2D<float> normal(int i) const { return normals_[static_cast<std::size_t>(i)]; }

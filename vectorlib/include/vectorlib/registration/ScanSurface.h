@@ -27,6 +27,7 @@ public:
     float longest = 0.30f;        ///< no point stands for more than so much of a surface; metres
     std::size_t mostPieces = 150; ///< of a scan with more, pieces lie farther apart
 
+    /// Takes the surfaces of a scan.
     void build(const ScanIndex &scan) {
         measureLengths(scan);
         pieces_.clear();

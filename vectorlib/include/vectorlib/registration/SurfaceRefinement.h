@@ -17,6 +17,7 @@ public:
     int steps = 4;
     double sameWay = 0.7; ///< cosine of the most between two normals
 
+    /// Takes the surfaces of two scans, each in its sensor's frame; they must outlive the calls that follow.
     void start(const ScanSurface &fixed, const ScanSurface &moving) {
         fixed_ = &fixed.pieces();
         moving_ = &moving.pieces();

@@ -35,6 +35,7 @@ class ConsistencyTable {
 public:
     using Segments = std::vector<TypedSegment>;
 
+    /// Compares every segment of `rows` with every one of `columns`, both in the order of their scans.
     void fill(const Segments &rows, const Segments &columns, const RelationSettings &settings) {
         columns_ = columns.size();
         cells_.resize(rows.size() * columns_);
@@ -44,9 +45,11 @@ public:
                                            endsMayMatch(rows, i, columns, j, settings) &&
                                            beginsMayMatch(rows, i, columns, j, settings);
     }
+    /// Whether segment `row` of the first set may match segment `column` of the second.
     bool operator()(std::size_t row, std::size_t column) const {
         return cells_[row * columns_ + column] != 0;
     }
+    /// The same for numbers that are not below 0.
     bool operator()(int row, int column) const {
         return (*this)(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
     }

@@ -8,15 +8,20 @@
 namespace vectorlib {
 
 /// The kinds of edges of pose-free thesis 3.3; a jump is at the begin or at the end of its segment.
-enum class CornerType : std::uint8_t { Angle, JumpBegin, JumpEnd, Virtual };
+enum class CornerType : std::uint8_t {
+    Angle,     ///< two segments meet there
+    JumpBegin, ///< a segment begins there, in front of what lies behind
+    JumpEnd,   ///< a segment ends there, in front of what lies behind
+    Virtual    ///< the lines of two segments cross there
+};
 
 /// An edge in the sense of pose-free thesis 3.3: a point where two segments meet or would meet, or where one
 /// ends in front of what lies behind. Called corner here, as edges are segments in this library.
 struct Corner {
     CornerType type = CornerType::Virtual;
-    int first = -1;  ///< number of the segment before it; -1 at JumpBegin
-    int second = -1; ///< number of the segment after it; -1 at JumpEnd
-    Vector2D<double> point;
+    int first = -1;         ///< number of the segment before it; -1 at JumpBegin
+    int second = -1;        ///< number of the segment after it; -1 at JumpEnd
+    Vector2D<double> point; ///< sensor frame; metres
     /// Relative angle of the two segments; of a jump the largest that the hidden one can have. Radians.
     double angle = 0;
 };
@@ -110,6 +115,8 @@ private:
 /// segments by the table of segments. Keeps its buffer.
 class CornerTable {
 public:
+    /// Compares every corner of `rows` with every one of `columns`. `segments` is the table of their
+    /// segments; `window` is that of angles, radians.
     void fill(const std::vector<Corner> &rows, const std::vector<Corner> &columns,
               const ConsistencyTable &segments, double window) {
         columns_ = columns.size();
@@ -120,6 +127,7 @@ public:
                                            segmentsMatch(rows[i], columns[j], segments) &&
                                            anglesMayMatch(rows[i], columns[j], window);
     }
+    /// Whether corner `row` of the first set may match corner `column` of the second.
     bool operator()(int row, int column) const {
         return cells_[static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column)] != 0;
     }

@@ -13,12 +13,14 @@ namespace vectorlib {
 /// taken away is exactly 0. Keeps its buffers.
 class MatchingTable {
 public:
+    /// A pair of a reference segment (row) and a current one (column), and its merged score.
     struct Cell {
         int row = 0;
         int column = 0;
         double score = 0; ///< 0: there is none
     };
 
+    /// Begins anew with an empty table of this size.
     void reset(std::size_t rows, std::size_t columns) {
         rows_ = static_cast<int>(rows);
         columns_ = static_cast<int>(columns);
@@ -29,6 +31,7 @@ public:
     }
     int rows() const { return rows_; }
     int columns() const { return columns_; }
+    /// The number of a cell, as add() takes it.
     std::size_t cell(int row, int column) const { return static_cast<std::size_t>(row * columns_ + column); }
     /// The sum of the valid scores of a pair.
     double merged(int row, int column) const { return double(merged_[cell(row, column)]) / unit; }

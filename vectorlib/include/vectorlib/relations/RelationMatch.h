@@ -8,18 +8,19 @@ namespace vectorlib {
 
 /// How a match by relations ended.
 enum class RelationOutcome {
-    Matched,
-    BadSettings,
-    TooFewReference,
-    TooFewCurrent,
-    NoCommonRelation,
-    OnePair,
-    OneDirection,
-    Contradiction,
-    Unspecific,
-    Ambiguous
+    Matched,          ///< the pose is found
+    BadSettings,      ///< a setting is negative, 0 where it must not be, too large or not a number
+    TooFewReference,  ///< fewer than two usable segments in the reference scan
+    TooFewCurrent,    ///< fewer than two usable segments in the current scan
+    NoCommonRelation, ///< no relation of the current scan is found in the reference scan
+    OnePair,          ///< only one pair of segments matches
+    OneDirection,     ///< the matching segments are too nearly parallel to fix the place
+    Contradiction,    ///< the matching segments agree on a rotation, but on no place
+    Unspecific,       ///< too little matches to tell the place from others like it
+    Ambiguous         ///< another place fits nearly as well
 };
 
+/// The outcome in words, for people.
 inline const char *describe(RelationOutcome outcome) {
     switch (outcome) {
     case RelationOutcome::Matched:

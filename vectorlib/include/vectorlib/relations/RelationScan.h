@@ -12,6 +12,7 @@ namespace vectorlib {
 /// not. Memory for n segments: n numbers, and what the bound needs. Keeps its buffers.
 class RelationScan {
 public:
+    /// Takes the segments of a scan in their order.
     void build(const std::vector<TypedSegment> &all, const RelationSettings &settings) {
         chooseUsable(all);
         keepLongest(all, settings.maxSegments);

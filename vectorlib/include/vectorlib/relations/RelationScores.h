@@ -21,6 +21,8 @@ public:
     /// Relations that were compared with another.
     std::size_t compared() const { return compared_; }
 
+    /// Adds the scores of all relations to the table, whose rows are the reference segments and whose columns
+    /// the current ones.
     void operator()(const Segments &reference, const RelationSet &ofReference, const Segments &current,
                     const RelationSet &ofCurrent, const RelationSettings &settings, MatchingTable &table) {
         toReference_.fill(reference, current, settings);

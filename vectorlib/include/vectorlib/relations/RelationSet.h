@@ -48,6 +48,7 @@ public:
                 take(other);
         });
     }
+    /// The same for parallel segments.
     template <typename Take>
     std::size_t like(const ParallelRelation &r, Take take) const {
         return parallelOrder_.near(distanceKey(r.across), [&](const ParallelRelation &other) {
@@ -55,6 +56,7 @@ public:
                 take(other);
         });
     }
+    /// The same for pairs of corners.
     template <typename Take>
     std::size_t like(const CornerRelation &r, Take take) const {
         return cornerOrder_.near(distanceKey(r.distance), [&](const CornerRelation &other) {

@@ -7,9 +7,11 @@ namespace vectorlib {
 /// An angle as a 65536th of a turn: differences wrap by themselves.
 using TurnPart = std::uint16_t;
 
+/// The part of a turn of an angle in radians.
 inline TurnPart turnPart(double radians) {
     return static_cast<TurnPart>(static_cast<std::int32_t>(std::lround(radians * (32768 / pi))));
 }
+/// Whether two angles differ by at most `window`; 65536ths of a turn.
 inline bool isWithin(TurnPart a, TurnPart b, int window) {
     return std::abs(static_cast<std::int16_t>(static_cast<TurnPart>(a - b))) <= window;
 }
@@ -107,6 +109,7 @@ inline bool parametersMatch(const ParallelRelation &a, const ParallelRelation &b
     return (a.isLeast || a.along >= b.along - window) && (b.isLeast || b.along >= a.along - window) &&
            (!a.isLeast || a.along <= b.along + window) && (!b.isLeast || b.along <= a.along + window);
 }
+/// The same for two relations of corners: angles that both have, and the distance.
 inline bool parametersMatch(const CornerRelation &a, const CornerRelation &b, float window, int turn) {
     if (std::abs(a.distance - b.distance) > window)
         return false;

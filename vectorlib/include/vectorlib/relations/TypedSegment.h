@@ -23,8 +23,8 @@ struct SegmentEnd {
 /// A segment of a scan with what is known of its ends; sensor frame, free space on the left, so that the
 /// sensor turning counter-clockwise sees it from begin to end. Pose-free thesis 3.2.
 struct TypedSegment {
-    LineSegment2D<double> segment;
-    SegmentEnd begin, end;
+    LineSegment2D<double> segment; ///< metres
+    SegmentEnd begin, end;         ///< what its two ends are
     bool joined = false; ///< its end and the begin of the next segment of the scan are one angle edge
     TlsSums sums;        ///< of points that are surely its own, sensor frame; n = 0 where there are none
 

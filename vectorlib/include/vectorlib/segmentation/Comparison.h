@@ -9,9 +9,11 @@
 namespace vectorlib {
 
 #if !defined(VECTORLIB_SIMD_AVX2) && !defined(VECTORLIB_SIMD_NEON)
-namespace simd { // for Comparison to name; never called
+namespace simd {
+/// Without AVX2 and NEON only declared, for Comparison to name; never called.
 template <typename Nearness>
 void nearPredecessors(const Nearness &, std::size_t, NearWord *);
+/// The same.
 template <typename Nearness>
 unsigned nearBits(const Nearness &, std::size_t, std::size_t, bool);
 } // namespace simd

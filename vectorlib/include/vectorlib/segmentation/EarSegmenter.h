@@ -24,6 +24,7 @@ public:
     EarSettings settings;
     simd::Level level = simd::bestLevel(); ///< the instruction set to use
 
+    /// The clusters of points, in the coordinates of the settings. Valid until the next call.
     const Segmentation &operator()(PointSpan<Scalar> points) {
         if (settings.coordinates == EarSettings::Coordinates::Polar)
             return inPolarCoordinates(points);

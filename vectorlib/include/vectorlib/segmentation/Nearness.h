@@ -13,6 +13,7 @@ template <typename Scalar>
 struct NearThreshold {
     Scalar scale, least, most;
 
+    /// The threshold at a range: `scale` times it, within `least` and `most`.
     Scalar operator()(Scalar range) const {
         const Scalar scaled = scale * range, low = scaled > least ? scaled : least;
         return low < most ? low : most;
@@ -28,7 +29,9 @@ struct CartesianNearness {
     std::size_t count;
     NearThreshold<Scalar> threshold;
 
+    /// Whether point i, the later one, belongs to point j.
     bool near(std::size_t i, std::size_t j) const { return gap(i, j) <= limit(i); }
+    /// The square of the threshold for point i.
     Scalar limit(std::size_t i) const {
         return threshold(points[i].x * points[i].x + points[i].y * points[i].y);
     }
@@ -52,7 +55,9 @@ struct PolarNearness {
     bool near(std::size_t i, std::size_t j) const {
         return std::abs(ranges[i] - ranges[j]) <= limit(i) && between(i, j) <= reach;
     }
+    /// The threshold of the range for point i; metres.
     float limit(std::size_t i) const { return threshold(ranges[i]); }
+    /// How many rays apart two points are.
     int between(std::size_t i, std::size_t j) const {
         const int ahead = std::abs(rays[i] - rays[j]);
         return std::min(ahead, turn - ahead);

@@ -36,6 +36,7 @@ struct PolarReturns {
         }
     }
 
+    /// The returns of a scan by ranges, each with the number of its ray.
     template <typename Range>
     void take(const PolarScan<Range> &scan, simd::Level level) {
         grow(scan.count);

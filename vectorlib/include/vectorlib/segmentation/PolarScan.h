@@ -28,6 +28,7 @@ struct PolarScan {
     bool isReturn(double metres) const { return metres >= least() && metres < end(); }
     double least() const { return minRange <= 0 ? std::numeric_limits<double>::denorm_min() : minRange; }
     double end() const { return std::min(maxRange, static_cast<double>(std::numeric_limits<float>::max())); }
+    /// The point of ray i in the scanner's frame; metres. Of no meaning where it is no return.
     Vector2D<double> point(std::size_t i) const {
         const double angle = startAngle + step * static_cast<double>(i);
         return Vector2D<double>(std::cos(angle), std::sin(angle)) * range(i);

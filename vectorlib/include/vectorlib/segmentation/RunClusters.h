@@ -54,6 +54,7 @@ public:
     std::size_t runs() const { return root_.size(); }
     /// Where a run begins; the number of points for run runs().
     std::size_t begin(std::size_t run) const { return begins_[run]; }
+    /// How many points a run has.
     std::size_t length(std::size_t run) const { return begins_[run + 1] - begins_[run]; }
     /// The first run of the cluster, after join().
     std::size_t root(std::size_t run) const { return root_[run]; }

@@ -37,7 +37,12 @@
 /// instruction set is chosen at run time.
 namespace vectorlib::simd {
 
-enum class Level { Scalar, Neon, Avx2 };
+/// The instruction sets that loops are written for.
+enum class Level {
+    Scalar, ///< none: plain loops
+    Neon,   ///< NEON of ARM
+    Avx2    ///< AVX2 and FMA of x86
+};
 
 /// The best that this processor and this build can do.
 inline Level bestLevel() {

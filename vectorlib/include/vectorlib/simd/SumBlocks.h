@@ -7,6 +7,7 @@
 /// The sums of blocks of points, in float: of offsets from the middle of each block.
 namespace vectorlib::simd {
 
+/// How many points a block has.
 constexpr std::size_t blockPoints = 32;
 
 /// The sums of a block's points relative to its middle (point 16). Those of the products are left in four
@@ -16,7 +17,7 @@ struct BlockSum {
     float xy[4];
 };
 
-/// The points are given as x, y, x, y, ...
+/// The sums of the points of a block; these are given as x, y, x, y, ...
 inline BlockSum sumBlock(const float *points) {
     // Eight lanes, as AVX2 has them, of eight points each.
     float s[4][8], squares[4][8], products[4][8];

@@ -57,7 +57,7 @@ VECTORLIB_NEON inline SumsOfFours sumFoursNeon(const float *points) {
 }
 #endif
 
-// By the instruction set to use; AVX2 has its own way.
+/// The same, by the instruction set to use; AVX2 has its own way.
 inline BlockSum sumBlock(const float *points, [[maybe_unused]] Level level) {
 #if defined(VECTORLIB_SIMD_NEON)
     if (level == Level::Neon)
@@ -65,6 +65,7 @@ inline BlockSum sumBlock(const float *points, [[maybe_unused]] Level level) {
 #endif
     return sumBlock(points);
 }
+/// The same, by the instruction set to use.
 inline SumsOfFours sumFours(const float *points, [[maybe_unused]] Level level) {
 #if defined(VECTORLIB_SIMD_NEON)
     if (level == Level::Neon)

@@ -8,10 +8,10 @@ namespace vectorlib {
 
 /// What a search for the least criterion found.
 struct CriterionMinimum {
-    Transformation2D transformation;
-    double criterion = 0;
-    int iterations = 0;
-    bool converged = false; ///< false when the iterations ended before the steps had become nothing
+    Transformation2D transformation; ///< moves the dynamic set onto the static one
+    double criterion = 0;            ///< there; m^4
+    int iterations = 0;              ///< that were made
+    bool converged = false;          ///< false when the iterations ended before the steps had become nothing
 };
 
 /// Finds the minimum of EdgeSetComparator that is downhill from a start, by Newton's method. The safeguards:
@@ -23,10 +23,11 @@ struct CriterionMinimum {
 /// within a right angle of the truth, like that of LineSegmentRegistration, avoids it.
 class CriterionMinimizer {
 public:
-    int iterations = 50;
+    int iterations = 50; ///< at most
     double step =
         1e-11; ///< metres, and for a turn at the segments' mean distance: smaller ones end the search
 
+    /// Searches from `start`; both move the dynamic set. A start that is not finite comes back as it is.
     CriterionMinimum operator()(const EdgeSetComparator &criterion, const Transformation2D &start) const {
         CriterionMinimum best;
         best.transformation = start;

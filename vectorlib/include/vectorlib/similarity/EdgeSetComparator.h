@@ -23,7 +23,7 @@ inline double areaCriterion(const LineSegment2D<double> &fixed, const LineSegmen
 
 /// The criterion with its derivatives by x, y (metres) and alpha (radians).
 struct CriterionExpansion {
-    double value = 0;
+    double value = 0; ///< m^4
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
 };
@@ -50,6 +50,7 @@ public:
         take(own);
         return true;
     }
+    /// The same for two segments.
     bool add(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
         return add({fixed, moving, weight});
     }

@@ -19,6 +19,8 @@ public:
     double tolerance = 1e-9;   ///< size of the simplex, metres and radians, at which the search ends
     int maxEvaluations = 2000; ///< of the criterion
 
+    /// The best transformation that was found, beginning at `start`. A criterion that is NaN counts as
+    /// infinite.
     template <typename Criterion>
     Transformation2D operator()(const Criterion &criterion, const Transformation2D &start) {
         evaluations_ = 0;

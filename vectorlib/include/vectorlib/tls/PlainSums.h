@@ -9,6 +9,7 @@ namespace vectorlib {
 struct PlainSums {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
 
+    /// Adds a point.
     void add(double px, double py) {
         n += 1;
         x += px;

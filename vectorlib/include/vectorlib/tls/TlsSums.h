@@ -11,11 +11,11 @@ namespace vectorlib {
 /// Adding two sums gives exactly the sums of the union of their points; a transformed sum is exactly the sum
 /// of the transformed points. That is what makes merging edges of a map exact.
 struct TlsSums {
-    double n = 0;
-    Vector2D<double> mean;
-    double xx = 0; ///< sum of (x - mean.x)^2
-    double xy = 0; ///< sum of (x - mean.x)(y - mean.y)
-    double yy = 0; ///< sum of (y - mean.y)^2
+    double n = 0;          ///< number of points
+    Vector2D<double> mean; ///< of the points
+    double xx = 0;         ///< sum of (x - mean.x)^2
+    double xy = 0;         ///< sum of (x - mean.x)(y - mean.y)
+    double yy = 0;         ///< sum of (y - mean.y)^2
 
     /// From the five plain sums (6.23), taken relative to `origin`.
     static TlsSums fromPlain(double n, double sx, double sy, double sxx, double sxy, double syy,

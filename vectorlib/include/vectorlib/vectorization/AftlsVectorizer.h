@@ -26,6 +26,7 @@ public:
     BreakPointDescent descent;
     BreakPointSimplex simplex;
 
+    /// The lines of one cluster, in the frame of its points; metres. Valid until the next call.
     const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
         if (points.size() < 2) {
             lines_.clear();

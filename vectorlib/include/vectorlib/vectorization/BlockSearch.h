@@ -12,6 +12,8 @@ class BlockSearch {
 public:
     simd::Level level = simd::bestLevel(); ///< the instruction set to use
 
+    /// Takes the points of a cluster, and the variance that is permitted; m^2. The points must outlive the
+    /// search.
     void assign(PointSpan<float> points, double variance) {
         sums_.level = level;
         sums_.assign(points);
@@ -19,7 +21,9 @@ public:
     }
     const BlockSums &sums() const { return sums_; }
     Vector2D<double> origin() const { return sums_.origin(); }
+    /// The cut before a point.
     Cut at(std::size_t index) const { return {index, sums_.row(index)}; }
+    /// Whether the points between two cuts lie within the variance of their line.
     bool fits(const Cut &first, const Cut &end) const {
         return sums_.fits(first.index, first.row, end.index, end.row, variance_);
     }

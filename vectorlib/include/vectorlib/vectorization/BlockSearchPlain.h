@@ -9,7 +9,8 @@
 /// The steps of BlockSearch; BlockSearchAvx2.h has the twins of those that test.
 namespace vectorlib::blocks {
 
-using Index = std::ptrdiff_t; // of points and rows: those in front of the first are negative
+/// Of points and rows: those in front of the first are negative.
+using Index = std::ptrdiff_t;
 
 /// The threshold test (see ThresholdTest) without a bound of the rounding. The signs of n and of the sums may
 /// all be changed: the interval may lie on either side of a cut.

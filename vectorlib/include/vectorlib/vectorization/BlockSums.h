@@ -31,6 +31,7 @@ public:
 
     static constexpr std::size_t smallCluster = 512; ///< points up to which every point has a row
 
+    /// Takes the points of a cluster.
     void assign(PointSpan<float> points) {
         points_ = points;
         const std::size_t count = points.size();

@@ -16,6 +16,7 @@ class IncVectorizer {
 public:
     VectorizerSettings settings;
 
+    /// The lines of one cluster, in the frame of its points; metres. Valid until the next call.
     const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
         lines_.clear();
         if (points.size() < 2)

@@ -35,6 +35,7 @@ void makeLines(PointSpan<Scalar> points, const PrefixSums &sums, const std::vect
                std::vector<VectorizedLine> &lines) {
     makeLines(points, sums.origin(), cuts, lines);
 }
+/// The same from sums in float; lines for which these are not exact enough are made from exact sums.
 inline void makeLines(PointSpan<float> points, const BlockSums &sums, const std::vector<Cut> &cuts,
                       [[maybe_unused]] simd::Level level, std::vector<VectorizedLine> &lines) {
 #if defined(VECTORLIB_SIMD_AVX2)

@@ -17,6 +17,7 @@ public:
     VectorizerSettings settings; ///< sigma is not used
     std::size_t lines = 1;       ///< how many; fewer where there are fewer than two points for each
 
+    /// The lines of one cluster, in the frame of its points; metres. Valid until the next call.
     const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
         lines_.clear();
         const std::size_t count = points.size();

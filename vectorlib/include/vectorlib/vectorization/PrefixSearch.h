@@ -15,6 +15,7 @@ class PrefixSearch {
 public:
     simd::Level level = simd::Level::Scalar; ///< not used
 
+    /// Takes the points of a cluster, and the variance that is permitted; m^2.
     void assign(PointSpan<Scalar> points, double variance) {
         sums_.assign(points);
         count_ = points.size();
@@ -22,7 +23,9 @@ public:
     }
     const PrefixSums &sums() const { return sums_; }
     Vector2D<double> origin() const { return sums_.origin(); }
+    /// The cut before a point.
     Cut at(std::size_t index) const { return {index, sums_.row(index)}; }
+    /// Whether the points between two cuts lie within the variance of their line.
     bool fits(const Cut &first, const Cut &end) const {
         return end.index <= first.index + 2 || sums_.fitWithin(first.index, end.index, variance_);
     }

@@ -11,6 +11,7 @@ namespace vectorlib {
 /// interval of points in constant time.
 class PrefixSums {
 public:
+    /// Takes the points of a cluster.
     template <typename Scalar>
     void assign(PointSpan<Scalar> points) {
         rows_.resize(points.size() + 1);

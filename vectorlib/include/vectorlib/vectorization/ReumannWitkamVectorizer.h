@@ -22,6 +22,7 @@ public:
     PointEliminationSettings settings;
     Direction direction = Direction::BeyondTolerance;
 
+    /// The lines of one cluster, in the frame of its points; metres. Valid until the next call.
     const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
         lines_.clear();
         const std::size_t count = points.size();

@@ -13,6 +13,7 @@ namespace vectorlib {
 struct SumRow {
     double x, y, xx, yy, xy;
 
+    /// Adds a point.
     void add(double px, double py) {
         x += px;
         y += py;

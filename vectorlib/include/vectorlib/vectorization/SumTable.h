@@ -36,6 +36,7 @@ public:
     const double *yy() const { return x() + 3 * capacity_; }
     const double *xy() const { return x() + 4 * capacity_; }
 
+    /// Writes row i.
     void set(std::ptrdiff_t i, const SumRow &sums) {
         x()[i] = sums.x;
         y()[i] = sums.y;
