@@ -11,6 +11,8 @@
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 
+#include <QCoreApplication>
+#include <QDir>
 #include <QFileInfo>
 #include <QHostAddress>
 #include <QMap>
@@ -65,6 +67,13 @@ Error busy(const char *what) {
     return Error(ErrorCode::NotReady, QString("%1 is under way; try again when it has ended").arg(what));
 }
 
+/// Where an installation has them, below the same prefix as this program.
+QString installedSamples() {
+    const QString found =
+        QDir(QCoreApplication::applicationDirPath() + "/../share/hermes/settings").canonicalPath();
+    return found.isEmpty() ? "/usr/share/hermes/settings" : found;
+}
+
 Field sampleField() {
     return Field::text("sample", "Settings of a whole robot to begin with, by name; empty: those of now")
         .byDefault("");
@@ -85,7 +94,7 @@ std::vector<Field> Setup::settingFields() {
                 .byDefault("/etc/hermes")
                 .group("Setup"),
             Field::text("setup.samples", "Of folders with settings of whole robots")
-                .byDefault("/usr/share/hermes/settings")
+                .byDefault(installedSamples())
                 .group("Setup"),
             Field::array("setup.ports", "Serial lines to search beside those that the system lists",
                          {{"type", "string"}})

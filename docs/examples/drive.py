@@ -94,13 +94,22 @@ class PathFollower:
         return speed, speed * curvature
 
 
+def connect(program, host, port):
+    """A connection to the daemon that this program is; DriveError says what to start where it is not there."""
+    try:
+        return Daemon(host, port)
+    except OSError as error:
+        raise DriveError(f"{program}: {error}. Start it, or name its address: drive.py --help") from error
+
+
 class PoseTopic(threading.Thread):
     """The newest pose that a daemon publishes: `odometry` of the motor control or `pose` of a scan matcher."""
 
     def __init__(self, topic, host="127.0.0.1", port=7410):
         super().__init__(daemon=True)
         self.name = f"topic {topic} of {host}:{port}"
-        self.connection = Daemon(host, port)
+        self.source = "hermes-scanmatcher" if topic == "pose" else "hermes-motorcontrol", host, port
+        self.connection = connect(*self.source)
         self.stream = self.connection.subscribe(topic, queue=1)
         self.connection.socket.settimeout(None)  # a topic may be silent for long
         self.newest = self.failure = None
@@ -127,6 +136,17 @@ class PoseTopic(threading.Thread):
         return (pose["x"] + age * (math.cos(heading) * twist["vx"] - math.sin(heading) * twist["vy"]),
                 pose["y"] + age * (math.sin(heading) * twist["vx"] + math.cos(heading) * twist["vy"]),
                 pose["theta"] + twist["omega"] * age)
+
+    def fault(self):
+        """Why there is no pose, as far as its age and the health of the daemon tell it."""
+        reasons = [f"the last one is {time.time() - self.newest[0]:.1f} s old"] if self.newest else []
+        try:
+            with connect(*self.source) as daemon:
+                health = daemon.call("daemon.status")["health"]
+            reasons += [f"{item['name']}: {item['message']}" for item in health if item["level"] != "ok"]
+        except (DriveError, DaemonError, OSError, ValueError) as error:
+            reasons.append(str(error))
+        return "; ".join(reasons) or "its daemon says that all is well"
 
 
 def send(motors, vx, omega):
@@ -168,7 +188,7 @@ def drive(motors, poses, follower, name="drive.py", watch=lambda follower: None)
             now = time.monotonic()
             fine = now if pose and obeyed else fine
             if now - fine > PATIENCE_S:
-                raise DriveError(f"{poses.name}: no pose of the last {OLDEST_POSE_S} s" if pose is None else
+                raise DriveError(f"{poses.name}: no pose of the last {OLDEST_POSE_S} s: {poses.fault()}" if pose is None else
                                  "motor control: all commands come too late, or the clocks disagree")
             due = max(due + PERIOD_S, now)
             time.sleep(due - now)
@@ -200,11 +220,11 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
         poses = PoseTopic("pose", *arguments.matcher) if arguments.matcher else PoseTopic("odometry", *arguments.motors)
-        with Daemon(*arguments.motors) as motors:
+        with connect("hermes-motorcontrol", *arguments.motors) as motors:
             deadline = time.monotonic() + PATIENCE_S
             while (here := poses.now()) is None:
                 if time.monotonic() > deadline:
-                    raise DriveError(f"{poses.name}: no pose comes")
+                    raise DriveError(f"{poses.name}: no pose comes: {poses.fault()}")
                 time.sleep(PERIOD_S)
             drive(motors, poses, PathFollower([here, *arguments.points], arguments.speed, arguments.turn_rate))
             print("arrived")

@@ -35,7 +35,6 @@ def is_believed(listener):
     return listener < 1000 and (user.pw_uid == 0 or group in os.getgrouplist(user.pw_name, user.pw_gid))
 
 
-
 def own_socket(host, port):
     """A connection to the Unix socket beside the TCP port of a daemon of this user, which gives all rights; None without one."""
     connection = socket.socket(socket.AF_UNIX)
@@ -67,7 +66,10 @@ class Daemon:
     def connect(self, host, port, timeout):
         if own := own_socket(host, port):
             return own
-        connection = socket.create_connection((host, port), timeout)
+        try:
+            connection = socket.create_connection((host, port), timeout)
+        except OSError as error:
+            raise ConnectionError(f"no daemon answers at {host}:{port}: {error.strerror or error}") from error
         if own := own_socket(host, port):  # the daemon has begun to listen just now, there before here
             connection.close()
             return own

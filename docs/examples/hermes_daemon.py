@@ -7,6 +7,7 @@ import json
 import os
 import signal
 import socket
+import sys
 import time
 
 COMMON_TOPICS = {"log": "Each record", "status": "State and health", "settings": "After a change"}
@@ -65,30 +66,45 @@ class Daemon:
             self.health[item] = state
             self.publish("status", self.daemon_status())
 
-    def publish(self, topic, data):
-        """Sends data (what JSON can hold) to all who follow the topic, to each no more often than it asked for."""
+    def publish(self, topic, data, stamp=None):
+        """Sends data (what JSON can hold) to all who follow the topic, to each no more often than it asked for. The stamp is the time
+        for which they hold, in seconds since the Unix epoch; without one it is now."""
         now = time.time()
         for number, s in self.subscriptions.items():
             s["seq"] += s["topic"] == topic
             if s["topic"] == topic and now >= s["due"]:
                 s["due"] = now + s["pause"]
                 s["dropped"] += not send(s["client"], {"method": "topic", "params": {
-                    "subscription": number, "topic": topic, "seq": s["seq"], "dropped": s["dropped"], "stamp": now, "data": data}})
+                    "subscription": number, "topic": topic, "seq": s["seq"], "dropped": s["dropped"],
+                    "stamp": now if stamp is None else stamp, "data": data}})
 
     def run(self, work, port):
-        """Serves until SIGTERM or daemon.shutdown; `work` is called every settings["period_s"] seconds."""
+        """Serves until Ctrl-C, SIGTERM or daemon.shutdown; `work` is called every settings["period_s"] seconds."""
         parser = argparse.ArgumentParser(description=self.title)
-        parser.add_argument("--port", type=int, default=port)
+        parser.add_argument("--port", type=port_number, default=port)
         parser.add_argument("--config", default="", help="file of settings, for settings.save")
+        parser.add_argument("--set", type=setting, action="append", default=[], metavar="NAME=VALUE", help="wins over the file")
         self.options = parser.parse_args()
-        if os.path.exists(self.options.config):
-            with open(self.options.config, encoding="utf-8") as kept:
-                self.settings_set(json.load(kept))
+        try:
+            if os.path.exists(self.options.config):
+                with open(self.options.config, encoding="utf-8") as kept:
+                    self.settings_set(json.load(kept))
+            self.settings_set(dict(self.options.set))
+        except Refusal as error:
+            sys.exit(f"{self.name}: settings: {error.args[1]}")
+        except (OSError, ValueError, AttributeError) as error:
+            sys.exit(f"{self.name}: {self.options.config}: expected an object of JSON: {error}")
         asyncio.run(self._run(work))
 
     async def _run(self, work):
-        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, self.ending.set)
-        await asyncio.start_server(self._serve, "127.0.0.1", self.options.port, limit=1 << 20)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            asyncio.get_running_loop().add_signal_handler(number, self.ending.set)
+        try:
+            await asyncio.start_server(self._serve, "127.0.0.1", self.options.port, limit=1 << 20)
+        except OSError as error:
+            sys.exit(f"{self.name}: cannot listen on 127.0.0.1:{self.options.port}: {os.strerror(error.errno)}; "
+                     "end the program that has this port, or choose another one with --port")
+        print(f"{self.name}: running at 127.0.0.1:{self.options.port}", flush=True)
         while not self.ending.is_set():
             work()
             try:
@@ -192,6 +208,21 @@ class Daemon:
         return self.records[-count:]
 
 
+def port_number(text):
+    if not 0 < int(text) < 65536:
+        raise ValueError
+    return int(text)
+
+
+def setting(text):
+    """NAME=VALUE, of which the value is JSON or a text."""
+    name, value = text.split("=", 1)
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value
+
+
 def check(schemas, values, code):
     """Refuses values that are unknown, of another type or beyond their limits."""
     for name, value in values.items():
@@ -203,8 +234,8 @@ def check(schemas, values, code):
 
 
 def send(client, message):
-    """Not to a client that leaves 256 KiB unread: nobody waits for it."""
-    if client.transport.get_write_buffer_size() > 1 << 18:
+    """Not to a client that has gone, or leaves 256 KiB unread: nobody waits for it."""
+    if client.transport.is_closing() or client.transport.get_write_buffer_size() > 1 << 18:
         return False
-    client.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+    client.write(json.dumps({"jsonrpc": "2.0", **message}, allow_nan=False).encode() + b"\n")
     return True

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """A client for Hermes daemons over a serial line or a radio modem, in plain Python 3: the framing `serial` of docs/protocol.md.
 
     with SerialDaemon("/dev/ttyUSB0", 115200) as motors:
@@ -10,9 +11,14 @@ The daemon listens with --listen 'serial:///dev/ttyS1?baud=115200&protocol=seria
 dropped here and there; a call is repeated until its reply comes, and the daemon carries it out once. Large replies and topics
 come in pieces, which are put together here; requests go in one frame each, so they should be short. A frame that is whole but
 nonsense counts as damaged, too. When the device goes (an adapter is pulled out), ConnectionError says which.
+
+As a program it calls one command: hermes_serial.py /dev/ttyUSB0 motor.drive vx=0.2
 """
+import argparse
 import array
 import collections
+import fcntl
+import json
 import os
 import random
 import select
@@ -209,16 +215,29 @@ class Pieces:
         return None, struct.pack("<BHH", REPORT, number, base) + bits if kind == PIECE_TO_REPORT else None
 
 
+def open_port(device, baud):
+    """The descriptor of a serial line that passes on bytes as they are, for this program alone. OSError names the device."""
+    if not hasattr(termios, f"B{baud}"):
+        raise OSError(f"{device}: no serial line has {baud} baud")
+    port = os.open(device, os.O_RDWR | os.O_NOCTTY)
+    try:
+        fcntl.flock(port, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        tty.setraw(port)
+        attributes = termios.tcgetattr(port)
+        attributes[4] = attributes[5] = getattr(termios, f"B{baud}")
+        termios.tcsetattr(port, termios.TCSANOW, attributes)
+    except (termios.error, BlockingIOError) as error:
+        os.close(port)
+        raise OSError(f"{device}: " + ("in use by another program" if isinstance(error, OSError) else "is no serial line")) from error
+    return port
+
+
 class SerialDaemon:
     """One daemon at the other end of a line, which answers within `timeout` seconds. Not for use from several threads at once."""
 
     def __init__(self, device, baud=115200, timeout=5.0):
         self.device, self.timeout, self.baud = device, timeout, baud
-        self.port = os.open(device, os.O_RDWR | os.O_NOCTTY)
-        tty.setraw(self.port)
-        attributes = termios.tcgetattr(self.port)
-        attributes[4] = attributes[5] = getattr(termios, f"B{baud}")
-        termios.tcsetattr(self.port, termios.TCSANOW, attributes)
+        self.port = open_port(device, baud)
         # Replies are kept for a while by what was asked: no id may be that of an earlier program.
         self.id = random.randrange(1 << 31)
         self.buffer = b""
@@ -351,3 +370,32 @@ class SerialDaemon:
             self.early.append(message)
         else:  # made by an earlier program
             self.notify("topics.unsubscribe", subscription=subscription)
+
+
+def parameter(text):
+    """NAME=VALUE, of which the value is JSON or a text."""
+    name, value = text.split("=", 1)
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Calls one command of a daemon at the other end of a serial line.")
+    parser.add_argument("device")
+    parser.add_argument("method")
+    parser.add_argument("parameters", nargs="*", type=parameter, metavar="NAME=VALUE")
+    parser.add_argument("--baud", type=int, default=115200)
+    arguments = parser.parse_args()
+    try:
+        with SerialDaemon(arguments.device, arguments.baud) as daemon:
+            print(json.dumps(daemon.call(arguments.method, **dict(arguments.parameters)), indent=4))
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except (OSError, DaemonError) as error:
+        sys.exit(f"hermes_serial.py: {error}")
+
+
+if __name__ == "__main__":
+    main()

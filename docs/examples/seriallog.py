@@ -1,11 +1,14 @@
+#!/usr/bin/env python3
 """Reads what hermes-seriallogger has recorded of a port, in plain Python 3.
 
     for stamp, mono, data in chunks("recordings/run1/seriallogger-gps"):
         print(stamp, data)
 
-The files are NAME.raw, the bytes, and NAME.index, the time of each chunk of them.
+The files are NAME.raw, the bytes, and NAME.index, the time of each chunk of them. As a program it prints them:
+seriallog.py recordings/run1/seriallogger-gps
 """
 import struct
+import sys
 
 
 def chunks(base):
@@ -22,3 +25,15 @@ def chunks(base):
     for (offset, stamp_ns, mono_ns), end in zip(records, ends):
         if offset < len(data):  # a record is written before its bytes
             yield stamp_ns * 1e-9, mono_ns * 1e-9, data[offset:end]
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: seriallog.py recordings/NAME/seriallogger-PORT")
+    try:
+        for wall, _, received in chunks(sys.argv[1]):
+            print(f"{wall:.6f} {received}")
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except (OSError, ValueError) as failure:
+        sys.exit(f"seriallog.py: {failure}")

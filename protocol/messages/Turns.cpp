@@ -20,7 +20,7 @@ const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>) {
             .mayBeMissing()
             .add("partial", &TurnHeader::partial, "The first, the last, or one that was cut")
             .mayBeMissing()
-            .add("rays", &TurnHeader::rays, "Fired, with or without a return")
+            .add("rays", &TurnHeader::rays, "Fired in a full turn, with or without a return")
             .range(0, ScanMessage::mostPoints)
             .add("lost_packets", &TurnHeader::lostPackets, "In this turn")
             .mayBeMissing()

@@ -48,8 +48,7 @@ is_silent() { # a program that only warns
 
 # The programs of ours that the units start need not be installed.
 check_units() {
-    sed 's,@CMAKE_INSTALL_FULL_BINDIR@,/usr/bin,' "$HERMES_SOURCE"/deploy/systemd/hermes-supervisor.service.in \
-        >"$1/systemd/system/hermes-supervisor.service"
+    cp "$HERMES_SOURCE"/deploy/systemd/hermes-supervisor.service "$1/systemd/system"
     sed -Ei 's,^(ExecStart=)/usr/(bin|share)/hermes\S*,\1/bin/true,; s,gpspipe,true,' "$1"/systemd/system/*.service
     SYSTEMD_UNIT_PATH="$1/systemd/system:" is_silent systemd-analyze verify --man=no --recursive-errors=no \
         "$1"/systemd/system/*.service "$1"/systemd/system/*.timer

@@ -5,7 +5,7 @@ set -euo pipefail
 command -v systemd-analyze >/dev/null || { echo "skipped: needs systemd-analyze (package systemd)"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-sed "s,@CMAKE_INSTALL_FULL_BINDIR@,$HERMES_BIN," "$HERMES_SOURCE/deploy/systemd/hermes-supervisor.service.in" >"$work/hermes-supervisor.service"
+sed "s,^ExecStart=/usr/bin,ExecStart=$HERMES_BIN," "$HERMES_SOURCE/deploy/systemd/hermes-supervisor.service" >"$work/hermes-supervisor.service"
 cd "$work"
 
 said=$(SYSTEMD_UNIT_PATH="$work:" systemd-analyze verify --man=no --recursive-errors=no ./hermes-supervisor.service 2>&1) && [ -z "$said" ] ||

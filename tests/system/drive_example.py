@@ -147,17 +147,36 @@ class DriveTest(unittest.TestCase):
         process = subprocess.run([sys.executable, PROGRAM, "--motors", f"127.0.0.1:{port}", "1,0"], capture_output=True,
                                  text=True, timeout=20, check=False)
         self.assertEqual(process.returncode, 1)
-        self.assertIn("refused", process.stderr)
+        self.assertEqual(process.stderr, f"drive.py: hermes-motorcontrol: no daemon answers at 127.0.0.1:{port}: Connection refused. "
+                                         "Start it, or name its address: drive.py --help\n")
+        process = subprocess.run([sys.executable, PROGRAM, "--motors", f"127.0.0.1:{self.port}", "--matcher", f"127.0.0.1:{port}", "1,0"],
+                                 capture_output=True, text=True, timeout=20, check=False)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(f"hermes-scanmatcher: no daemon answers at 127.0.0.1:{port}", process.stderr)
         for arguments in (["1;0"], [], ["--motors", "nowhere", "1,0"]):
             self.assertEqual(subprocess.run([sys.executable, PROGRAM, *arguments], capture_output=True, check=False).returncode, 2)
+
+    def test_without_controllers_it_says_so(self):
+        absent = "serial:///dev/absent?baud=115200"
+        motors = Process(BINARIES, "motorcontrol", free_port(0), self.folder.name,
+                         {"controllers.1.url": absent, "controllers.2.url": absent})
+        self.addCleanup(motors.stop)
+        motors.connect().close()
+        process = subprocess.run([sys.executable, PROGRAM, "--motors", f"127.0.0.1:{motors.port}", "1,0"], capture_output=True,
+                                 text=True, timeout=20, check=False)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn(f"topic odometry of 127.0.0.1:{motors.port}: no pose comes", process.stderr)
+        self.assertIn("controller_1: ", process.stderr)
+        self.assertIn("/dev/absent", process.stderr)
+        self.assertEqual(len(process.stderr.splitlines()), 1)
 
     def test_without_poses_it_stops(self):
         poses = drive.PoseTopic("odometry", port=self.port)
         wait_for("a pose", poses.now)
         seen = time.monotonic() + 1
         blinded = mock.Mock(now=lambda: poses.now() if time.monotonic() < seen else None)
-        blinded.name = "topic pose"
-        with Daemon(port=self.port) as client, self.assertRaisesRegex(drive.DriveError, "topic pose: no pose of the last 0.5 s"):
+        blinded.name, blinded.fault = "topic pose", poses.fault
+        with Daemon(port=self.port) as client, self.assertRaisesRegex(drive.DriveError, r"topic pose: no pose of the last 0\.5 s: the last one is -?0\.\d s old"):
             drive.drive(client, blinded, drive.PathFollower([(0, 0), (8, 0)], 0.5),
                         watch=lambda _: self.assertTrue(time.monotonic() < seen + 1.5 or self.stands()))
         self.assertLess(self.place()[0], 1.5)
