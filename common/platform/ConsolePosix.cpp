@@ -1,5 +1,7 @@
 #include "common/platform/Console.h"
 
+#include <cstdlib>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace hermes {
@@ -9,6 +11,14 @@ bool isTerminal(StandardStream stream) {
                            : stream == StandardStream::Output ? STDOUT_FILENO
                                                               : STDERR_FILENO;
     return ::isatty(descriptor) != 0;
+}
+
+int terminalWidth() {
+    const char *const columns = std::getenv("COLUMNS");
+    if (const int told = columns != nullptr ? std::atoi(columns) : 0; told > 0)
+        return told;
+    winsize size{};
+    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? int(size.ws_col) : 80;
 }
 
 void prepareConsole() {}

@@ -1,6 +1,7 @@
 #include "gui/hermesctl/Connection.h"
 
 #include "common/client/DaemonAddress.h"
+#include "gui/hermesctl/Hosts.h"
 
 #include <QTimer>
 
@@ -18,8 +19,10 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
     limit.start(timeout);
     if (!client.isConnected() && client.lastError().isEmpty())
         loop.exec();
-    if (client.isConnected())
+    if (client.isConnected()) {
+        rememberHost(address);
         return {};
+    }
     return Error(ErrorCode::Disconnected, client.problem());
 }
 
@@ -43,10 +46,8 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
     }
     if (open > 0)
         loop.exec();
-    for (const auto &client : clients) {
-        if (!client->isConnected())
-            client->close();
-    }
+    for (std::size_t i = 0; i < clients.size(); ++i)
+        clients[i]->isConnected() ? rememberHost(addresses[int(i)]) : clients[i]->close();
     return clients;
 }
 

@@ -70,7 +70,7 @@ public:
         if (!proposal)
             return proposal.error();
         if (proposal->changes.empty())
-            note("nothing is to be changed");
+            note("nothing needs a change");
         else if (!isConfirmed("Write these settings?"))
             return Error(ErrorCode::NotReady, "nothing was changed");
         else if (const auto applied = apply(*sample, proposal->settings); !applied)
@@ -79,9 +79,8 @@ public:
     }
 
     Result<void> wheels() {
-        if (answerTo(
-                "Each wheel turns slowly for a second. Lift the robot: no wheel may touch the ground, and "
-                "nobody a wheel.\nType \"lifted\" when that is so:") != "lifted")
+        if (answerTo("Each wheel turns slowly for a second. Lift the robot: no wheel may touch the ground, "
+                     "and nobody may touch a wheel.\nType \"lifted\" when that is so:") != "lifted")
             return Error(ErrorCode::NotReady, "no wheel was turned: the robot is not lifted");
         Client motors;
         if (const auto connected = connectTo(motors, arguments_, 1, "motorcontrol"); !connected)
@@ -90,7 +89,7 @@ public:
         if (!changes)
             return changes.error();
         if (changes->isEmpty()) {
-            note("all wheels turn as they are told; nothing is to be changed");
+            note("all wheels turn as they are told; nothing needs a change");
             return {};
         }
         const QJsonObject settings{{"motorcontrol", QJsonObject{{"wheels", *changes}}}};
@@ -102,8 +101,7 @@ public:
 
 private:
     Result<QJsonValue> call(const QString &method, const QJsonObject &params) {
-        const auto patience = std::max<std::chrono::milliseconds>(arguments_.timeout, setupPatience);
-        return supervisor_.callAndWait(method, params, patience);
+        return ask(supervisor_, arguments_, method, params);
     }
 
     template <typename T>
@@ -185,9 +183,8 @@ private:
         if (!names)
             return names.error();
         while (true) {
-            const QString name =
-                answerTo(QString("Which robot is it? %1; Enter: the settings of now are changed:")
-                             .arg(names->join(", ")));
+            const QString name = answerTo(
+                QString("Which robot is it? %1; Enter: change the present settings:").arg(names->join(", ")));
             if (name == "q")
                 return Error(ErrorCode::NotReady, "nothing was changed");
             if (name.isEmpty() || names->contains(name))

@@ -1,5 +1,6 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
+#include "common/help/HelpText.h"
 #include "common/platform/Console.h"
 #include "common/platform/Pipes.h"
 #include "common/platform/PrivateFiles.h"
@@ -151,7 +152,7 @@ int main(int argc, char **argv) {
         return usageError(arguments.error().message, list.contains(QStringLiteral("--json")));
     int status = 0;
     if (arguments->help)
-        printLine(helpText().trimmed());
+        printLine(QString::fromStdString(fittedHelp(helpText().toStdString())).trimmed());
     else if (arguments->version)
         printVersion(arguments->json);
     else if (arguments->command.isEmpty())

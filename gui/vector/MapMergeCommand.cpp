@@ -129,7 +129,7 @@ void addMapMergeCommand(CLI::App &app) {
         ->check(MapFile::knownName())
         ->type_name("FILE");
     sub->add_option("--at", command->at,
-                    "Where B's frame lies in A's, about: within 0.5 m and 0.15 rad; not given: it is sought")
+                    "Where B's frame lies in A's, to within 0.5 m and 0.15 rad; not given: it is searched")
         ->check(poseText())
         ->type_name("X,Y,THETA");
     sub->add_option("--summary", command->summary,

@@ -80,7 +80,7 @@ struct RelocalizeCommand {
 void addRelocalizeCommand(CLI::App &app) {
     auto command = std::make_shared<RelocalizeCommand>();
     CLI::App *sub = app.add_subcommand(
-        "relocalize", "Find where in a whole map a scan was taken, with no idea of its place (JSON)");
+        "relocalize", "Find where in a whole map a scan was taken, without an expected pose (JSON)");
     sub->add_option("MAP", command->map, "A map by hermes-vector map, or segments (CSV x1,y1,x2,y2)")
         ->required();
     sub->add_option("SCAN", command->scan,

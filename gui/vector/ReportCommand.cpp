@@ -27,7 +27,7 @@ struct ReportCommand {
         if (overall + all + number.has_value() != 1)
             throw CLI::ValidationError("--case", "expected one of --case, --all and --overall");
         if (most && !everyCombination)
-            throw CLI::ValidationError("--most", "is of --all-combinations alone");
+            throw CLI::ValidationError("--most", "is only for --all-combinations");
         const std::string as = chosenFormat();
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);

@@ -62,6 +62,12 @@ void TestInterfaces::parsesUrls_data() {
     QTest::newRow("port too large") << "tcp://1.2.3.4:99999"
                                     << ""
                                     << "";
+    QTest::newRow("port alone") << "7490"
+                                << ""
+                                << "";
+    QTest::newRow("port alone, in a URL") << "tcp://7490?protocol=json"
+                                          << ""
+                                          << "";
     QTest::newRow("space") << "tcp://a b:1"
                            << ""
                            << "";

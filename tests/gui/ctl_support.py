@@ -16,7 +16,7 @@ def ctl(*arguments):
 
 
 class Thermometer:
-    """The daemon of docs/add-a-daemon.md on a free port; with another framing too where that is named."""
+    """A small daemon for tests on a free port; with another framing too where that is named."""
 
     def __init__(self, protocol="json"):
         self.process = subprocess.Popen([DAEMON, "--listen", f"tcp://127.0.0.1:0?protocol={protocol}", "--set", "period_s=0.01"],
