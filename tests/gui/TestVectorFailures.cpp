@@ -61,7 +61,7 @@ private Q_SLOTS:
         row("unknown option and its value", {"map", log, "--ouy", "x", "--every", "2"},
             ": unknown option --ouy\n");
         row("one file more", {"map", log, "b.log", "c.log"}, ": unexpected argument b.log\n");
-        row("unknown command and its arguments", {"mapp", log}, ": unknown command mapp\n");
+        row("unknown command and its arguments", {"mapx", log}, ": unknown command mapx\n");
         row("no value", {"segment", room, "--k"}, "--k: a value is missing, expected N");
         row("one file twice", {"map", log, "--summary", path("s"), "--out", path("s")},
             "--summary or --out: given 2 times, expected once");
