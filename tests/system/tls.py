@@ -265,11 +265,11 @@ def check_bad_keys(folder, scratch):
     start(lambda bad: os.chmod(os.path.join(bad, "own.key"), 0o644), "own.key", "chmod 600")
     start(lambda bad: shutil.copy(os.path.join(issued(folder, "eva"), "own.key"), bad), "own.key", "is not the key of")
     start(lambda bad: shutil.copy(os.path.join(scratch, "foreign", "authority.crt"), bad), "own.crt", "not signed by")
-    start(lambda bad: open(os.path.join(bad, "own.crt"), "w", encoding="utf-8").close(), "own.crt", "no certificate")
+    start(lambda bad: open(os.path.join(bad, "own.crt"), "w", encoding="utf-8").close(), "own.crt", "not a certificate")
     start(lambda bad: shutil.copy(os.path.join(scratch, "expired", "own.crt"), bad), "own.crt", "is valid from")
     start(lambda bad: os.replace(os.path.join(bad, "own.key"), os.path.join(bad, "x")) or os.mkfifo(os.path.join(bad, "own.key"), 0o600),
           "own.key")
-    start(lambda bad: open(os.path.join(bad, "revoked"), "w", encoding="utf-8").write("zz\n") and None, "revoked", "no serial number")
+    start(lambda bad: open(os.path.join(bad, "revoked"), "w", encoding="utf-8").write("zz\n") and None, "revoked", "not a serial number")
 
 
 def check_unreachable_list(folder, scratch):
