@@ -73,6 +73,15 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
     return result;
 }
 
+// What of a source's messages is no message at all, as one with a number that is not finite.
+QString unreadable(const Client::Rejected &rejected) {
+    if (rejected.unreadable == 0)
+        return {};
+    return QString("; %1 messages could not be read, the last: %2")
+        .arg(rejected.unreadable)
+        .arg(rejected.last);
+}
+
 } // namespace
 
 ScanMatcher::ScanMatcher()
@@ -323,7 +332,8 @@ void ScanMatcher::updateHealth() {
                      QString("no scans from %1: %2").arg(address, sourceFault_));
     else if (const double silent_s = monotonicNow() - lastScan_; silent_s > longestSilence_s)
         health().set("source", HealthLevel::Warn,
-                     QString("no scan from %1 for %2 s").arg(address).arg(silent_s, 0, 'f', 0));
+                     QString("no scan from %1 for %2 s").arg(address).arg(silent_s, 0, 'f', 0) +
+                         unreadable(source_.rejected()));
     else if (badScans_ > 0)
         health().set("source", pastBadScans_.level(double(badScans_)),
                      QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """docs/examples/ld06.py, simulated_ld06.py and scan2d.py: the sensor's packets, its clock on a busy computer, and the way from a
 serial line over hermes-scanmatcher to a map."""
+import json
 import math
 import os
 import pty
 import signal
+import socket
 import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import tty
 import unittest
@@ -182,6 +185,33 @@ class ScannerTest(unittest.TestCase):
         os.remove(self.link)
         self.start_sensor()
         wait_for("scans", lambda: self.scanner()["level"] == "ok")
+
+
+class UnreadableTest(unittest.TestCase):
+    """A publisher whose messages are no JSON, because a number in them is not finite."""
+
+    def publish(self, server):
+        client, _ = server.accept()
+        with client, client.makefile("r", encoding="utf-8") as lines:
+            for line in lines:
+                request = json.loads(line)
+                reply = {"result": {"subscription": 1}} if request["method"] == "topics.subscribe" else {"error": {"code": -32601, "message": ""}}
+                client.sendall(json.dumps({"jsonrpc": "2.0", "id": request["id"], **reply}).encode() + b"\n")
+                if "result" in reply:
+                    data = {"stamp": time.time(), "turn": 0, "x": [math.nan], "y": [0]}
+                    message = {"subscription": 1, "topic": "scan2d", "seq": 1, "dropped": 0, "stamp": time.time(), "data": data}
+                    client.sendall(json.dumps({"jsonrpc": "2.0", "method": "topic", "params": message}).encode() + b"\n")
+
+    def test_the_matcher_says_so(self):
+        with tempfile.TemporaryDirectory() as folder, socket.create_server(("127.0.0.1", 0)) as server:
+            threading.Thread(target=self.publish, args=(server,), daemon=True).start()
+            process = Process(BINARIES, "scanmatcher", free_port(0), folder, {"source.address": f"127.0.0.1:{server.getsockname()[1]}"})
+            self.addCleanup(process.stop)
+            with process.connect() as matcher:
+                def source():
+                    health = matcher.call("daemon.status")["health"]
+                    return next(item["message"] for item in health if item["name"] == "source")
+                wait_for("the complaint", lambda: "1 messages could not be read, the last: " in source())
 
 
 def mounted(pose):
