@@ -1,6 +1,7 @@
 #include "common/schema/Angles.h"
 
 #include "common/AngleText.h"
+#include "common/schema/SchemaKeys.h"
 
 #include <QJsonArray>
 #include <algorithm>
@@ -8,10 +9,7 @@
 namespace hermes {
 namespace {
 
-constexpr int most = 5; // of texts
-
-const QString propertiesKey = QStringLiteral("properties");
-const QString itemsKey = QStringLiteral("items");
+constexpr int mostTexts = 5;
 
 bool isAngle(const QJsonObject &schema) {
     return schema.value(QStringLiteral("unit")) == QStringLiteral("rad");
@@ -32,7 +30,7 @@ QStringList beyondTurn(const QJsonObject &schema, const QJsonValue &value, const
                    : QStringList();
     QStringList texts;
     const auto below = [&](const QJsonObject &inner, const QJsonValue &member, const QString &key) {
-        if (texts.size() < most)
+        if (texts.size() < mostTexts)
             texts += beyondTurn(inner, member, path.isEmpty() ? key : path + QLatin1Char('.') + key);
     };
     const QJsonObject object = value.toObject(), properties = schema.value(propertiesKey).toObject();
@@ -42,7 +40,7 @@ QStringList beyondTurn(const QJsonObject &schema, const QJsonValue &value, const
     const QJsonArray array = mayHoldAngles(items) ? value.toArray() : QJsonArray();
     for (int i = 0; i < array.size(); ++i)
         below(items, array.at(i), QString::number(i));
-    return texts.mid(0, most);
+    return texts.mid(0, mostTexts);
 }
 
 bool holdsBeyondTurn(const QJsonValue &value) {
