@@ -1,5 +1,6 @@
 #include "common/platform/Console.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace hermes {
@@ -11,6 +12,14 @@ bool isTerminal(StandardStream stream) {
     return ::isatty(descriptor) != 0;
 }
 
-void prepareConsole() {}
+void prepareConsole() {
+    if (::fcntl(STDERR_FILENO, F_GETFD) >= 0)
+        return;
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    if (nowhere < 0 || nowhere == STDERR_FILENO)
+        return;
+    ::dup2(nowhere, STDERR_FILENO);
+    ::close(nowhere);
+}
 
 } // namespace hermes

@@ -7,6 +7,7 @@
 #include "gui/hermesctl/Markdown.h"
 #include "gui/hermesctl/NetworkBrowser.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WrongItems.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
@@ -57,6 +58,7 @@ QString logLine(WireView record) {
 
 Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
                        const QJsonValue &params) {
+    const Waiting waiting(arguments.timeout);
     return client.callAndWait(method, params, arguments.timeout);
 }
 
@@ -64,7 +66,10 @@ namespace {
 
 Result<void> listNetwork(const Arguments &arguments) {
     constexpr std::chrono::seconds howLong{2};
-    const auto found = NetworkBrowser().look(howLong);
+    const auto found = [howLong] {
+        const Waiting waiting(howLong, "listening, second");
+        return NetworkBrowser().look(howLong);
+    }();
     if (!found)
         return found.error();
     if (found->isEmpty())
@@ -197,8 +202,10 @@ Result<void> call(Client &client, const Arguments &arguments) {
     if (!params)
         return params.error();
     // Nothing else goes over the line: where it damages much, a stop is not to wait for a repeat.
-    const auto result =
-        client.callAndWait(arguments.words.at(1), *params, arguments.timeout, Client::Repeats::AtOnce);
+    const auto result = [&] {
+        const Waiting waiting(arguments.timeout);
+        return client.callAndWait(arguments.words.at(1), *params, arguments.timeout, Client::Repeats::AtOnce);
+    }();
     if (!result)
         return result.error();
     printLine(pretty(*result));

@@ -1,12 +1,14 @@
 #include "gui/hermesctl/Connection.h"
 
 #include "common/client/DaemonAddress.h"
+#include "gui/hermesctl/Waiting.h"
 
 #include <QTimer>
 
 namespace hermes::ctl {
 
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer limit;
     QObject::connect(&client, &Client::connected, &loop, &QEventLoop::quit);
@@ -25,6 +27,7 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
 
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
                                                 std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer::singleShot(timeout, &loop, &QEventLoop::quit);
     std::vector<std::unique_ptr<Client>> clients;
@@ -52,6 +55,7 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
 
 SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
                               std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QObject context;
     return await<SessionReplies>([&](auto done) { callAll(calls, method, timeout, &context, done); });
 }
