@@ -1,6 +1,7 @@
 #include "common/platform/Console.h"
 
 #include <cstdlib>
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -21,6 +22,14 @@ int terminalWidth() {
     return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? int(size.ws_col) : 80;
 }
 
-void prepareConsole() {}
+void prepareConsole() {
+    if (::fcntl(STDERR_FILENO, F_GETFD) >= 0)
+        return;
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    if (nowhere < 0 || nowhere == STDERR_FILENO)
+        return;
+    ::dup2(nowhere, STDERR_FILENO);
+    ::close(nowhere);
+}
 
 } // namespace hermes

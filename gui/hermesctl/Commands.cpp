@@ -10,6 +10,7 @@
 #include "gui/hermesctl/NetworkBrowser.h"
 #include "gui/hermesctl/PatientCall.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WrongItems.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
@@ -80,7 +81,10 @@ namespace {
 
 Result<void> listNetwork(const Arguments &arguments) {
     constexpr std::chrono::seconds howLong{2};
-    const auto found = NetworkBrowser().look(howLong);
+    const auto found = [howLong] {
+        const Waiting waiting(howLong, "listening, second");
+        return NetworkBrowser().look(howLong);
+    }();
     if (!found)
         return found.error();
     if (found->isEmpty())

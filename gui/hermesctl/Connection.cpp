@@ -2,12 +2,14 @@
 
 #include "common/client/DaemonAddress.h"
 #include "gui/hermesctl/Hosts.h"
+#include "gui/hermesctl/Waiting.h"
 
 #include <QTimer>
 
 namespace hermes::ctl {
 
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer limit;
     QObject::connect(&client, &Client::connected, &loop, &QEventLoop::quit);
@@ -28,6 +30,7 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
 
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
                                                 std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer::singleShot(timeout, &loop, &QEventLoop::quit);
     std::vector<std::unique_ptr<Client>> clients;
@@ -53,6 +56,7 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
 
 SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
                               std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QObject context;
     return await<SessionReplies>([&](auto done) { callAll(calls, method, timeout, &context, done); });
 }

@@ -1,22 +1,21 @@
 #include "gui/hermesctl/PatientCall.h"
 
-#include "common/platform/Console.h"
+#include "gui/hermesctl/Waiting.h"
 
 #include <QPointer>
 #include <QTimer>
-#include <cstdio>
 
 namespace hermes::ctl {
 namespace {
 
 constexpr std::chrono::hours longest{24};
 constexpr std::chrono::milliseconds pause{1000}; // between questions whether the daemon still answers
-constexpr qint64 shownAfter_ms = 2000;
 
 } // namespace
 
 Result<QJsonValue> PatientCall::run(const QString &method, const QJsonValue &params,
                                     Client::Repeats repeats) {
+    const Waiting waiting(arguments_.timeoutIsGiven ? arguments_.timeout : std::chrono::milliseconds(0));
     if (arguments_.timeoutIsGiven)
         return client_.callAndWait(method, params, arguments_.timeout, repeats);
     method_ = method;
@@ -28,16 +27,12 @@ Result<QJsonValue> PatientCall::run(const QString &method, const QJsonValue &par
                 end(result);
         },
         longest, repeats);
-    QTimer look, clock;
+    QTimer look;
     look.setSingleShot(true);
     QObject::connect(&look, &QTimer::timeout, &loop_, [this] { ask(); });
-    QObject::connect(&clock, &QTimer::timeout, &loop_, [this] { show(); });
     look.start(pause);
-    clock.start(pause);
     if (!result_)
         loop_.exec();
-    if (isTerminal(StandardStream::Errors) && begun_.hasExpired(shownAfter_ms))
-        std::fputs("\r\033[K", stderr);
     return *result_;
 }
 
@@ -54,13 +49,6 @@ void PatientCall::ask() {
                                                .arg(double(begun_.elapsed()) / 1000, 0, 'f', 0)));
         },
         arguments_.timeout - pause);
-}
-
-void PatientCall::show() const {
-    if (!isTerminal(StandardStream::Errors) || arguments_.json || !begun_.hasExpired(shownAfter_ms))
-        return;
-    std::fprintf(stderr, "\r\033[K%s: %lld s; Ctrl-C gives up", qPrintable(method_),
-                 static_cast<long long>(begun_.elapsed() / 1000));
 }
 
 void PatientCall::end(const Result<QJsonValue> &result) {

@@ -22,7 +22,6 @@ public:
 
 private:
     void ask();
-    void show() const;
     void end(const Result<QJsonValue> &result);
 
     Client &client_;

@@ -4,6 +4,7 @@
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Question.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WheelTest.h"
 #include "gui/setup/SetupText.h"
 #include "protocol/wire/Fields.h"
@@ -115,7 +116,10 @@ private:
 
     Result<Findings> find(bool ask, bool release) {
         note("listening and asking; this takes some seconds");
-        const auto answer = call("setup.find", QJsonObject{{"ask", ask}, {"release", release}});
+        const auto answer = [&] {
+            const Waiting waiting(longestSearch, "searching at most, second");
+            return call("setup.find", QJsonObject{{"ask", ask}, {"release", release}});
+        }();
         if (!answer)
             return answer.error();
         const auto found = read<Findings>(*answer, "setup.find");
@@ -193,6 +197,8 @@ private:
     }
 
     static bool hasMotors(const Proposal &proposal) { return proposal.settings.contains("motorcontrol"); }
+
+    static constexpr std::chrono::seconds longestSearch{8}; // of setup.find, but for daemons that it ends
 
     Client &supervisor_;
     const Arguments &arguments_;

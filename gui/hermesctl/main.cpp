@@ -4,6 +4,7 @@
 #include "common/platform/Console.h"
 #include "common/platform/Pipes.h"
 #include "common/platform/PrivateFiles.h"
+#include "common/progress/Progress.h"
 #include "gui/hermesctl/Advice.h"
 #include "gui/hermesctl/Completion.h"
 #include "gui/hermesctl/Nearest.h"
@@ -121,6 +122,8 @@ int run(Arguments arguments) {
     if (arguments.csv && arguments.json)
         return usageError(QStringLiteral("--csv and --json exclude each other"), true);
     setJsonNotes(arguments.json);
+    if (arguments.json)
+        Progress::useJson();
     if (!arguments.out.isEmpty()) {
         if (const auto opened = setOutput(arguments.out, arguments.force); !opened)
             return finish(opened, {}, arguments);

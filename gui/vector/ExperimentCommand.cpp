@@ -1,7 +1,7 @@
 #include "gui/vector/ExperimentCommand.h"
 
+#include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
-#include "gui/vector/Progress.h"
 
 #include <algorithm>
 #include <map>
@@ -136,8 +136,13 @@ void ExperimentCommand::refuseUnused(const CLI::App &sub) const {
 void ExperimentCommand::run() {
     OutputSet files(force);
     files.makeFolder(folder);
-    Progress progress("run");
-    options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
+    std::optional<Progress> progress; // once the work has begun: reading tells its own
+    if (!options.progress)
+        options.progress = [&](std::size_t done, std::size_t all) {
+            if (!progress)
+                progress.emplace(name + ", step");
+            progress->update(double(done), double(all));
+        };
     pairOptions.progress = options.progress;
     pairOptions.every = every[0];
     std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done

@@ -1,3 +1,4 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/MapFiles.h"
 #include "gui/vector/Options.h"
@@ -53,6 +54,10 @@ private:
 
     MapAlignment align(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
         vectorlib::MapAligner aligner;
+        Progress progress("searching, place");
+        aligner.progress = [&](std::size_t done, std::size_t all) {
+            progress.update(double(done), double(all));
+        };
         const MapAlignment found = aligner(map, added);
         const auto count = [](std::size_t n) { return std::to_string(n); };
         const std::string of = count(found.places) + " places of the second map ";

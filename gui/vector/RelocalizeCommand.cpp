@@ -1,3 +1,4 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Output.h"
 #include "gui/vector/RelocalizePicture.h"
@@ -58,7 +59,15 @@ struct RelocalizeCommand {
             edges.emplace_back(vectorlib::TlsSums(), s, 0);
         vectorlib::PlaceSearch search;
         search.maxSeconds = seconds;
+        std::optional<Progress> progress("searching, step");
+        double steps = 0;
+        search.progress = [&](std::size_t done, std::size_t all) {
+            steps = double(all);
+            progress->update(double(done), steps);
+        };
         const vectorlib::Relocalized &result = search(slots, edges, seen.points);
+        progress->update(steps, steps);
+        progress.reset();
         Json json = {{"outcome", vectorlib::name(result.outcome)},
                      {"text", result.text()},
                      {"alike", result.alike},

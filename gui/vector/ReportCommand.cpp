@@ -1,7 +1,7 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
-#include "gui/vector/Progress.h"
 #include "gui/vector/SearchOptions.h"
 #include "gui/vector/report/Worlds.h"
 
@@ -38,8 +38,9 @@ struct ReportCommand {
         } else {
             Progress progress("case");
             const OverallReport report =
-                reportOverall(world.world, settings,
-                              [&](std::size_t done, std::size_t among) { progress.update(done, among); });
+                reportOverall(world.world, settings, [&](std::size_t done, std::size_t among) {
+                    progress.update(double(done), double(among));
+                });
             if (overall)
                 write(out, as, world, settings, report);
             else

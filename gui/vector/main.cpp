@@ -3,6 +3,7 @@
 #include "common/platform/Pipes.h"
 #include "common/platform/Program.h"
 #include "common/platform/TemporaryNames.h"
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
 
@@ -71,6 +72,10 @@ int main(int argc, char **argv) {
     addRingCommand(app);
     addExperimentCommand(app);
     addReportCommand(app);
+    for (CLI::App *command : app.get_subcommands({}))
+        command->add_flag_callback(
+            "--json", Progress::useJson,
+            "Tell the progress of long work as JSON, one object a line, on standard error, terminal or not");
     removeTemporariesOnSignals();
     outliveClosedPipes();
     try {

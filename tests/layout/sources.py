@@ -9,7 +9,7 @@ import sys
 
 ROOT = os.environ.get("HERMES_SOURCE") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 HEADERS = "vectorlib/include/vectorlib"
-ALWAYS = {"--out", "--force", "--help"}  # what every experiment takes
+ALWAYS = {"--out", "--force", "--help", "--json"}  # what every experiment takes
 OPTION = r"(?<![\w-])--[a-z][\w-]*"
 
 
