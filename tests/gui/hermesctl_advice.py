@@ -162,7 +162,7 @@ class Patience(unittest.TestCase):
                 pass
             self.assertEqual(process.wait(60), 0)
         os.close(terminal)
-        self.assertIn(b"thermometer.calibrate: 3 s; Ctrl-C gives up", shown)
+        self.assertIn(b"waiting, second 3", shown)
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
 
     def test_a_daemon_that_hangs(self):
