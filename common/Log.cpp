@@ -71,7 +71,7 @@ Log &Log::instance() {
 // Never waits for whoever reads stderr: a terminal that was stopped must not stop the daemon.
 void Log::writeToStderr(QByteArray bytes) {
     if (lostLines_ > 0)
-        bytes.prepend(QStringLiteral("(%1 lines of the log are not here: nobody took them)\n")
+        bytes.prepend(QStringLiteral("(%1 lines of the log are missing here: stderr did not take them)\n")
                           .arg(lostLines_)
                           .toUtf8());
     while (!bytes.isEmpty()) {

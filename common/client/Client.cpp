@@ -59,6 +59,7 @@ void Client::connectTo(Channel *newChannel) {
     connect(channel_, &Channel::closed, this, &Client::onClosed);
     connect(channel_, &Channel::message, this, &Client::onMessage);
     connect(channel_, &Channel::malformed, this, &Client::refuse);
+    firstAttempt_.start();
     channel_->open();
 }
 
@@ -173,6 +174,11 @@ QString Client::problem() const {
     return failure_.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure_;
 }
 
+bool Client::isBeginning() const {
+    constexpr qint64 longest_ms = 3000;
+    return channel_ && firstAttempt_.isValid() && !firstAttempt_.hasExpired(longest_ms);
+}
+
 int Client::subscribe(const QString &topic, const QJsonObject &options, const TopicCallback &callback) {
     const int handle = ++lastHandle_;
     subscriptions_[handle] = {topic, options, callback, 0};
@@ -244,6 +250,7 @@ void Client::agree() {
 }
 
 void Client::begin() {
+    firstAttempt_.invalidate();
     failure_.clear();
     if (channel_
             ->isLossy()) // whoever spoke here before may have had the first ids, and their replies are kept
@@ -274,6 +281,7 @@ void Client::lookWhoIsThere() {
 }
 
 void Client::onClosed(const QString &reason) {
+    firstAttempt_.invalidate();
     failure_ = reason;
     for (auto &subscription : subscriptions_)
         subscription.second.id = 0;

@@ -5,6 +5,7 @@
 #include "common/client/Repeater.h"
 #include "protocol/jsonrpc/JsonRpc.h"
 
+#include <QElapsedTimer>
 #include <QHash>
 #include <QObject>
 #include <QTimer>
@@ -76,6 +77,8 @@ public:
     const QString &lastError() const { return failure_; }
     /// Why there is no connection, also before the first attempt has ended.
     QString problem() const;
+    /// Whether that first attempt is under way, and for a few seconds at most: nothing is wrong yet.
+    bool isBeginning() const;
 
     /// Calls a method; the callback gets the result or an error, once, and at the latest after the timeout.
     /// Not connected: fails at once (from the event loop).
@@ -135,7 +138,8 @@ private:
     Channel *channel_ = nullptr;
     QString failure_;
     QString preferred_;
-    bool agreeing_ = false; ///< on a framing
+    bool agreeing_ = false;      ///< on a framing
+    QElapsedTimer firstAttempt_; ///< invalid: it has ended
     Rejected refused_;
     int frameBytes_ = frameLimit;
     int largeCalls_ = 0; ///< that wait

@@ -42,7 +42,7 @@ QJsonObject entryOf(const Call &call, const Command &command, const QJsonValue &
     int left = longestParams;
     takeFrom(left, params);
     if (left < 0)
-        entry.insert(QStringLiteral("params"), QStringLiteral("too long to be written down"));
+        entry.insert(QStringLiteral("params"), QStringLiteral("too long for the audit"));
     else if (!params.isUndefined())
         entry.insert(QStringLiteral("params"), params);
     if (!result) {

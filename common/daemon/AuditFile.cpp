@@ -81,7 +81,7 @@ struct AuditFile::Shared {
         const auto closed = std::shared_ptr<void>(nullptr, [file](void *) { ::close(file); });
         struct stat status {};
         if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode))
-            return QFile::decodeName(path(0)) + QStringLiteral(": is no file");
+            return QFile::decodeName(path(0)) + QStringLiteral(": is not a file");
         const ssize_t written = ::write(file, line.constData(), std::size_t(line.size()));
         if (written != line.size()) {
             const QString why = written < 0 ? qt_error_string(errno) : QStringLiteral("the disk is full");

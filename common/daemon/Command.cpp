@@ -1,6 +1,7 @@
 #include "common/daemon/Command.h"
 
 #include "common/Log.h"
+#include "common/schema/Angles.h"
 #include "protocol/wire/FieldTable.h"
 
 #include <exception>
@@ -156,6 +157,15 @@ std::optional<Error> Command::refusal(const Call &call) const {
     return std::nullopt;
 }
 
+/// Of a set-point it would be told again and again.
+void Command::warnOfAngles(const QJsonObject &params) const {
+    if (isSetPoint())
+        return;
+    for (const Field &field : fields_)
+        for (const QString &text : beyondTurn(field.schema(), params.value(field.name()), field.name()))
+            logWarning(commandName_, text);
+}
+
 void Command::execute(const QJsonValue &params, Call call, const Reply &reply) const {
     QString what = QStringLiteral("unknown exception");
     try {
@@ -167,6 +177,7 @@ void Command::execute(const QJsonValue &params, Call call, const Reply &reply) c
         call.params = *accepted;
         if (const auto refused = refusal(call))
             return reply.error(*refused);
+        warnOfAngles(call.params);
         return run_(call, reply);
     } catch (const std::exception &exception) {
         what = QString::fromUtf8(exception.what());

@@ -94,6 +94,7 @@ private:
     QJsonObject paramsSchema() const;
     Error notFor(const Call &call, Role needed, const QString &what) const;
     std::optional<Error> refusal(const Call &call) const;
+    void warnOfAngles(const QJsonObject &params) const;
 
     QString commandName_;
     QString summary_;

@@ -40,7 +40,7 @@ void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
 void addProtocolCommand(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
         Command(QStringLiteral("protocol.use"),
-                QStringLiteral("After the reply this connection goes on in another framing, both ways"))
+                QStringLiteral("After the reply this connection uses another framing in both directions"))
             .needs(Role::Observer)
             .param(
                 Field::text(QStringLiteral("name"), QStringLiteral("Of the framing")).choices(codecNames()))
@@ -107,7 +107,7 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
                 return changeReply(daemon, *changed);
             }));
     commands.add(
-        Command(QStringLiteral("settings.reset"), QStringLiteral("Puts settings back to their defaults"))
+        Command(QStringLiteral("settings.reset"), QStringLiteral("Sets settings back to their defaults"))
             .with(QStringLiteral("x-destructive"), QStringLiteral("the settings as they are"))
             .needs(Role::Engineer)
             .param(Field::array(QStringLiteral("paths"), QStringLiteral("Dotted paths; none: all settings"),

@@ -6,6 +6,8 @@
 #include "common/daemon/CommonCommands.h"
 #include "common/daemon/SignalWatcher.h"
 #include "common/daemon/Systemd.h"
+#include "common/help/HelpText.h"
+#include "common/schema/Angles.h"
 #include "common/schema/SchemaText.h"
 #include "common/settings/DottedPath.h"
 #include "protocol/wire/Fields.h"
@@ -59,6 +61,11 @@ Daemon::Daemon(const DaemonIdentity &identity)
             QStringLiteral("log"), [&record] { return record.message(); }, record.stamp);
     });
     connect(&configuration_, &Settings::changed, this, [this](const QStringList &paths) {
+        QJsonObject changes;
+        for (const QString &path : paths)
+            changes = withValueAt(changes, path, valueAt(configuration_.values(), path));
+        for (const QString &text : beyondTurn(configuration_.schema(), changes))
+            logWarning(QStringLiteral("settings"), text);
         if (!launched_)
             return;
         applyCommonSettings();
@@ -99,7 +106,7 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
         return 2;
     }
     if (line->action == CommandLine::Action::Help) {
-        return printed(helpText());
+        return printed(QString::fromStdString(fittedHelp(helpText().toStdString())));
     }
     if (line->action == CommandLine::Action::Version) {
         return printed(QStringLiteral("%1 %2\n").arg(program, projectVersion()));
@@ -129,7 +136,7 @@ Result<void> Daemon::configure(const CommandLine &line) {
             logError(self_.name, loaded.error().message);
             healthItems_.set(QStringLiteral("settings file"), HealthLevel::Failed,
                              loaded.error().message +
-                                 QStringLiteral("; once it is mended the service starts anew"));
+                                 QStringLiteral("; the service restarts when the file is correct"));
             waitForMended(line.config);
         }
     }
@@ -156,7 +163,7 @@ void Daemon::waitForMended(const QString &file) {
     connect(&mended_, &QTimer::timeout, this, [this, file] {
         if (!configuration_.read(file))
             return;
-        logInfo(self_.name, QStringLiteral("settings file %1: it is mended").arg(file));
+        logInfo(self_.name, QStringLiteral("settings file %1: it is correct now").arg(file));
         shutDown();
     });
     mended_.start(std::chrono::seconds(1));
@@ -315,7 +322,7 @@ void Daemon::updateChannelHealth() {
                           .arg(dropped);
     const QStringList failures = channels_.failures();
     if (!failures.isEmpty())
-        message = QStringLiteral("nobody is heard on: ") + failures.join(QStringLiteral("; "));
+        message = QStringLiteral("no client is heard on: ") + failures.join(QStringLiteral("; "));
     healthItems_.set(QStringLiteral("channel"), failures.isEmpty() ? HealthLevel::Ok : HealthLevel::Failed,
                      message, counters);
 }

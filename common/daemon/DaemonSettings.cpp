@@ -74,26 +74,27 @@ void Daemon::declareCommonSettings() {
                    .choices(roleNames())
                    .group(channelGroup)
                    .byDefault(toString(Role::Observer)));
-    addSetting(
-        Field::boolean(QStringLiteral("audit.on"),
-                       QStringLiteral("Write down who commands what: a line of JSON for each command that "
-                                      "changes something"))
-            .group(logGroup)
-            .byDefault(true)
-            .appliesOnRestart());
-    addSetting(Field::text(QStringLiteral("audit.folder"),
-                           QStringLiteral(
-                               "Where; empty: audit in the folder of state, of the service or of the user"))
+    addSetting(Field::boolean(QStringLiteral("audit.on"),
+                              QStringLiteral("Write an audit of who commands what: a line of JSON for each "
+                                             "command that changes something"))
+                   .group(logGroup)
+                   .byDefault(true)
+                   .appliesOnRestart());
+    addSetting(Field::text(
+                   QStringLiteral("audit.folder"),
+                   QStringLiteral(
+                       "Folder of the audit; empty: audit in the state folder of the service or of the user"))
                    .group(logGroup)
                    .byDefault(QString())
                    .appliesOnRestart());
-    addSetting(Field::integer(QStringLiteral("audit.file_bytes"), QStringLiteral("Then a new file is begun"))
+    addSetting(Field::integer(QStringLiteral("audit.file_bytes"),
+                              QStringLiteral("Size of an audit file; then a new one begins"))
                    .unit(QStringLiteral("B"))
                    .range(4096, 1 << 30)
                    .group(logGroup)
                    .byDefault(1 << 20)
                    .appliesOnRestart());
-    addSetting(Field::integer(QStringLiteral("audit.files"), QStringLiteral("Files that are kept"))
+    addSetting(Field::integer(QStringLiteral("audit.files"), QStringLiteral("Audit files that are kept"))
                    .range(1, 1000)
                    .group(logGroup)
                    .byDefault(5)
@@ -104,18 +105,20 @@ void Daemon::declareCommonSettings() {
                    .range(1024, 64 << 20)
                    .group(limitGroup)
                    .byDefault(1 << 20));
-    addSetting(Field::integer(QStringLiteral("limits.topic_bytes"),
-                              QStringLiteral("Unsent topic data of a new client, then the oldest is dropped"))
-                   .unit(QStringLiteral("B"))
-                   .range(1024, 256 << 20)
-                   .group(limitGroup)
-                   .byDefault(256 << 10));
-    addSetting(Field::integer(QStringLiteral("limits.reply_bytes"),
-                              QStringLiteral("Unsent replies of a new client, then it is closed"))
-                   .unit(QStringLiteral("B"))
-                   .range(1024, 15 << 20)
-                   .group(limitGroup)
-                   .byDefault(2 << 20));
+    addSetting(
+        Field::integer(QStringLiteral("limits.topic_bytes"),
+                       QStringLiteral("Unsent topic data of a new client; beyond it the oldest is dropped"))
+            .unit(QStringLiteral("B"))
+            .range(1024, 256 << 20)
+            .group(limitGroup)
+            .byDefault(256 << 10));
+    addSetting(
+        Field::integer(QStringLiteral("limits.reply_bytes"),
+                       QStringLiteral("Unsent replies of a new client; beyond it the client is closed"))
+            .unit(QStringLiteral("B"))
+            .range(1024, 15 << 20)
+            .group(limitGroup)
+            .byDefault(2 << 20));
     addSetting(Field::integer(QStringLiteral("limits.clients"), QStringLiteral("Clients at the same time"))
                    .range(1, 1000)
                    .group(limitGroup)
@@ -126,7 +129,7 @@ void Daemon::declareCommonSettings() {
                    .byDefault(1000));
     addSetting(
         Field::integer(QStringLiteral("limits.pending"),
-                       QStringLiteral("Unanswered requests of a new client, then its further ones wait"))
+                       QStringLiteral("Unanswered requests of a new client; beyond it further ones wait"))
             .range(1, 10000)
             .group(limitGroup)
             .byDefault(32));
@@ -183,7 +186,8 @@ void Daemon::openAudit() {
             return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, channels_.audit().path(),
                                     values);
         healthItems_.set(QStringLiteral("audit"), HealthLevel::Warn,
-                         QStringLiteral("not written down who commands: ") + state->problem, values);
+                         QStringLiteral("the audit of commands cannot be written: ") + state->problem,
+                         values);
     });
 }
 

@@ -46,8 +46,8 @@ QString howToGetMore(const Peer &peer) {
         return QStringLiteral("the setting access.others, which the daemon's own user may change, says what "
                               "other users of this computer may do");
     return QStringLiteral(
-        "over its Unix socket, which hermesctl, the window and docs/examples/hermes.py use, "
-        "the daemon's own user may do all; the setting access.plain says what he may over TCP");
+        "over its Unix socket, which hermesctl, the window and docs/examples/hermes.py use, the daemon's own "
+        "user has all rights; the setting access.plain says which over TCP");
 }
 
 } // namespace
@@ -108,7 +108,7 @@ Result<void> Server::listen(const QString &text, bool insecure) {
         own = listenForOwn({actual->scheme, actual->host, actual->port, actual->path, url->options});
     listeners_.append(*listener);
     if (!own)
-        logWarning(source, QStringLiteral("%1; hermesctl and the window come over TCP, as %2")
+        logWarning(source, QStringLiteral("%1; hermesctl and the window connect over TCP instead, as %2")
                                .arg(own.error().message, toString(access_.plain)));
     else if (*own)
         ownListeners_.append(*own);
@@ -215,8 +215,9 @@ bool Server::makeKeptPlace() {
     Session *const longest = *std::min_element(all.begin(), all.end(), [](Session *a, Session *b) {
         return a->lastSignOfLife() < b->lastSignOfLife();
     });
-    turnAway(longest, {ErrorCode::OverLimit,
-                       longest->restriction() + QStringLiteral("; the place is for another one now")});
+    turnAway(longest,
+             {ErrorCode::OverLimit,
+              longest->restriction() + QStringLiteral("; its place is given to another client now")});
     return true;
 }
 

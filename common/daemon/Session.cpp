@@ -83,7 +83,7 @@ void Session::checkIdle() {
     // A line has nobody else to make place for; closed it would be deaf to a stop.
     if (limits_.idle_s > 0 && !waitsForTopics && !channel_->isLine() &&
         monotonicNow() - lastSign_ > limits_.idle_s)
-        expel(QStringLiteral("no sign of life for %1 s").arg(limits_.idle_s));
+        expel(QStringLiteral("nothing came for %1 s").arg(limits_.idle_s));
 }
 
 void Session::close(const QString &reason) {
@@ -308,9 +308,8 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
                      gaps_.text() + QStringLiteral("; what was received in that time is void"));
     }
     if (command && command->needsFresh() && isBeforeStop(request.id))
-        return Error(
-            ErrorCode::NotReady,
-            QStringLiteral("its id says that this was asked before a stop that has come: it is void"));
+        return Error(ErrorCode::NotReady,
+                     QStringLiteral("by its id this is older than a stop that has come: it is void"));
     if (!command)
         return std::nullopt;
     const int most = commands_.urgent().isEmpty() ? command->mostValues() : mostValuesBesideUrgent;

@@ -43,8 +43,14 @@ private:
 };
 
 Error fileError(const QString &path, const QString &what) {
-    return {ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, what),
-            QJsonObject{{QStringLiteral("path"), path}}};
+    const bool isRelative = !path.isEmpty() && QDir::isRelativePath(path);
+    const QString whole = isRelative ? absolutePath(path) : path;
+    const QString where = isRelative
+                              ? QStringLiteral(" (\"%1\" was looked for in %2, where this program runs)")
+                                    .arg(path, QDir::currentPath())
+                              : QString();
+    return {ErrorCode::InputOutput, QStringLiteral("%1: %2%3").arg(whole, what, where),
+            QJsonObject{{QStringLiteral("path"), whole}}};
 }
 
 /// Without links; empty, and errno says why.
@@ -80,7 +86,7 @@ Result<void> checkPath(const QString &path) {
 
 /// What a name leads to, where that is another file.
 QString whereLinked(const QString &named, const QString &path) {
-    const bool isLinked = path != QDir::cleanPath(QFileInfo(named).absoluteFilePath());
+    const bool isLinked = path != absolutePath(named);
     return isLinked ? QStringLiteral("this is %1, ").arg(path) : QString();
 }
 
@@ -157,6 +163,10 @@ Result<void> syncFolder(const QString &path) {
 }
 
 } // namespace
+
+QString absolutePath(const QString &path) {
+    return QDir::cleanPath(QFileInfo(path).absoluteFilePath());
+}
 
 Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes) {
     const Result<Opened> opened = openNamed(path, folders);

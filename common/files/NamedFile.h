@@ -11,9 +11,12 @@ namespace hermes {
 /// allow, never a device, a pipe or a socket, whatever links lead to; without waiting for anybody, and never
 /// more than a limit. Links are resolved first, and what they lead to has to be below the folders, too; then
 /// the file is opened without following any, so that nobody can change them meanwhile. Errors: InputOutput
-/// with data.path.
+/// with data.path. A path that is relative begins in the working directory; errors tell the absolute one.
 
-/// The whole file. path: absolute, or relative to the working directory.
+/// The path as answers tell it: absolute.
+QString absolutePath(const QString &path);
+
+/// The whole file.
 Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes);
 
 /// The path without links of a file that could be opened so, of leastBytes or more: for readers that open it

@@ -29,11 +29,10 @@ AdapterLatency AdapterLatency::lower(const QString &device, const QString &syste
     timer.close();
     latency.milliseconds = timerIn(timer);
     if (latency.milliseconds > 1)
-        latency.advice =
-            QStringLiteral("its adapter holds bytes for %1 ms, and %2 may not be set to 1 here (%3): "
-                           "write 1 to it as root, or by a udev rule")
-                .arg(latency.milliseconds)
-                .arg(timer.fileName(), written ? QStringLiteral("it stays as it is") : failure);
+        latency.advice = QStringLiteral("its adapter delays bytes by up to %1 ms, and this program may not "
+                                        "write 1 to %2 (%3): do so as root, or by a udev rule")
+                             .arg(latency.milliseconds)
+                             .arg(timer.fileName(), written ? QStringLiteral("it stays as it is") : failure);
     return latency;
 }
 

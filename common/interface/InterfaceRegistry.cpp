@@ -39,7 +39,8 @@ Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent) {
         return unknownScheme(url);
     if (!kind->listen)
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("address %1: nothing listens on this system").arg(url.toString()));
+                     QStringLiteral("address %1: this system can connect to it, but not listen there")
+                         .arg(url.toString()));
     return kind->listen(url, parent);
 }
 

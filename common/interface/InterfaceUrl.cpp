@@ -1,19 +1,29 @@
 #include "common/interface/InterfaceUrl.h"
 
+#include <QRegularExpression>
 #include <QUrl>
 #include <QUrlQuery>
 
 namespace hermes {
 
+namespace {
+
+Error wrongAddress(const QString &text, const QString &why) {
+    return Error(ErrorCode::InvalidParams, QStringLiteral("address \"%1\": expected HOST:PORT or a URL like "
+                                                          "tcp://127.0.0.1:7410?protocol=json (%2)")
+                                               .arg(text, why));
+}
+
+} // namespace
+
 Result<InterfaceUrl> InterfaceUrl::parse(const QString &text) {
+    static const QRegularExpression number(QStringLiteral("^([a-z]+://)?\\d+([/?]|$)"));
+    if (number.match(text).hasMatch()) // QUrl takes it for an address: 7490 for 0.0.29.66
+        return wrongAddress(text, QStringLiteral("a number alone tells no host"));
     const QUrl url(text.contains(QStringLiteral("://")) ? text : QStringLiteral("tcp://") + text,
                    QUrl::StrictMode);
-    if (!url.isValid() || url.scheme().isEmpty()) {
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("address \"%1\": expected HOST:PORT or a URL like "
-                                    "tcp://127.0.0.1:7410?protocol=json (%2)")
-                         .arg(text, url.errorString()));
-    }
+    if (!url.isValid() || url.scheme().isEmpty())
+        return wrongAddress(text, url.errorString());
     InterfaceUrl result;
     result.scheme = url.scheme();
     result.host = url.host();

@@ -20,7 +20,7 @@ bool Listener::isScarce(qintptr descriptor) {
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || rlim_t(descriptor) + spareDescriptors < limit.rlim_cur)
         return false;
     logWarning(QStringLiteral("server"),
-               QStringLiteral("a client is turned away: the file descriptors are nearly used up"));
+               QStringLiteral("a client is turned away: nearly no file descriptors are left"));
     return true;
 }
 
@@ -67,7 +67,7 @@ void SinglePeerListener::lose(const QString &reason) {
         told_ = reason;
         toldAt_ = now;
         logWarning(QStringLiteral("server"),
-                   QStringLiteral("%1; nobody is heard there until it can be opened again").arg(reason));
+                   QStringLiteral("%1; no client is heard there until it can be opened again").arg(reason));
     }
     retry_.start();
 }

@@ -49,7 +49,7 @@ Result<void> LocalServerInterface::makeFree(const LocalAddress &address) const {
     if (before.st_ino == 0)
         return {};
     if (!S_ISSOCK(before.st_mode))
-        return refuse(QStringLiteral("a file of this name exists that is no socket"));
+        return refuse(QStringLiteral("a file of this name exists, and it is not a socket"));
     if (isAlive(address))
         return refuse(QStringLiteral("another program listens there"));
     ::unlink(address.path());

@@ -61,7 +61,7 @@ QString PtyInterface::makeLink() {
         return {};
     const QFileInfo link(url_.path);
     if (link.exists() && !link.isSymLink())
-        return QStringLiteral("a file with this name exists that is not a link");
+        return QStringLiteral("a file of this name exists, and it is not a link");
     if (!QDir().mkpath(link.absolutePath()))
         return QStringLiteral("the folder %1 cannot be made").arg(link.absolutePath());
     QFile::remove(url_.path); // of a program that ended without removing it

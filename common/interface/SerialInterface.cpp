@@ -38,7 +38,7 @@ QString choose(const InterfaceUrl &url, const char *option, const char *fallback
         }
         known.append(QLatin1String(choice.text));
     }
-    return QStringLiteral("%1 \"%2\" is none of: %3")
+    return QStringLiteral("%1 is \"%2\", expected one of: %3")
         .arg(QLatin1String(option), text, known.join(QStringLiteral(", ")));
 }
 

@@ -73,7 +73,7 @@ void TcpInterface::prepare() {
             nowReceived(rest); // what it said before it closed
         if (!alive)
             return;
-        const QString reason = peerClosed ? QStringLiteral("closed by the peer") : socket_->errorString();
+        const QString reason = peerClosed ? QStringLiteral("closed by the peer") : failure();
         socket_->abort();
         nowClosed(QStringLiteral("%1: %2").arg(name(), reason), !peerClosed);
     });

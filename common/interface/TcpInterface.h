@@ -39,6 +39,8 @@ protected:
 
     /// The socket is connected, and may carry messages.
     void begin();
+    /// Why the socket has failed.
+    virtual QString failure() const { return socket_->errorString(); }
     /// After a read: whether something is left.
     virtual void noteRead();
 

@@ -2,28 +2,31 @@
 
 #include "common/tls/KeyFolder.h"
 
-#include <algorithm>
-
 namespace hermes {
 
+namespace {
+
+/// Without what robots may do, who change their addresses; empty: nothing else is wrong.
 QString textOf(const QList<QSslError> &errors) {
     QStringList texts;
     for (const QSslError &error : errors)
-        texts.append(error.errorString());
+        if (error.error() != QSslError::HostNameMismatch)
+            texts.append(error.errorString());
     texts.removeDuplicates();
     return texts.join(QStringLiteral("; "));
 }
+
+} // namespace
 
 TlsInterface::TlsInterface(const InterfaceUrl &address, QObject *parent)
     : TlsInterface(address, new QSslSocket, parent) {
     connect(socket_, &QSslSocket::encrypted, this, &TlsInterface::onEncrypted, Qt::QueuedConnection);
     connect(socket_, QOverload<const QList<QSslError> &>::of(&QSslSocket::sslErrors), this,
             [this](const QList<QSslError> &errors) {
-                const auto isName = [](const QSslError &error) {
-                    return error.error() == QSslError::HostNameMismatch; // robots change their addresses
-                };
-                if (std::all_of(errors.begin(), errors.end(), isName))
-                    socket_->ignoreSslErrors();
+                const QString wrong = textOf(errors);
+                if (wrong.isEmpty())
+                    return socket_->ignoreSslErrors();
+                refused_ = QStringLiteral("the certificate there is not accepted: ") + wrong;
             });
 }
 
@@ -72,6 +75,7 @@ void TlsInterface::doOpen() {
     const auto keys = KeyFolder::load(folder());
     if (!keys)
         return nowClosed(QStringLiteral("%1: %2").arg(name(), keys.error().message), true);
+    refused_.clear();
     setReceiving(true);
     socket_->setSslConfiguration(*keys);
     socket_->connectToHostEncrypted(url_.host, url_.port);

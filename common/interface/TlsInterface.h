@@ -31,6 +31,7 @@ protected:
     void doOpen() override;
     /// OpenSSL may have more that nobody can ask it for: it is decrypted in the next turn of the event loop.
     void noteRead() override;
+    QString failure() const override { return refused_.isEmpty() ? TcpInterface::failure() : refused_; }
 
 private:
     TlsInterface(const InterfaceUrl &address, QSslSocket *socket, QObject *parent);
@@ -40,9 +41,7 @@ private:
     const InterfaceUrl url_;
     QSslSocket *const socket_;
     quint64 reads_ = 0;
+    QString refused_; ///< why, where this client does not accept the certificate there
 };
-
-/// What is wrong, for people.
-QString textOf(const QList<QSslError> &errors);
 
 } // namespace hermes

@@ -172,11 +172,11 @@ void TlsServerInterface::lookAtRevoked() {
     auto revoked = KeyFolder::revoked(folder_);
     if (revoked && revoked->isEmpty() && !revoked_.isEmpty())
         revoked = Error(ErrorCode::InputOutput,
-                        file.filePath() + QStringLiteral(": is empty or gone, and was not"));
+                        file.filePath() + QStringLiteral(": is empty or missing now, and was not before"));
     revokedProblem_ = revoked ? QString() : revoked.error().message;
     if (!revoked)
         return logError(source,
-                        QStringLiteral("%1: nobody new is let in: %2").arg(address(), revokedProblem_));
+                        QStringLiteral("%1: new clients are refused: %2").arg(address(), revokedProblem_));
     revoked_ = *revoked;
 }
 

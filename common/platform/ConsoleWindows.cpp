@@ -1,5 +1,6 @@
 #include "common/platform/Console.h"
 
+#include <cstdlib>
 #include <fcntl.h>
 #include <initializer_list>
 #include <io.h>
@@ -21,6 +22,16 @@ HANDLE handleOf(StandardStream stream) {
 bool isTerminal(StandardStream stream) {
     DWORD mode = 0;
     return ::GetConsoleMode(handleOf(stream), &mode) != 0;
+}
+
+int terminalWidth() {
+    const char *const columns = std::getenv("COLUMNS");
+    if (const int told = columns != nullptr ? std::atoi(columns) : 0; told > 0)
+        return told;
+    CONSOLE_SCREEN_BUFFER_INFO info{};
+    return ::GetConsoleScreenBufferInfo(handleOf(StandardStream::Output), &info) != 0
+               ? info.srWindow.Right - info.srWindow.Left + 1
+               : 80;
 }
 
 void prepareConsole() {

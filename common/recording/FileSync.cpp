@@ -16,7 +16,7 @@ Result<void> sync(const QString &path, int (*how)(int)) {
     const QString why = qt_error_string();
     if (file >= 0)
         ::close(file);
-    return done ? Result<void>() : diskError(path + ": cannot be brought to the disk: " + why, path);
+    return done ? Result<void>() : diskError(path + ": cannot be written to the disk: " + why, path);
 }
 
 } // namespace

@@ -224,6 +224,7 @@ void Recording::check() {
 
 void Recording::checked(const Result<double> &room, const Result<void> &there,
                         const Result<void> &refreshed) {
+    isChecked_ = true;
     free_ = room ? std::optional<double>(*room) : std::nullopt;
     refreshError_ = refreshed ? std::nullopt : std::optional<Error>(refreshed.error());
     const double floor = settings_.number("record.free_floor_bytes");

@@ -88,6 +88,7 @@ private:
     std::optional<Error> refreshError_;
     PastFaults losses_;
     std::vector<Reply> stopping_; ///< who waits for the end
+    bool isChecked_ = false;      ///< free_ was read, or could not be
     std::optional<double> free_;  ///< bytes
     QStringList cutOff_;          ///< recordings that this start has completed, until another begins
     QStringList unrepaired_;      ///< why recordings that were cut off could not be completed

@@ -67,13 +67,14 @@ std::vector<Field> Recording::settingFields() {
 }
 
 std::vector<Field> Recording::rotationFields() {
-    return {byteField("record.file_bytes",
-                      "A recording goes on in a new file before one gets longer than this", 65536, 1e9),
-            Field::number("record.file_s", "A recording goes on in a new file after this time")
-                .unit("s")
-                .range(1, 1e9)
-                .byDefault(3600)
-                .group("Recording")};
+    return {
+        byteField("record.file_bytes", "Largest size of a file of a recording; then it goes on in a new one",
+                  65536, 1e9),
+        Field::number("record.file_s", "Longest time of a file of a recording; then it goes on in a new one")
+            .unit("s")
+            .range(1, 1e9)
+            .byDefault(3600)
+            .group("Recording")};
 }
 
 std::vector<SchemaViolation> Recording::checkSettings(const QJsonObject &settings) {
@@ -89,15 +90,14 @@ std::vector<Command> Recording::commands() {
     return {
         Command("record.start", "Records all that comes in to a new folder NAME in the folder of recordings")
             .param(Field::text("name", "Of the recording: of its folder, without a path"))
-            .param(Field::text("session",
-                               "Id that loggers give alike which record to the same folder as one session; "
-                               "without it the folder must be new")
+            .param(Field::text("session", "Id of the session: loggers with the same one record to the same "
+                                          "folder; without it the folder must be new")
                        .optional())
             .gives<RecordingStatus>()
             .example({{"name", "drive"}}, example)
             .asyncHandler([this](const Call &call, const Reply &reply) { start(call, reply); }),
         Command("record.stop", "Ends the recording; everything is on the disk when this returns")
-            .param(Field::text("session", "Ends only this one: what was begun since by others goes on")
+            .param(Field::text("session", "Ends only this session; one that others have begun since goes on")
                        .optional())
             .gives<RecordingStatus>()
             .asyncHandler([this](const Call &call, const Reply &reply) { stop(call, reply); }),
@@ -174,6 +174,10 @@ void Recording::updateHealth() {
 void Recording::updateDiskHealth() {
     const double warn = settings_.number("record.free_warn_bytes");
     const QString root = options().root;
+    if (!isChecked_) {
+        health_.set("disk", HealthLevel::Ok, root + ": its free space is being read");
+        return;
+    }
     if (!free_) {
         health_.set("disk", HealthLevel::Warn, root + ": its free space is not known");
         return;

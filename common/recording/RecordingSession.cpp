@@ -61,7 +61,7 @@ Result<double> freeBytes(const QString &path) {
     if (!QFileInfo::exists(path) && QFileInfo(path).path() != path) // made when the first recording begins
         return freeBytes(QFileInfo(path).path());
     if (::statvfs(QFile::encodeName(path).constData(), &space) != 0)
-        return diskError(path + ": its free space is not told: " + qt_error_string(), path);
+        return diskError(path + ": its free space cannot be read: " + qt_error_string(), path);
     return double(space.f_bavail) * double(space.f_frsize);
 }
 

@@ -113,7 +113,7 @@ Command ReplaySource::openCommand(const QString &summary) {
         .param(Field::boolean("live", "Show what is received").optional())
         .param(Field::text("recording", "Recording of this logger to replay, by its name").optional())
         .param(speedField().byDefault(1))
-        .param(Field::boolean("paused", "The replay waits for source.pause").byDefault(false))
+        .param(Field::boolean("paused", "Begin paused; source.pause lets it go on").byDefault(false))
         .param(Field::number("delay_s", "Time of the replay at which the recording begins")
                    .unit("s")
                    .range(0, 1e7)
@@ -125,7 +125,7 @@ Command ReplaySource::openCommand(const QString &summary) {
 
 Command ReplaySource::pauseCommand() {
     return whileReplaying(
-        Command("source.pause", "The replay waits, or goes on")
+        Command("source.pause", "Pauses the replay, or lets it go on")
             .param(Field::boolean("paused", "Whether it waits").byDefault(true))
             .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}}),
         [this](const Call &call) { playback_.setPaused(call.flag("paused")); });
@@ -133,8 +133,8 @@ Command ReplaySource::pauseCommand() {
 
 Command ReplaySource::seekCommand() {
     return whileReplaying(
-        Command("source.seek", "The replay goes on there; beyond its end it ends. One that waits plays "
-                               "a quarter of a second, and waits on")
+        Command("source.seek", "Lets the replay go on from another time; beyond its end it ends. A paused "
+                               "one plays a quarter of a second, and stays paused")
             .param(Field::number("t_s", "Seconds after the first record, of a recording after its beginning")
                        .unit("s")
                        .range(0, 1e7))
@@ -144,7 +144,7 @@ Command ReplaySource::seekCommand() {
 }
 
 Command ReplaySource::speedCommand() {
-    return whileReplaying(Command("source.speed", "The replay goes on faster or slower")
+    return whileReplaying(Command("source.speed", "Makes the replay faster or slower")
                               .param(speedField())
                               .example({{"speed", 2}}, QJsonObject{{"state", "replay"}, {"speed", 2}}),
                           [this](const Call &call) { playback_.setSpeed(call.number("speed")); });
@@ -153,7 +153,7 @@ Command ReplaySource::speedCommand() {
 Command ReplaySource::whileReplaying(Command command, const std::function<void(const Call &)> &action) {
     return command.gives<SourceStatus>().handler([this, action](const Call &call) -> Result<QJsonValue> {
         if (state_ != State::Replay)
-            return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
+            return Error(ErrorCode::NotReady, "no replay is running; source.open begins one");
         action(call);
         return asJson(status());
     });

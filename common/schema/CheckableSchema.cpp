@@ -1,5 +1,6 @@
 #include "common/schema/CheckableSchema.h"
 
+#include "common/schema/SchemaKeys.h"
 #include "common/schema/SchemaText.h"
 
 #include <QJsonArray>
@@ -9,8 +10,6 @@
 namespace hermes {
 namespace {
 
-const QString propertiesKey = QStringLiteral("properties");
-const QString itemsKey = QStringLiteral("items");
 const QStringList branchKeys{QStringLiteral("allOf"), QStringLiteral("anyOf"), QStringLiteral("oneOf")};
 
 constexpr int longestPattern = 1000;

@@ -1,6 +1,7 @@
 #include "common/schema/SchemaValidator.h"
 
 #include "common/schema/CheckableSchema.h"
+#include "common/schema/SchemaKeys.h"
 #include "common/schema/SchemaText.h"
 
 #include <QRegularExpression>
@@ -22,9 +23,7 @@ namespace {
 constexpr std::size_t mostViolations = 20;
 
 const QString typeKey = QStringLiteral("type");
-const QString itemsKey = QStringLiteral("items");
 const QString patternKey = QStringLiteral("pattern");
-const QString propertiesKey = QStringLiteral("properties");
 
 QString joined(const QString &path, const QString &key) {
     return path.isEmpty() ? key : path + QLatin1Char('.') + key;

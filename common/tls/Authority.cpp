@@ -129,8 +129,8 @@ Result<void> Authority::canIssue(const QString &name) const {
         return listed.error();
     if (QFile::exists(folderFor(name)))
         return failed(folderFor(name),
-                      QStringLiteral("exists; take it away first, and revoke its certificate if it has "
-                                     "been given to somebody"));
+                      QStringLiteral(
+                          "exists; remove it first, and revoke its certificate if it was given to somebody"));
     return {};
 }
 
@@ -173,7 +173,7 @@ Result<std::vector<Authority::Issued>> Authority::list() const {
         const auto text = [&entry](const char *name) { return entry.value(QLatin1String(name)).toString(); };
         const QDateTime until = QDateTime::fromString(text("until"), Qt::ISODate);
         if (text("serial").isEmpty() || !until.isValid())
-            return failed(path(issuedFile), QStringLiteral("line %1 is no certificate that was issued: %2")
+            return failed(path(issuedFile), QStringLiteral("line %1 is not a certificate that was issued: %2")
                                                 .arg(all.size() + 1)
                                                 .arg(QString::fromUtf8(line.left(80))));
         all.push_back({{text("name"), text("role")},

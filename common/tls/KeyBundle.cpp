@@ -50,9 +50,9 @@ bool isOnePem(const QByteArray &text, const char *kind) {
 
 Result<void> check(const KeyBundle &keys) {
     if (!isOnePem(keys.authority, "CERTIFICATE") || !isOnePem(keys.certificate, "CERTIFICATE"))
-        return bad(QStringLiteral("a certificate is none"));
+        return bad(QStringLiteral("a certificate is not valid"));
     if (!isOnePem(keys.key, "PRIVATE KEY"))
-        return bad(QStringLiteral("the key is none"));
+        return bad(QStringLiteral("the key is not valid"));
     const QSslCertificate own(keys.certificate);
     if (own.isNull() || !isSignedBy(keys.authority, keys.authority))
         return bad(QStringLiteral("a certificate cannot be read"));
@@ -63,9 +63,9 @@ Result<void> check(const KeyBundle &keys) {
     const PeerCertificate subject = toPeer(own);
     if (!checkCertificateName(subject.name) ||
         (!roleFrom(subject.role) && subject.role != QStringLiteral("daemon")))
-        return bad(QStringLiteral("the certificate is of nobody"));
+        return bad(QStringLiteral("the certificate has no name"));
     if (!isPlainText(keys.revoked))
-        return bad(QStringLiteral("the list of revoked certificates is no text"));
+        return bad(QStringLiteral("the list of revoked certificates is not a text"));
     return {};
 }
 
@@ -102,7 +102,7 @@ Result<KeyBundle> KeyBundle::fromJson(const QByteArray &json) {
     for (const Member &member : members) {
         const QJsonValue value = parsed->toObject().value(QLatin1String(member.name));
         if (!value.isString())
-            return bad(QStringLiteral("%1 is no text").arg(QLatin1String(member.name)));
+            return bad(QStringLiteral("%1 is not a text").arg(QLatin1String(member.name)));
         keys.*member.content = value.toString().toUtf8();
     }
     if (const auto fine = check(keys); !fine)

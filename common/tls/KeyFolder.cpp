@@ -31,7 +31,7 @@ Result<QByteArray> read(const QString &path) {
     QFile file(path);
     const QFileInfo info(path);
     if (info.exists() && (!info.isFile() || info.size() > mostBytes)) // a pipe is not opened: that waits
-        return wrong(path, QStringLiteral("is no file of keys"));
+        return wrong(path, QStringLiteral("is not a file of keys"));
     if (!info.exists() && !file.open(QIODevice::ReadOnly))
         return wrong(path, file.errorString());
     if (!file.open(QIODevice::ReadOnly))
@@ -53,7 +53,7 @@ Result<QByteArray> readSecret(const QString &path) {
 Result<QSslCertificate> certificateIn(const QByteArray &pem, const QString &path) {
     const QSslCertificate certificate(pem);
     if (certificate.isNull())
-        return wrong(path, QStringLiteral("is no certificate"));
+        return wrong(path, QStringLiteral("is not a certificate"));
     const QDateTime now = QDateTime::currentDateTimeUtc();
     if (certificate.expiryDate() < now || certificate.effectiveDate() > now)
         return wrong(path,
@@ -114,9 +114,9 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
         // One that was cut off must not be taken for another.
         const bool isNumber = word.size() >= shortestSerial && QByteArray::fromHex(word).toHex() == word;
         if (!isNumber)
-            return wrong(path,
-                         QStringLiteral("\"%1\" is no serial number, expected 16 hexadecimal digits or more")
-                             .arg(QString::fromUtf8(word.left(40))));
+            return wrong(
+                path, QStringLiteral("\"%1\" is not a serial number, expected 16 hexadecimal digits or more")
+                          .arg(QString::fromUtf8(word.left(40))));
         serials.insert(word);
     }
     return serials;

@@ -32,7 +32,7 @@ const char *toText(EncoderMonitor::Mismatch mismatch) {
     case EncoderMonitor::Mismatch::StandsStill:
         return "was told to turn and stands still";
     case EncoderMonitor::Mismatch::MovesUncommanded:
-        return "turns and was told to stand";
+        return "turns although it was told to stop";
     case EncoderMonitor::Mismatch::MovesBackwards:
         return "turns against its command";
     case EncoderMonitor::Mismatch::MovesTooFast:

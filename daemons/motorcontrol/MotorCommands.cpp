@@ -150,7 +150,7 @@ void MotorControl::declareMotorCommands() {
                    .gives<MotorState>()
                    .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
     addCommand(
-        loopCommand("odometry.reset", "The pose is this from now on, certain",
+        loopCommand("odometry.reset", "Sets the pose, as certain",
                     [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
                         loop.odometry().reset({call.number("x"), call.number("y"), call.number("theta")});
                         return QJsonValue();

@@ -139,8 +139,8 @@ void MotorController::watchStandstill() {
     if (clock_ <= standBy_)
         return;
     disobedience_ =
-        "was told to stand and kept turning; its line is silent now, so that it stops by its own time-out";
-    bar("was told to stand and kept turning");
+        "was told to stop and kept turning; its line is silent now, so that it stops by its own time-out";
+    bar("was told to stop and kept turning");
 }
 
 bool MotorController::isToStop() const {
@@ -270,7 +270,7 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
     if (watch_.isMoving()) {
         if (now < brakeUntil_)
             return;
-        error_ = "was told to stand and its wheels turn";
+        error_ = "was told to stop and its wheels turn";
         watch_.doubt();
         stopAcknowledged_ = false;
         return keepSilent(outcome);

@@ -78,7 +78,7 @@ void MotorControl::tellMeasures() {
                               const Threshold::Settings &limits, bool warns = false,
                               const QString &more = QString()) {
         if (!known)
-            return health().set(name, HealthLevel::Stale, "no controller has told it");
+            return health().set(name, HealthLevel::Stale, "no controller has reported it");
         const HealthLevel level = toHealth(told_.levels[item]);
         health().set(name, warns && level == HealthLevel::Ok ? HealthLevel::Warn : level,
                      QString("%1 %2").arg(value).arg(unit) + more,

@@ -99,6 +99,8 @@ void OdometrySource::report(Health &health) {
     };
     if (address_.isEmpty())
         health.remove("odometry");
+    else if (client_.isBeginning())
+        set(HealthLevel::Ok, "connecting to " + address_);
     else if (!client_.isConnected())
         set(HealthLevel::Warn, QString("no connection to %1: %2; poses are expected from the scans alone")
                                    .arg(address_, fault_.isEmpty() ? client_.problem() : fault_));

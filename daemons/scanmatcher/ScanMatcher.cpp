@@ -120,9 +120,8 @@ void ScanMatcher::declareTopics() {
                           "subscribe again or call map.get")
                  .carries<MapMessage>()
                  .snapshotParts([this](qint64 &cursor) { return mirror_.part(cursor); }));
-    addTopic(Topic("graph",
-                   "How the drive was put together: new key scans and the loops found with them. Begins "
-                   "with the whole graph, which comes again when the map was corrected")
+    addTopic(Topic("graph", "How the drive was composed: new key scans and the loops found with them. Begins "
+                            "with the whole graph, which comes again when the map was corrected")
                  .carries<GraphMessage>()
                  .snapshotParts([this](qint64 &cursor) { return graph_.part(cursor); }));
     addTopic(Topic("match", "How the last scan was matched").carries<MatchMessage>());
@@ -322,6 +321,8 @@ void ScanMatcher::updateHealth() {
     const QString address = settings().text("source.address");
     if (!active_)
         health().set("source", HealthLevel::Ok, "not matching");
+    else if (source_.isBeginning())
+        health().set("source", HealthLevel::Ok, "connecting to " + address);
     else if (!source_.isConnected())
         health().set("source", HealthLevel::Failed,
                      QString("no connection to %1: %2")
@@ -339,7 +340,7 @@ void ScanMatcher::updateHealth() {
     else
         health().set("source", HealthLevel::Ok, "connected to " + address);
     health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
-                 !replayed_ ? QString("what is matched is live")
+                 !replayed_ ? QString("live scans are matched")
                  : keepsLiveMap_
                      ? QString("a replay is matched, in a map of its own; the live map is kept until "
                                "live scans come")
@@ -370,7 +371,7 @@ void ScanMatcher::updateMemoryHealth() {
 void ScanMatcher::updateJournalHealth() {
     const JournalState journal = corrector_ ? corrector_->state().journal : JournalState();
     if (settings().text("map.journal").isEmpty())
-        return health().set("journal", HealthLevel::Ok, "none is kept");
+        return health().set("journal", HealthLevel::Ok, "no journal is kept");
     const QString message = !journal.fault.isEmpty() ? journal.fault
                             : journal.path.isEmpty() ? QString("nothing to write yet")
                                                      : "written to " + journal.path;

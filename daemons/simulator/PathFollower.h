@@ -14,7 +14,7 @@ public:
 
     /// Goes on from where it is.
     void drive() { driving_ = !path_.isEmpty(); }
-    /// Slows down to a stand.
+    /// Slows down and stops.
     void halt() { driving_ = false; }
     /// Back to the start, standing.
     void restart();

@@ -43,10 +43,9 @@ QString toText(LidarFault::Kind kind) {
 } // namespace
 
 Simulator::Simulator()
-    : Daemon(
-          {"simulator", "Simulator",
-           "A robot in a made-up world, with an HDL-32E that sends true packets over UDP, two RoboClaws that "
-           "drive it and a GPS receiver on pseudo-terminals"})
+    : Daemon({"simulator", "Simulator",
+              "A simulated robot in a world of line segments: an HDL-32E that sends real packets over UDP, "
+              "two RoboClaws that drive it and a GPS receiver on pseudo-terminals"})
     , pump_(
           [this](const Simulation::Truth &truth) {
               QMetaObject::invokeMethod(
@@ -79,16 +78,21 @@ void Simulator::declareTopics() {
 void Simulator::declareCommands() {
     addCommand(Command("sim.load", "Loads a world file and puts the robot, standing, at its first pose")
                    .needs(Role::Engineer)
-                   .param(Field::text("world", "World file (JSON)"))
+                   .param(Field::text("world", "World file (JSON); a relative path begins in the folder in "
+                                               "which the simulator runs"))
                    .gives<LoadedWorld>()
                    .example({{"world", "deploy/worlds/pillars.json"}},
-                            QJsonObject{{"name", "pillars"}, {"edges", 36}, {"poses", 39}})
+                            QJsonObject{{"path", "/home/robot/hermes/deploy/worlds/pillars.json"},
+                                        {"name", "pillars"},
+                                        {"edges", 36},
+                                        {"poses", 39}})
                    .handler([this](const Call &call) -> Result<QJsonValue> {
-                       const Result<void> loaded = loadNamed(call.text("world"));
+                       const Result<void> loaded =
+                           loadNamed(call.text("world"), namedFilesFolders(settings()));
                        if (!loaded)
                            return loaded.error();
-                       return asJson(LoadedWorld{QString::fromStdString(world_.name), world_.edges.size(),
-                                                 world_.poses.size()});
+                       return asJson(LoadedWorld{worldPath_, QString::fromStdString(world_.name),
+                                                 world_.edges.size(), world_.poses.size()});
                    }));
     addCommand(Command("sim.state", "World, true pose, progress along the path, packets sent and left out")
                    .needs(Role::Observer)
@@ -98,7 +102,7 @@ void Simulator::declareCommands() {
                    .param(Field::boolean("restart", "Begin again at the first pose").byDefault(false))
                    .returnsNull()
                    .handler([this](const Call &call) { return drive(call.flag("restart")); }));
-    addCommand(Command("sim.halt", "Slows down to a stand")
+    addCommand(Command("sim.halt", "Slows down and stops")
                    .returnsNull()
                    .handler([this](const Call &) -> Result<QJsonValue> {
                        pump_.with([](Simulation &simulation) { simulation.halt(); });
@@ -120,7 +124,8 @@ void Simulator::declareCommands() {
             .param(Field::number("dropouts", "Share of the lidar's returns that do not come")
                        .range(0, 1)
                        .optional())
-            .param(Field::number("outliers", "Share that comes from anywhere, up to twice as far")
+            .param(Field::number("outliers",
+                                 "Share of the lidar's returns with a wrong range, up to twice as far")
                        .range(0, 1)
                        .optional())
             .param(Field::number("gps_sigma_m", "Standard deviation of each coordinate of a fix")
@@ -131,7 +136,7 @@ void Simulator::declareCommands() {
             .handler([this](const Call &call) { return setNoise(call); }));
     addCommand(
         Command("sim.fault",
-                "Makes a device fail; none ends its faults. docs/simulator.md tells what each does")
+                "Simulates a fault of a device; none ends its faults. docs/simulator.md tells what each does")
             .param(Field::text("device", "Which device").choices(faultDevices()))
             .param(Field::text("kind", "What it does wrong").choices(faultKinds()))
             .param(Field::number("share",
@@ -163,7 +168,7 @@ Result<void> Simulator::start() {
         setState(DaemonState::Ready);
         return {};
     }
-    const Result<void> loaded = load(world, readWorld(world.toStdString()));
+    const Result<void> loaded = loadNamed(world, {"/"});
     if (loaded && settings().flag("robot.autostart"))
         drive(false);
     return loaded;
@@ -191,9 +196,12 @@ void Simulator::settingsChanged(const QStringList &paths) {
     });
 }
 
-Result<void> Simulator::loadNamed(const QString &path) {
-    const Result<QByteArray> text = readNamedFile(path, namedFilesFolders(settings()), largestWorldFile);
-    return text ? load(path, parseWorld(text->toStdString(), path.toStdString())) : text.error();
+Result<void> Simulator::loadNamed(const QString &name, const QStringList &folders) {
+    const Result<QByteArray> text = readNamedFile(name, folders, largestWorldFile);
+    if (!text)
+        return text.error();
+    const QString path = absolutePath(name);
+    return load(path, parseWorld(text->toStdString(), path.toStdString()));
 }
 
 Result<void> Simulator::load(const QString &path, const Outcome<World> &world) {
@@ -315,11 +323,12 @@ void Simulator::updateHealth() {
     const quint64 failed = counts.sendErrors + counts.skipped;
     const QJsonObject values = asJson(counts).toObject();
     if (worldPath_.isEmpty())
-        health().set(healthItem, HealthLevel::Ok,
-                     "no world is loaded; nothing is sent, and the motors are without power", values);
-    else if (fault.kind != LidarFault::Kind::None)
-        health().set(healthItem, HealthLevel::Warn, "fails as it was asked to: " + toText(fault.kind),
+        health().set(healthItem, HealthLevel::Warn,
+                     "no world is loaded: the lidar sends no packets, and the motors have no power; sim.load "
+                     "loads a world",
                      values);
+    else if (fault.kind != LidarFault::Kind::None)
+        health().set(healthItem, HealthLevel::Warn, "simulated fault: " + toText(fault.kind), values);
     else
         health().set(healthItem, faults_.level(double(failed)),
                      failed == 0

@@ -32,7 +32,7 @@ private:
     Drivetrain::Options drivetrainOptions();
     GpsModel::Options gpsOptions();
     /// Puts the robot at the first pose of a world file and begins to send.
-    Result<void> loadNamed(const QString &path);
+    Result<void> loadNamed(const QString &name, const QStringList &folders);
     Result<void> load(const QString &path, const Outcome<World> &world);
     Result<QJsonValue> drive(bool restart);
     Result<QJsonValue> place(const Call &call);

@@ -6,6 +6,7 @@ namespace hermes::simulator {
 
 const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>) {
     static const auto fields = Fields<LoadedWorld>()
+                                   .add("path", &LoadedWorld::path, "Of the file, absolute")
                                    .add("name", &LoadedWorld::name, "Of the world")
                                    .add("edges", &LoadedWorld::edges, "Walls")
                                    .add("poses", &LoadedWorld::poses, "Of its path");

@@ -10,7 +10,7 @@ namespace hermes::simulator {
 
 /// A world that was read.
 struct LoadedWorld {
-    QString name;
+    QString path, name;
     quint64 edges = 0, poses = 0;
 };
 

@@ -14,7 +14,7 @@ void Simulator::addNumber(const char *group, const char *name, const char *text,
 }
 
 void Simulator::declareSettings() {
-    addSetting(Field::text("world", "World file to load at the start; none waits for sim.load")
+    addSetting(Field::text("world", "World file to load at the start; empty: none until sim.load")
                    .byDefault("")
                    .appliesOnRestart()
                    .group("World"));
@@ -63,11 +63,10 @@ void Simulator::declareSettings() {
                    .range(0, 1)
                    .byDefault(0)
                    .group("Lidar"));
-    addSetting(
-        Field::number("lidar.outliers", "Share of the returns that come from anywhere, up to twice as far")
-            .range(0, 1)
-            .byDefault(0)
-            .group("Lidar"));
+    addSetting(Field::number("lidar.outliers", "Share of the returns with a wrong range, up to twice as far")
+                   .range(0, 1)
+                   .byDefault(0)
+                   .group("Lidar"));
     declareMotorSettings();
     declareGpsSettings();
 }

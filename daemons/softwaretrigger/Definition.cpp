@@ -40,7 +40,7 @@ QJsonObject whenSchema() {
         {{"kind", choice("What fires it", causeKinds())},
          {"period_s", number("period: firing n is n periods after the trigger was armed", "s",
                              shortestPeriod_s, longestPeriod_s)},
-         {"distance_m", number("distance: the way between two firings", "m", 0.001, 1e6)},
+         {"distance_m", number("distance: metres between two firings", "m", 0.001, 1e6)},
          {"angle_rad",
           number("angle: the turn, left and right added up, between two firings", "rad", 0.001, 1e6)},
          {"at", text("time_of_day: HH:MM, HH:MM:SS or HH:MM:SS.mmm")},

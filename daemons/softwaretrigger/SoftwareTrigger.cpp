@@ -5,8 +5,8 @@ namespace hermes::softwaretrigger {
 
 SoftwareTrigger::SoftwareTrigger()
     : Daemon({"softwaretrigger", "Software trigger",
-              "Fires triggers by period, way, time of day, a condition on any topic, or command; each calls "
-              "commands of daemons, writes to serial lines or pulses lines"}) {
+              "Fires triggers by period, distance, time of day, a condition on any topic, or command; each "
+              "calls commands of daemons, writes to serial lines or pulses lines"}) {
     declareSettings();
     addTopic(Topic("fired", "Each firing, when its last action has ended").carries<FiringMessage>());
     declareCommands();

@@ -58,7 +58,7 @@ QJsonObject Targets::toJson() const {
 QStringList Targets::unreachable() const {
     QStringList result;
     for (const auto &[daemon, target] : targets_) {
-        if (!target.client->isConnected())
+        if (!target.client->isConnected() && !target.client->isBeginning())
             result.append(daemon);
     }
     return result;

@@ -31,6 +31,8 @@ TopicWatch::~TopicWatch() {
 }
 
 QString TopicWatch::problem() const {
+    if (client_ && client_->isBeginning())
+        return {};
     if (!client_ || !client_->isConnected())
         return client_ ? "not connected: " + client_->problem() : QString("not connected");
     return problem_;

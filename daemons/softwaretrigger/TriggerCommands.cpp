@@ -44,8 +44,8 @@ void SoftwareTrigger::declareCommands() {
                    .handler([this](const Call &) { return list(); }));
     addCommand(
         Command("trigger.define",
-                "Adds a trigger, or replaces the one of that id; settings.save keeps it. A period, a "
-                "way and a day begin anew where `when` changes, else they go on")
+                "Adds a trigger, or replaces the one of that id; settings.save keeps it. Period, distance "
+                "and time of day begin again where `when` changes, else they go on")
             .needs(Role::Engineer)
             .param(schemaField("id"))
             .param(Field::schema("when", "What fires it", memberSchema("when")))
@@ -60,7 +60,7 @@ void SoftwareTrigger::declareCommands() {
                    .param(idField())
                    .returnsNull()
                    .handler([this](const Call &call) { return remove(call.text("id")); }));
-    addCommand(Command("trigger.arm", "Lets a trigger fire by itself; its period or way begins now")
+    addCommand(Command("trigger.arm", "Lets a trigger fire by itself; its period or distance begins now")
                    .param(idField())
                    .returnsNull()
                    .handler([this](const Call &call) { return setArmed(call.text("id"), true); }));

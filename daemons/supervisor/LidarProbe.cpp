@@ -86,7 +86,9 @@ std::vector<FoundLidar> LidarProbe::run(QStringList &problems) {
     QElapsedTimer listening;
     listening.start();
     // Also of who sends faster than this reads.
-    const auto goesOn = [this, &listening] { return listening.elapsed() < listenForTurns_ms && !isCancelled_; };
+    const auto goesOn = [this, &listening] {
+        return listening.elapsed() < listenForTurns_ms && !isCancelled_;
+    };
     while (goesOn()) {
         pollfd ready[] = {{data.descriptor(), POLLIN, 0}, {position.descriptor(), POLLIN, 0}};
         ::poll(ready, 2, pollTurns_ms);

@@ -392,6 +392,11 @@ Result<QJsonValue> Setup::take(const QStringList &written, const QStringList &no
             !isNew && old->ran ? process->restart() : process->start();
         applied.restarted.append(entry.name);
     }
+    for (const SupervisedProcess *const process : processes_())
+        before.remove(process->entry().name);
+    for (const QString &name : before.keys())
+        applied.notes.append(name +
+                             " is no process of the supervisor any more, and ends; setup.undo puts it back");
     if (!loaded)
         return Error(ErrorCode::InvalidSetting,
                      loaded.error().message + "; the files are written, and the supervisor goes on with the "

@@ -107,7 +107,9 @@ void VelodyneLogger::declareSourceCommands() {
     addCommand(
         source_
             .openCommand("Receives live, or replays a capture file or a recording; what was open is closed")
-            .param(Field::text("pcap", "Capture file to replay, pcap or pcapng")
+            .param(Field::text("pcap",
+                               "Capture file to replay, pcap or pcapng; a relative path begins in the "
+                               "folder in which the logger runs")
                        .with("x-role", toString(Role::Engineer))
                        .optional())
             .param(Field::integer("port", "Of the replay only the sensor that sends to this port is decoded")

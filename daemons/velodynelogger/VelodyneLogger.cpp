@@ -59,7 +59,7 @@ Result<void> VelodyneLogger::start() {
     const Result<void> result =
         pcap.isEmpty()
             ? openLive()
-            : openPcap(pcap, {pcap},
+            : openPcap(absolutePath(pcap), {absolutePath(pcap)},
                        {settings().number("source.speed"), settings().flag("source.loop"), false}, options());
     updateHealth();
     return result;
@@ -164,7 +164,7 @@ ReplaySource::Actions VelodyneLogger::sourceActions() {
         const Result<QString> found = findNamedFile(pcap, namedFilesFolders(settings()));
         if (!found)
             return found.error();
-        return openPcap(pcap, {*found}, replayOptions(call), replayedOptions(call));
+        return openPcap(absolutePath(pcap), {*found}, replayOptions(call), replayedOptions(call));
     };
     actions.recording = [this](const Call &call, const StoredRecording &stored) {
         return openRecording(call, stored);

@@ -29,7 +29,7 @@ _hermes_vector() {
     for ((i = COMP_CWORD - 1; i > 0; --i)); do
         [[ ${COMP_WORDS[i]} != -* ]] && command=${COMP_WORDS[i]}
     done
-    help=$("$1" ${command:+"$command"} --help 2>/dev/null)
+    help=$(COLUMNS=10000 "$1" ${command:+"$command"} --help 2>/dev/null) # unbroken
     if [[ -z $command ]]; then
         names=$(sed -nE '1,/^Subcommands:/d; s/^  ([a-z-]+) .*/\1/p' <<<"$help")
         _hermes_vector_words "$word" "$names --help --version"

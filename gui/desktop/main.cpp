@@ -1,4 +1,5 @@
 #include "common/Project.h"
+#include "common/help/HelpText.h"
 #include "gui/desktop/EndSignals.h"
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/MessageWriter.h"
@@ -59,8 +60,10 @@ int main(int argc, char **argv) {
         std::fprintf(stderr, "hermes-gui: %s\nhermes-gui --help tells what there is\n", qPrintable(wrong));
         return 2;
     }
-    if (parser.isSet("help"))
-        parser.showHelp();
+    if (parser.isSet("help")) {
+        std::fputs(fittedHelp(parser.helpText().toStdString()).c_str(), stdout);
+        return 0;
+    }
     if (parser.isSet("version"))
         parser.showVersion();
 

@@ -9,10 +9,14 @@
 #include "gui/hermesctl/Nearest.h"
 #include "protocol/jsonrpc/Codec.h"
 
+#include <QDir>
 #include <QJsonArray>
+#include <QSslSocket>
 
 namespace hermes::ctl {
 namespace {
+
+constexpr std::chrono::milliseconds patience{1000}; // of questions that only explain a failure
 
 QJsonObject ofDaemon(Client &client, const Arguments &arguments, const char *method) {
     const auto answer = ask(client, arguments, QLatin1String(method));
@@ -33,22 +37,78 @@ QString programAt(const InterfaceUrl &url) {
     return {};
 }
 
-QStringList nobodyThere(const Arguments &arguments) {
+Result<InterfaceUrl> urlOf(const Arguments &arguments) {
     const auto address = daemonAddress(theDaemon(arguments), arguments.host);
-    const auto url = address ? InterfaceUrl::parse(*address) : address.error();
+    return address ? InterfaceUrl::parse(*address) : address.error();
+}
+
+QString placeOf(const InterfaceUrl &url) {
+    return url.toString().section(QStringLiteral("//"), 1);
+}
+
+bool speaksTls(const InterfaceUrl &url) {
+    QSslSocket socket;
+    socket.setPeerVerifyMode(QSslSocket::VerifyNone);
+    socket.connectToHostEncrypted(url.host, url.port);
+    return socket.waitForEncrypted(int(patience.count()));
+}
+
+/// Of an address, in the usual framing.
+bool speaksPlainText(const InterfaceUrl &url) {
+    Client client;
+    return connectOnce(client, placeOf(url), patience) &&
+           client.callAndWait(QStringLiteral("daemon.info"), QJsonObject(), patience);
+}
+
+/// Why a daemon and this client have not come to terms over TLS.
+QStringList aboutTls(const Error &error, const InterfaceUrl &url) {
+    const QString keys = url.option(QStringLiteral("keys"), KeyFolder::usual());
+    if (error.message.contains(QStringLiteral("not accepted")))
+        return {
+            QStringLiteral("its keys and yours in %1 are of different authorities, or its keys have expired; "
+                           "one authority must issue both (hermesctl keys issue), and HERMES_KEYS=FOLDER "
+                           "chooses yours")
+                .arg(keys)};
+    if (error.message.contains(QStringLiteral("SSL")) && speaksPlainText(url))
+        return {
+            QStringLiteral("the daemon there speaks plain text, no TLS; name it as %1").arg(placeOf(url))};
+    if (!error.message.contains(QStringLiteral("closed by the peer")))
+        return {};
+    return {QStringLiteral("the daemon refuses your keys in %1: they may be revoked, expired, or of another "
+                           "authority; its log tells which")
+                .arg(keys),
+            QStringLiteral(
+                "hermesctl keys list, where they were made, tells which are good; hermesctl keys issue "
+                "makes new ones")};
+}
+
+/// Why a connection has ended before its reply.
+QStringList wasClosed(const Error &error, const Arguments &arguments) {
+    const auto url = urlOf(arguments);
+    if (url && url->scheme == QStringLiteral("tls"))
+        return aboutTls(error, *url);
+    if (url && url->scheme == QStringLiteral("tcp") && speaksTls(*url))
+        return {QStringLiteral("the port is one for TLS; name the daemon as tls://%1; your keys are in %2 "
+                               "($HERMES_KEYS)")
+                    .arg(placeOf(*url), KeyFolder::usual())};
+    return {};
+}
+
+QStringList nobodyThere(const Error &error, const Arguments &arguments) {
+    const auto url = urlOf(arguments);
     if (!url)
         return {};
-    if (url->scheme == QStringLiteral("tls")) // there may be one that does not let this client in
-        return {QStringLiteral(
-                    "the reason is in the log of the daemon; your keys are in %1 ($HERMES_KEYS); hermesctl "
-                    "keys list, where they were made, tells which are good")
-                    .arg(KeyFolder::usual())};
+    if (error.message.contains(QStringLiteral("Host not found")))
+        return {QStringLiteral("this computer knows no host \"%1\": check the name, or give the IP address")
+                    .arg(url->host)};
+    const bool isRefused = error.message.contains(QStringLiteral("Connection refused"));
+    if (url->scheme == QStringLiteral("tls") && !isRefused) // somebody listens, or keys are missing here
+        return aboutTls(error, *url);
     const QString program = programAt(*url);
     if (program.isEmpty())
-        return {
-            QStringLiteral("no daemon listens at %1; one does after: hermes-NAME --listen '%1?protocol=%2'; "
-                           "hermesctl list shows those at the default ports")
-                .arg(url->toString(), url->protocol())};
+        return {QStringLiteral("no daemon listens at %1; start one there: hermes-NAME --listen "
+                               "'%1?protocol=%2'; hermesctl list shows those at the default ports")
+                    .arg(url->toString(), url->protocol())};
     QStringList lines{QStringLiteral("start %1 on %2 (it listens at port %3 by default, on loopback only); "
                                      "one that listens elsewhere is named as HOST:PORT")
                           .arg(program, url->host)
@@ -65,9 +125,7 @@ QStringList nobodyThere(const Arguments &arguments) {
 /// A port whose peer does not understand the framing says nothing that can be understood here: another
 /// framing may be the one.
 QStringList otherFraming(const Arguments &arguments) {
-    constexpr std::chrono::milliseconds patience{1000};
-    const auto address = daemonAddress(theDaemon(arguments), arguments.host);
-    const auto url = address ? InterfaceUrl::parse(*address) : address.error();
+    const auto url = urlOf(arguments);
     if (!url)
         return {};
     for (const QString &framing : codecNames()) {
@@ -81,9 +139,8 @@ QStringList otherFraming(const Arguments &arguments) {
         return {QStringLiteral("the daemon at %1 speaks %2, and was spoken to in %3; name it as '%4'")
                     .arg(url->toString(), framing, url->protocol(), other)};
     }
-    return {
-        QStringLiteral("the connection stands, but what is at the other end does not answer: it is busy or "
-                       "stopped, or no daemon of Hermes; --timeout S waits longer")};
+    return {QStringLiteral("the connection is open, but what is at the other end does not answer: it is busy "
+                           "or stopped, or is no daemon of Hermes; --timeout S waits longer")};
 }
 
 QStringList aboutMethod(Client &client, const Arguments &arguments) {
@@ -97,26 +154,49 @@ QStringList aboutMethod(Client &client, const Arguments &arguments) {
     return lines;
 }
 
-/// Of one thing that is wrong: what is expected there, or which name is near one that is not known.
-QString aboutPath(const QString &path, const QStringList &names, const QString &whole,
-                  const std::function<QJsonObject(const QString &)> &schemaOf) {
-    QString known = path;
-    while (!known.isEmpty() && !names.contains(known)) // "ports.0.url" is about "ports"
-        known = known.section(QLatin1Char('.'), 0, -2);
-    const QJsonObject schema = schemaOf(known);
-    const QJsonObject members = schema[QStringLiteral("properties")].toObject();
-    if (known.isEmpty() || (known != path && !members.isEmpty()))
-        return QStringLiteral("%1 is unknown%2; %3").arg(path, didYouMean(path, names), whole);
-    return QStringLiteral("%1: %2").arg(
-        known, members.isEmpty() ? explanation(schema)
-                                 : QStringLiteral("holds %1").arg(members.keys().join(QStringLiteral(", "))));
+/// Below a schema: a member, or any element of a list.
+QJsonObject below(const QJsonObject &schema, const QString &key) {
+    const QJsonObject member = schema[QStringLiteral("properties")].toObject()[key].toObject();
+    return member.isEmpty() ? schema[QStringLiteral("items")].toObject() : member;
 }
 
-QStringList about(const QJsonValue &errors, const QStringList &names, const QString &whole,
-                  const std::function<QJsonObject(const QString &)> &schemaOf) {
+QStringList withPrefix(const QString &prefix, QStringList names) {
+    for (QString &name : names)
+        name.prepend(prefix);
+    return names;
+}
+
+/// Of one thing that is wrong: what is expected there, or which name is near one that is not known. whole
+/// tells what there is at all.
+QString aboutPath(const QString &path, const QJsonObject &root, const QString &whole) {
+    QJsonObject schema = root;
+    QString known; // as far as the path is
+    for (const QString &key : path.split(QLatin1Char('.'))) {
+        const QJsonObject next = below(schema, key);
+        const QStringList members = schema[QStringLiteral("properties")].toObject().keys();
+        if (next.isEmpty() && members.isEmpty()) // may hold anything
+            break;
+        const QString before = known.isEmpty() ? QString() : known + QLatin1Char('.');
+        if (next.isEmpty() && known.isEmpty())
+            return QStringLiteral("%1 is unknown%2; %3")
+                .arg(path, didYouMean(path, settingPaths(root, true)), whole);
+        if (next.isEmpty())
+            return QStringLiteral("%1 is unknown%2; %3 holds %4")
+                .arg(path, didYouMean(path, withPrefix(before, members)), known,
+                     members.join(QStringLiteral(", ")));
+        schema = next;
+        known = before + key;
+    }
+    const QStringList members = schema[QStringLiteral("properties")].toObject().keys();
+    return QStringLiteral("%1: %2").arg(
+        known, members.isEmpty() ? explanation(schema)
+                                 : QStringLiteral("holds %1").arg(members.join(QStringLiteral(", "))));
+}
+
+QStringList about(const QJsonValue &errors, const QJsonObject &root, const QString &whole) {
     QStringList lines;
     for (const QJsonValue &error : errors.toArray())
-        lines.append(aboutPath(error[QStringLiteral("path")].toString(), names, whole, schemaOf));
+        lines.append(aboutPath(error[QStringLiteral("path")].toString(), root, whole));
     lines.removeDuplicates();
     return lines;
 }
@@ -128,15 +208,12 @@ QStringList aboutParameters(const Error &error, Client &client, const Arguments 
     const QStringList names = namesOf(method[QStringLiteral("params")].toArray());
     const QString whole = names.isEmpty() ? QStringLiteral("the command has no parameters")
                                           : QStringLiteral("there is ") + names.join(QStringLiteral(", "));
-    return about(error.data[QStringLiteral("errors")], names, whole,
-                 [&](const QString &name) { return parameterSchema(method, name); });
+    return about(error.data[QStringLiteral("errors")], parametersSchema(method), whole);
 }
 
 QStringList aboutSettings(const QJsonValue &errors, Client &client, const Arguments &arguments) {
     const QJsonObject schema = ofDaemon(client, arguments, "settings.schema");
-    const QString whole = QStringLiteral("hermesctl get %1 shows all").arg(theDaemon(arguments));
-    return about(errors, settingPaths(schema, true), whole,
-                 [&](const QString &path) { return settingSchema(schema, path); });
+    return about(errors, schema, QStringLiteral("hermesctl get %1 shows all").arg(theDaemon(arguments)));
 }
 
 QStringList aboutTopic(Client &client, const Arguments &arguments) {
@@ -157,10 +234,25 @@ QStringList aboutControl(const Error &error, const Arguments &arguments) {
                            "motion command for the time that it asked for; hermesctl call %2 control.state "
                            "shows it")
                 .arg(holder.toString(), theDaemon(arguments)));
-    lines.append(QStringLiteral(
-        "the control is of one connection, and ends with it: hermesctl drive takes it and keeps "
-        "it; a client that drives calls control.acquire first, with take_over=true to take it "
-        "from another one; the robot stops then"));
+    lines.append(QStringLiteral("the control belongs to one connection, and ends with it: hermesctl drive "
+                                "takes it and keeps it; a client that drives calls control.acquire first, "
+                                "with take_over=true to take it from another one; the robot stops then"));
+    return lines;
+}
+
+/// A daemon looks for a relative path in its own folder, which is seldom the one of the caller.
+QStringList aboutFiles(const Error &error, const Arguments &arguments) {
+    QStringList lines;
+    for (const QString &word : arguments.words.mid(2)) {
+        const QString name = word.section(QLatin1Char('='), 0, 0), path = word.section(QLatin1Char('='), 1);
+        const QString here = QFileInfo(path).absoluteFilePath();
+        if (!path.isEmpty() && QDir::isRelativePath(path) && QFileInfo::exists(here) &&
+            error.data[QStringLiteral("path")].toString() != here)
+            lines.append(
+                QStringLiteral("a relative path begins in the folder of the daemon; for the file in this "
+                               "folder: %1=%2")
+                    .arg(name, here));
+    }
     return lines;
 }
 
@@ -168,7 +260,7 @@ QStringList aboutControl(const Error &error, const Arguments &arguments) {
 
 QStringList adviceFor(const Error &error, const Arguments &arguments) {
     if (error.is(ErrorCode::Disconnected) && !arguments.words.isEmpty())
-        return nobodyThere(arguments);
+        return nobodyThere(error, arguments);
     return {};
 }
 
@@ -176,7 +268,12 @@ QStringList adviceFor(const Error &error, Client &client, const Arguments &argum
     const QString &command = arguments.command;
     const bool isCall = command == QStringLiteral("call");
     if (error.is(ErrorCode::TimedOut))
-        return otherFraming(arguments);
+        return client.callAndWait(QStringLiteral("daemon.info"), QJsonObject(), patience)
+                   ? QStringList(QStringLiteral("the daemon answers other requests: this one takes longer; "
+                                                "without --timeout hermesctl waits for it"))
+                   : otherFraming(arguments);
+    if (error.is(ErrorCode::Disconnected))
+        return wasClosed(error, arguments);
     if (error.is(ErrorCode::ControlHeld))
         return aboutControl(error, arguments);
     if (isCall && error.is(ErrorCode::MethodNotFound))
@@ -188,6 +285,8 @@ QStringList adviceFor(const Error &error, Client &client, const Arguments &argum
     if (error.is(ErrorCode::InvalidParams) && command == QStringLiteral("get"))
         return aboutSettings(QJsonArray{QJsonObject{{QStringLiteral("path"), arguments.words.value(1)}}},
                              client, arguments);
+    if (isCall && error.is(ErrorCode::InputOutput))
+        return aboutFiles(error, arguments);
     if (isCall && error.is(ErrorCode::InvalidParams))
         return aboutParameters(error, client, arguments);
     return {};

@@ -3,10 +3,14 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
 #include "common/daemon/CommandLine.h"
+#include "common/schema/Angles.h"
 #include "common/settings/DottedPath.h"
+#include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Markdown.h"
 #include "gui/hermesctl/NetworkBrowser.h"
+#include "gui/hermesctl/PatientCall.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WrongItems.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
@@ -28,19 +32,32 @@ QString pretty(const QJsonValue &value) {
     return QString::fromUtf8(compactJson(value));
 }
 
-// "name=value" words as an object; dotted names make nested objects only where the caller wants that.
-Result<QJsonObject> assignments(const QStringList &words, bool nested) {
+// "name=value" words as an object; dotted names make nested objects.
+Result<QJsonObject> assignments(const QStringList &words) {
     QJsonObject object;
     for (const QString &word : words) {
         const auto assignment = parseAssignment(word);
         if (!assignment)
             return assignment.error();
-        if (nested)
-            object = withValueAt(object, assignment->first, assignment->second);
-        else
-            object.insert(assignment->first, assignment->second);
+        object = withValueAt(object, assignment->first, assignment->second);
     }
     return object;
+}
+
+void printChanged(const QJsonValue &result, const QString &daemon) {
+    const QJsonArray restart = result[QStringLiteral("restart")].toArray();
+    for (const QJsonValue &path : result[QStringLiteral("changed")].toArray())
+        printLine(path.toString() + (restart.contains(path)
+                                         ? QStringLiteral(" changed, from the next start on once saved "
+                                                          "(hermesctl call %1 settings.save)")
+                                               .arg(daemon)
+                                         : QStringLiteral(" changed")));
+}
+
+/// Angles in radians beyond a full turn were most often meant in degrees.
+void noteAngles(const QJsonObject &schema, const QJsonObject &values) {
+    for (const QString &text : beyondTurn(schema, values))
+        note(text);
 }
 
 QString logLine(WireView record) {
@@ -56,22 +73,25 @@ QString logLine(WireView record) {
 } // namespace
 
 Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
-                       const QJsonValue &params) {
-    return client.callAndWait(method, params, arguments.timeout);
+                       const QJsonValue &params, Client::Repeats repeats) {
+    return PatientCall(client, arguments).run(method, params, repeats);
 }
 
 namespace {
 
 Result<void> listNetwork(const Arguments &arguments) {
     constexpr std::chrono::seconds howLong{2};
-    const auto found = NetworkBrowser().look(howLong);
+    const auto found = [howLong] {
+        const Waiting waiting(howLong, "listening, second");
+        return NetworkBrowser().look(howLong);
+    }();
     if (!found)
         return found.error();
     if (found->isEmpty())
         return Error(
             ErrorCode::Disconnected,
-            QStringLiteral("no daemon has announced itself; those do that listen at an address which "
-                           "others on the network reach"));
+            QStringLiteral(
+                "no daemon has announced itself; only a daemon that listens on the network does so"));
     QJsonArray values;
     std::vector<QStringList> rows{{QStringLiteral("name"), QStringLiteral("host"), QStringLiteral("address"),
                                    QStringLiteral("port"), QStringLiteral("framing")}};
@@ -160,12 +180,11 @@ Result<void> listDaemons(const Arguments &arguments) {
     if (arguments.json && !calls.empty())
         printJson(found);
     if (calls.empty())
-        return Error(
-            ErrorCode::Disconnected,
-            QStringLiteral("no daemon answers at its default port on %1; hermes-simulator is one to begin "
-                           "with, on a robot systemctl status hermes-supervisor tells whether the service "
-                           "runs, --host HOST asks another computer, --network all of them")
-                .arg(arguments.host));
+        return Error(ErrorCode::Disconnected,
+                     QStringLiteral("no daemon answers at its default port on %1; start one, as "
+                                    "hermes-simulator; on a robot see systemctl status hermes-supervisor; "
+                                    "--host HOST asks another computer, --network all of them")
+                         .arg(arguments.host));
     return {};
 }
 
@@ -193,15 +212,21 @@ Result<void> document(Client &client, const Arguments &arguments) {
 }
 
 Result<void> call(Client &client, const Arguments &arguments) {
-    const auto params = assignments(arguments.words.mid(2), false);
+    const auto params = assignments(arguments.words.mid(2));
     if (!params)
         return params.error();
     // Nothing else goes over the line: where it damages much, a stop is not to wait for a repeat.
-    const auto result =
-        client.callAndWait(arguments.words.at(1), *params, arguments.timeout, Client::Repeats::AtOnce);
+    const auto result = ask(client, arguments, arguments.words.at(1), *params, Client::Repeats::AtOnce);
     if (!result)
         return result.error();
     printLine(pretty(*result));
+    if (!holdsBeyondTurn(*params)) // the description is large
+        return {};
+    const auto description = ask(client, arguments, QStringLiteral("rpc.discover"));
+    if (!description)
+        return description.error();
+    const QJsonArray methods = (*description)[QStringLiteral("methods")].toArray();
+    noteAngles(parametersSchema(named(methods, arguments.words.at(1))), *params);
     return {};
 }
 
@@ -215,24 +240,23 @@ Result<void> getSettings(Client &client, const Arguments &arguments) {
 }
 
 Result<void> setSettings(Client &client, const Arguments &arguments) {
-    const auto values = assignments(arguments.words.mid(1), true);
+    const auto values = assignments(arguments.words.mid(1));
     if (!values)
         return values.error();
     const auto result = ask(client, arguments, QStringLiteral("settings.set"),
                             QJsonObject{{QStringLiteral("values"), *values}});
     if (!result)
         return result.error();
-    if (arguments.json) {
+    if (arguments.json)
         printJson(*result);
+    else
+        printChanged(*result, arguments.words.first());
+    if (!holdsBeyondTurn(*values))
         return {};
-    }
-    const QJsonArray restart = (*result)[QStringLiteral("restart")].toArray();
-    for (const QJsonValue &path : (*result)[QStringLiteral("changed")].toArray())
-        printLine(path.toString() + (restart.contains(path)
-                                         ? QStringLiteral(" changed, from the next start on once saved "
-                                                          "(hermesctl call %1 settings.save)")
-                                               .arg(arguments.words.first())
-                                         : QStringLiteral(" changed")));
+    const auto schema = ask(client, arguments, QStringLiteral("settings.schema"));
+    if (!schema)
+        return schema.error();
+    noteAngles(schema->toObject(), *values);
     return {};
 }
 

@@ -57,8 +57,9 @@ Result<void> drive(Client &client, const Arguments &arguments);
 /// Error: no velocity, and no terminal for keys.
 Result<void> checkDrive(const Arguments &arguments);
 
-/// callAndWait() with the time-out of the command line.
+/// Calls and waits: as long as the daemon answers other requests, or for the time-out of the command line.
 Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
-                       const QJsonValue &params = QJsonObject());
+                       const QJsonValue &params = QJsonObject(),
+                       Client::Repeats repeats = Client::Repeats::Usual);
 
 } // namespace hermes::ctl

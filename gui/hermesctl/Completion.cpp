@@ -7,6 +7,7 @@
 #include "gui/hermesctl/CompletionScripts.h"
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/DriveLine.h"
+#include "gui/hermesctl/Hosts.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Subcommands.h"
 #include "gui/hermesctl/TypedLine.h"
@@ -84,6 +85,8 @@ private:
     Candidates ofOption(const QString &option, const QString &before) const {
         if (option == QStringLiteral("--out"))
             return {{QStringLiteral(":files"), QString()}};
+        if (option == QStringLiteral("--host"))
+            return plain(knownHosts(patience), before);
         if (option == QStringLiteral("--role"))
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option != QStringLiteral("--daemons"))
@@ -113,7 +116,7 @@ private:
         case Word::SettingPath:
             return plain(settingPaths(ask("settings.schema").toObject(), true));
         case Word::SettingValue:
-            return settings();
+            return assignments(ask("settings.schema").toObject());
         case Word::Topic:
             return described(ask("topics.list").toArray());
         case Word::Session:
@@ -165,22 +168,14 @@ private:
         return found;
     }
 
-    /// NAME= of those that are not given yet; after it what the schema allows, or what there is of the kind.
     Candidates parameters() {
         const QString methodName = line_.arguments.words.value(1);
-        const QJsonObject method = named(askList("rpc.discover", "methods"), methodName);
-        const QStringList names = namesOf(method[QStringLiteral("params")].toArray());
         const QString name = line_.current.section(QLatin1Char('='), 0, 0);
-        if (line_.current.contains(QLatin1Char('='))) {
-            const QStringList there = whatThereIs(methodName, name);
-            return there.isEmpty() ? values(name, parameterSchema(method, name))
-                                   : plain(there, name + QLatin1Char('='));
-        }
-        Candidates found;
-        for (const QString &one : names)
-            if (!line_.isGiven(one))
-                found.push_back({one + QLatin1Char('='), explanation(parameterSchema(method, one))});
-        return found;
+        const QStringList there =
+            line_.current.contains(QLatin1Char('=')) ? whatThereIs(methodName, name) : QStringList();
+        return there.isEmpty()
+                   ? assignments(parametersSchema(named(askList("rpc.discover", "methods"), methodName)))
+                   : plain(there, name + QLatin1Char('='));
     }
 
     QStringList whatThereIs(const QString &method, const QString &parameter) {
@@ -195,8 +190,8 @@ private:
         return parameter == QStringLiteral("topic") ? namesOf(ask("topics.list").toArray()) : QStringList();
     }
 
-    Candidates settings() {
-        const QJsonObject schema = ask("settings.schema").toObject();
+    /// NAME= of those that are not given yet; after it what the schema allows.
+    Candidates assignments(const QJsonObject &schema) const {
         const QString path = line_.current.section(QLatin1Char('='), 0, 0);
         if (line_.current.contains(QLatin1Char('=')))
             return values(path, settingSchema(schema, path));

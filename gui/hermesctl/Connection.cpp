@@ -1,12 +1,15 @@
 #include "gui/hermesctl/Connection.h"
 
 #include "common/client/DaemonAddress.h"
+#include "gui/hermesctl/Hosts.h"
+#include "gui/hermesctl/Waiting.h"
 
 #include <QTimer>
 
 namespace hermes::ctl {
 
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer limit;
     QObject::connect(&client, &Client::connected, &loop, &QEventLoop::quit);
@@ -18,13 +21,16 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
     limit.start(timeout);
     if (!client.isConnected() && client.lastError().isEmpty())
         loop.exec();
-    if (client.isConnected())
+    if (client.isConnected()) {
+        rememberHost(address);
         return {};
+    }
     return Error(ErrorCode::Disconnected, client.problem());
 }
 
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
                                                 std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer::singleShot(timeout, &loop, &QEventLoop::quit);
     std::vector<std::unique_ptr<Client>> clients;
@@ -43,15 +49,14 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
     }
     if (open > 0)
         loop.exec();
-    for (const auto &client : clients) {
-        if (!client->isConnected())
-            client->close();
-    }
+    for (std::size_t i = 0; i < clients.size(); ++i)
+        clients[i]->isConnected() ? rememberHost(addresses[int(i)]) : clients[i]->close();
     return clients;
 }
 
 SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
                               std::chrono::milliseconds timeout) {
+    const Waiting waiting(timeout);
     QObject context;
     return await<SessionReplies>([&](auto done) { callAll(calls, method, timeout, &context, done); });
 }

@@ -8,7 +8,7 @@
 
 namespace hermes::ctl {
 
-/// Connects, with one attempt. Error: who did not answer and why.
+/// Connects, with one attempt; remembers the host for completion. Error: who did not answer and why.
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout);
 
 /// Connects to all at the same time, with one attempt each. Who did not answer has no connection, and a

@@ -38,8 +38,11 @@ QJsonObject named(const QJsonArray &list, const QString &name) {
     return {};
 }
 
-QJsonObject parameterSchema(const QJsonObject &method, const QString &name) {
-    return named(method[QStringLiteral("params")].toArray(), name)[QStringLiteral("schema")].toObject();
+QJsonObject parametersSchema(const QJsonObject &method) {
+    QJsonObject properties;
+    for (const QJsonValue &param : method[QStringLiteral("params")].toArray())
+        properties.insert(param[QStringLiteral("name")].toString(), param[QStringLiteral("schema")]);
+    return {{propertiesKey, properties}};
 }
 
 QJsonObject settingSchema(const QJsonObject &schema, const QString &path) {

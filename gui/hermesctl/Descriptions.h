@@ -9,8 +9,8 @@ namespace hermes::ctl {
 QStringList namesOf(const QJsonArray &list);
 /// The one of that name; empty where there is none.
 QJsonObject named(const QJsonArray &list, const QString &name);
-/// The schema of a parameter of a method; empty where there is none.
-QJsonObject parameterSchema(const QJsonObject &method, const QString &name);
+/// The schema of all parameters of a method as one object.
+QJsonObject parametersSchema(const QJsonObject &method);
 /// The schema of a setting, or of a group of settings, by its dotted path.
 QJsonObject settingSchema(const QJsonObject &schema, const QString &path);
 /// The dotted paths of all settings; with groups: of what holds settings, too.

@@ -7,6 +7,7 @@
 #include "gui/hermesctl/DriveLine.h"
 #include "gui/hermesctl/Driver.h"
 #include "gui/hermesctl/KeyTerminal.h"
+#include "gui/hermesctl/Waiting.h"
 #include "protocol/wire/Fields.h"
 
 #include <QElapsedTimer>
@@ -52,6 +53,11 @@ Result<void> tellWhereItWent(Client &client, const Arguments &arguments, const D
                       .arg(driver.seconds(), 0, 'f', 1)
                       .arg(text(moved), text(*to)));
     return {};
+}
+
+Result<void> driveOn(Driver &driver, double seconds) {
+    const Waiting waiting(std::chrono::milliseconds(qint64(1000 * seconds)), "driving, second");
+    return driver.run();
 }
 
 Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
@@ -107,7 +113,7 @@ Result<void> drive(Client &client, const Arguments &arguments) {
     driver.endAfter(arguments.for_s);
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &client, [&driver] { driver.end(); });
-    const auto driven = velocity ? driver.run() : driveByKeys(keys, driver);
+    const auto driven = velocity ? driveOn(driver, arguments.for_s) : driveByKeys(keys, driver);
     if (!driven)
         return driven;
     return tellWhereItWent(client, arguments, driver);

@@ -1,6 +1,7 @@
 #include "gui/hermesctl/Driver.h"
 
 #include "common/Time.h"
+#include "gui/hermesctl/Waiting.h"
 #include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
@@ -135,6 +136,7 @@ Result<void> Driver::stop() {
 }
 
 Result<void> waitUntilReady(Client &client, const Arguments &arguments) {
+    const Waiting told(arguments.timeout);
     QElapsedTimer waiting;
     waiting.start();
     while (true) {

@@ -67,8 +67,8 @@ Result<void> keysIssue(const Arguments &arguments) {
                               {QStringLiteral("role"), arguments.role}});
     else
         printLine(
-            QStringLiteral("%1: the keys of %2. Copy the folder over a way that nobody else reads to where "
-                           "its programs look for keys (usually ~/.config/hermes/keys), and delete it "
+            QStringLiteral("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to "
+                           "where its programs look for keys (usually ~/.config/hermes/keys), and delete it "
                            "here. For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
                            ".config/hermes/keys\n  scp -p %1/* "
                            "%2:.config/hermes/keys/")

@@ -38,7 +38,7 @@ void tellHow(const PairingCode &code, quint16 port, const Arguments &arguments) 
                         {QStringLiteral("port"), port},
                         {QStringLiteral("seconds"), seconds},
                         {QStringLiteral("command"), joinCommand(addresses.first(), port, code)}});
-    printLine(QStringLiteral("The code for %1 is  %2  , good for one computer and %3 s.\n"
+    printLine(QStringLiteral("The code for %1 is  %2  , valid for one computer and %3 s.\n"
                              "Waiting on port %4. On the other computer type:\n  %5")
                   .arg(arguments.words.first(), code.text())
                   .arg(seconds)

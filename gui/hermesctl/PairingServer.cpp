@@ -63,7 +63,7 @@ Result<PairingServer::Joined> PairingServer::wait(std::chrono::milliseconds howL
     }
     close();
     return Error(ErrorCode::TimedOut,
-                 QStringLiteral("nobody joined with the code within %1 s; it is no longer good")
+                 QStringLiteral("nobody joined with the code within %1 s; it is no longer valid")
                      .arg(double(howLong.count()) / 1000));
 }
 
@@ -108,8 +108,8 @@ Result<void> PairingServer::advance(const Listener &listener) {
             listener.wrong(guest->address, mostWrong - ++wrong_);
             if (wrong_ == mostWrong)
                 return Error(ErrorCode::NotAuthorised,
-                             QStringLiteral("the code was wrong %1 times; it is no longer good, and no keys "
-                                            "were made")
+                             QStringLiteral(
+                                 "the code was wrong %1 times; it is no longer valid, and no keys were made")
                                  .arg(mostWrong));
         }
         const bool ends = state == PairingStream::Handshake::Failed || guest->deadline.hasExpired();

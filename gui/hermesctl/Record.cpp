@@ -4,6 +4,7 @@
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WrongItems.h"
 #include "gui/session/SessionRecorder.h"
 
@@ -56,6 +57,7 @@ QJsonObject named(const QString &daemon, const QJsonObject &value) {
 /// What a recorder with all loggers gives, a Result.
 template <typename T, typename Begin>
 T ask(const Loggers &loggers, const Begin &begin) {
+    const Waiting waiting(SessionRecorder::stopLimit); // the longest wait of all
     SessionRecorder recorder(loggers.members);
     return await<T>([&](auto done) { begin(recorder, done); });
 }

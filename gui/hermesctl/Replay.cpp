@@ -1,12 +1,18 @@
 // hermesctl replay: all loggers of a session play it back.
 #include "common/daemon/SignalWatcher.h"
 #include "common/platform/Console.h"
+#include "common/progress/Progress.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Loggers.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/session/SessionPlayer.h"
 #include "gui/session/SessionRecorder.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 namespace hermes::ctl {
 namespace {
@@ -42,7 +48,10 @@ Result<void> replay(const Arguments &arguments) {
         !arguments.daemons.isEmpty() && !silent.isEmpty())
         return sessionError("nothing is replayed", silent);
     SessionRecorder recorder(loggers->members);
-    const auto list = await<SessionList>([&](auto done) { recorder.list(0, done); });
+    const auto list = [&] {
+        const Waiting waiting(arguments.timeout);
+        return await<SessionList>([&](auto done) { recorder.list(0, done); });
+    }();
     const Result<RecordedSession> session = theSession(list, arguments.words.first());
     if (!session)
         return session.error();
@@ -51,15 +60,22 @@ Result<void> replay(const Arguments &arguments) {
     SessionPlayer player;
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &player, &SessionPlayer::end);
+    std::optional<Progress> progress;
+    double last_s = 0;
     bool shown = false;
     QObject::connect(&player, &SessionPlayer::progress, [&](double position_s, double duration_s) {
-        if (arguments.json)
-            return printJson(QJsonObject{
+        if (arguments.json) {
+            printJson(QJsonObject{
                 {"session", session->id}, {"position_s", position_s}, {"duration_s", duration_s}});
-        if (!isTerminal(StandardStream::Errors))
-            return;
-        shown = true;
-        std::fprintf(stderr, "\r%s: %.1f of %.1f s ", qPrintable(session->name), position_s, duration_s);
+            if (!progress || position_s < std::exchange(last_s, position_s)) // --loop begins anew
+                progress.emplace("replaying, second");
+            progress->update(position_s, duration_s);
+        } else if (isTerminal(StandardStream::Errors)) {
+            shown = true;
+            std::fprintf(stderr, "\r\033[K%s: %.1f of %.1f s, %.0f s left ", qPrintable(session->name),
+                         position_s, duration_s,
+                         std::ceil(std::max(0.0, duration_s - position_s) / arguments.speed));
+        }
     });
     const auto result = await<Result<void>>([&](auto done) {
         QObject::connect(&player, &SessionPlayer::ended, done);

@@ -4,6 +4,7 @@
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Question.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WheelTest.h"
 #include "gui/setup/SetupText.h"
 #include "protocol/wire/Fields.h"
@@ -70,7 +71,7 @@ public:
         if (!proposal)
             return proposal.error();
         if (proposal->changes.empty())
-            note("nothing is to be changed");
+            note("nothing needs a change");
         else if (!isConfirmed("Write these settings?"))
             return Error(ErrorCode::NotReady, "nothing was changed");
         else if (const auto applied = apply(*sample, proposal->settings); !applied)
@@ -79,9 +80,8 @@ public:
     }
 
     Result<void> wheels() {
-        if (answerTo(
-                "Each wheel turns slowly for a second. Lift the robot: no wheel may touch the ground, and "
-                "nobody a wheel.\nType \"lifted\" when that is so:") != "lifted")
+        if (answerTo("Each wheel turns slowly for a second. Lift the robot: no wheel may touch the ground, "
+                     "and nobody may touch a wheel.\nType \"lifted\" when that is so:") != "lifted")
             return Error(ErrorCode::NotReady, "no wheel was turned: the robot is not lifted");
         Client motors;
         if (const auto connected = connectTo(motors, arguments_, 1, "motorcontrol"); !connected)
@@ -90,7 +90,7 @@ public:
         if (!changes)
             return changes.error();
         if (changes->isEmpty()) {
-            note("all wheels turn as they are told; nothing is to be changed");
+            note("all wheels turn as they are told; nothing needs a change");
             return {};
         }
         const QJsonObject settings{{"motorcontrol", QJsonObject{{"wheels", *changes}}}};
@@ -102,8 +102,7 @@ public:
 
 private:
     Result<QJsonValue> call(const QString &method, const QJsonObject &params) {
-        const auto patience = std::max<std::chrono::milliseconds>(arguments_.timeout, setupPatience);
-        return supervisor_.callAndWait(method, params, patience);
+        return ask(supervisor_, arguments_, method, params);
     }
 
     template <typename T>
@@ -117,7 +116,10 @@ private:
 
     Result<Findings> find(bool ask, bool release) {
         note("listening and asking; this takes some seconds");
-        const auto answer = call("setup.find", QJsonObject{{"ask", ask}, {"release", release}});
+        const auto answer = [&] {
+            const Waiting waiting(longestSearch, "searching at most, second");
+            return call("setup.find", QJsonObject{{"ask", ask}, {"release", release}});
+        }();
         if (!answer)
             return answer.error();
         const auto found = read<Findings>(*answer, "setup.find");
@@ -185,9 +187,8 @@ private:
         if (!names)
             return names.error();
         while (true) {
-            const QString name =
-                answerTo(QString("Which robot is it? %1; Enter: the settings of now are changed:")
-                             .arg(names->join(", ")));
+            const QString name = answerTo(
+                QString("Which robot is it? %1; Enter: change the present settings:").arg(names->join(", ")));
             if (name == "q")
                 return Error(ErrorCode::NotReady, "nothing was changed");
             if (name.isEmpty() || names->contains(name))
@@ -196,6 +197,8 @@ private:
     }
 
     static bool hasMotors(const Proposal &proposal) { return proposal.settings.contains("motorcontrol"); }
+
+    static constexpr std::chrono::seconds longestSearch{8}; // of setup.find, but for daemons that it ends
 
     Client &supervisor_;
     const Arguments &arguments_;

@@ -16,7 +16,8 @@ Loggers are the daemons with the command record.start that answer at their defau
 
   --daemons A,B  record, replay, doc --all: these daemons and no others; setup: the supervisor, the motor control
   --host HOST    where daemons given by name run (127.0.0.1)
-  --timeout S    how long to wait for a connection and for a reply (5); keys pair: for the other (120)
+  --timeout S    how long to wait for a connection and for a reply; without it: 5 s for a connection, and for
+                 a reply as long as the daemon answers other requests; keys pair: for the other (120)
   --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
   --out FILE     prints there instead of to stdout; FILE must not exist
   --force        --out: overwrites FILE
@@ -96,7 +97,7 @@ const std::vector<Subcommand> &subcommands() {
          1,
          1,
          "record mark TEXT",
-         "puts a text with the time into what is being recorded",
+         "adds a text with the time to the recording",
          {W::Nothing},
          "--daemons",
          nullptr,
@@ -168,7 +169,7 @@ const std::vector<Subcommand> &subcommands() {
          1,
          1,
          "keys revoke NAME",
-         "takes the keys of a person or robot, or of a serial number, out of force",
+         "revokes the keys of a person or robot, or of a serial number",
          {W::Nothing},
          "",
          nullptr,
@@ -187,7 +188,7 @@ const std::vector<Subcommand> &subcommands() {
          2,
          anyNumber,
          "call D METHOD [NAME=VALUE]...",
-         "calls a command and prints the result; VALUE is JSON, else a string",
+         "calls a command and prints the result; VALUE is JSON, else a string; A.B=VALUE: member B of A",
          {W::Daemon, W::Method, W::Parameter},
          "",
          call,

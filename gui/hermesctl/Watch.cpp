@@ -1,9 +1,12 @@
 // hermesctl watch: the messages of a topic.
+#include "common/platform/Console.h"
+#include "common/progress/Progress.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/CsvTable.h"
 
 #include <QEventLoop>
 #include <QJsonArray>
+#include <optional>
 
 namespace hermes::ctl {
 namespace {
@@ -22,6 +25,9 @@ public:
             if (const auto begun = beginTable(); !begun)
                 return begun;
         }
+        const bool isSeen = arguments_.out.isEmpty() && isTerminal(StandardStream::Output);
+        if (arguments_.count > 0 && !isSeen)
+            progress_.emplace("message");
         Result<void> result;
         QObject::connect(&client_, &Client::subscriptionFailed, &loop_, [&](int, const RpcError &error) {
             result = error;
@@ -36,6 +42,7 @@ public:
         client_.subscribe(arguments_.words.at(1), options,
                           [this](const TopicUpdate &update) { onMessage(update); });
         runStream(loop_);
+        progress_.reset();
         tellWhatIsMissing();
         return result;
     }
@@ -75,6 +82,8 @@ private:
         arguments_.csv ? printRow(update) : printMessage(update);
         if (readerIsGone() || (arguments_.count > 0 && --left_ == 0))
             loop_.quit();
+        if (progress_)
+            progress_->update(arguments_.count - left_, arguments_.count);
     }
 
     void printRow(const TopicUpdate &update) {
@@ -112,6 +121,7 @@ private:
     QEventLoop loop_;
     CsvTable table_{{}};
     int left_;
+    std::optional<Progress> progress_;
     bool hasHeader_ = false;
     bool isLost_ = false;
     quint64 dropped_ = 0; ///< over this connection

@@ -1,8 +1,10 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
+#include "common/help/HelpText.h"
 #include "common/platform/Console.h"
 #include "common/platform/Pipes.h"
 #include "common/platform/PrivateFiles.h"
+#include "common/progress/Progress.h"
 #include "gui/hermesctl/Advice.h"
 #include "gui/hermesctl/Completion.h"
 #include "gui/hermesctl/Nearest.h"
@@ -120,6 +122,8 @@ int run(Arguments arguments) {
     if (arguments.csv && arguments.json)
         return usageError(QStringLiteral("--csv and --json exclude each other"), true);
     setJsonNotes(arguments.json);
+    if (arguments.json)
+        Progress::useJson();
     if (!arguments.out.isEmpty()) {
         if (const auto opened = setOutput(arguments.out, arguments.force); !opened)
             return finish(opened, {}, arguments);
@@ -151,7 +155,7 @@ int main(int argc, char **argv) {
         return usageError(arguments.error().message, list.contains(QStringLiteral("--json")));
     int status = 0;
     if (arguments->help)
-        printLine(helpText().trimmed());
+        printLine(QString::fromStdString(fittedHelp(helpText().toStdString())).trimmed());
     else if (arguments->version)
         printVersion(arguments->json);
     else if (arguments->command.isEmpty())

@@ -50,7 +50,7 @@ void callAll(const std::vector<SessionCall> &calls, const QString &method, std::
     const auto round = std::make_shared<Round>();
     round->context = context;
     round->done = done;
-    const Error gone(ErrorCode::Disconnected, method + ": the connection was given up");
+    const Error gone(ErrorCode::Disconnected, method + ": the connection was closed");
     for (const SessionCall &call : calls)
         round->replies.push_back({call.member, gone});
     for (std::size_t i = 0; i < calls.size(); ++i) {

@@ -13,11 +13,11 @@ Result<QJsonObject> wheelSettings(const QJsonObject &now, const std::map<QString
         if (what.wheel.isEmpty())
             return Error(
                 ErrorCode::DeviceFault,
-                QString("no wheel turned for %1: look at the power and the wires of that motor").arg(told));
+                QString("no wheel turned for %1: check the power and the wires of that motor").arg(told));
         if (wheels.contains(what.wheel))
             return Error(
                 ErrorCode::DeviceFault,
-                QString("%1 turned for two of the wheels: the settings cannot be told").arg(what.wheel));
+                QString("%1 turned for two of the wheels: no settings follow from that").arg(what.wheel));
         QJsonObject wheel = now[told].toObject();
         wheel["reversed"] = wheel["reversed"].toBool() != what.isBackward;
         wheels[what.wheel] = wheel;

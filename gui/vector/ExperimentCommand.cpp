@@ -1,7 +1,7 @@
 #include "gui/vector/ExperimentCommand.h"
 
+#include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
-#include "gui/vector/Progress.h"
 
 #include <algorithm>
 #include <map>
@@ -136,8 +136,13 @@ void ExperimentCommand::refuseUnused(const CLI::App &sub) const {
 void ExperimentCommand::run() {
     OutputSet files(force);
     files.makeFolder(folder);
-    Progress progress("run");
-    options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
+    std::optional<Progress> progress; // once the work has begun: reading tells its own
+    if (!options.progress)
+        options.progress = [&](std::size_t done, std::size_t all) {
+            if (!progress)
+                progress.emplace(name + ", step");
+            progress->update(double(done), double(all));
+        };
     pairOptions.progress = options.progress;
     pairOptions.every = every[0];
     std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done
@@ -190,12 +195,14 @@ void addExperimentCommand(CLI::App &app) {
         ->type_name("N");
     sub->add_flag("--no-guess", command->noGuess,
                   "pairs: match by the two scans alone, without odometry or any other estimate");
-    sub->add_option(
-           "--half", command->pairOptions.half,
+    sub->add_option_function<std::string>(
+           "--half",
+           [command](const std::string &half) {
+               command->pairOptions.half = half == "1" ? PairHalf::First : PairHalf::Second;
+           },
            "pairs, calibration: only the first or the second half, blocks of 50 pairs in turn: to choose "
            "parameters on one and judge them on the other")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, PairHalf>{{"1", PairHalf::First}, {"2", PairHalf::Second}}))
+        ->check(CLI::IsMember({"1", "2"}))
         ->type_name("1|2");
     sub->add_option("--draw", command->pictures,
                     "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")

@@ -1,5 +1,6 @@
 #include "gui/vector/ExperimentCommand.h"
 
+#include "common/progress/Progress.h"
 #include "common/world/WorldFile.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
@@ -93,13 +94,20 @@ void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std
     document.figures(figures);
     document.finish();
     bool drawn = true;
+    Progress progress("drawing, figure");
+    const std::size_t all = figures.plots.size() + figures.surfaces.size() + figures.spaces.size();
+    std::size_t done = 0;
+    const auto drawOne = [&](const auto &figure) {
+        drawn = drawn && draw(files, suffix, figure);
+        progress.update(double(++done), double(all));
+    };
     for (const Plot &plot : figures.plots)
         if (vectorlib::latex::boxOf(plot)) // else there is nothing to show, as the document says
-            drawn = drawn && draw(files, suffix, plot);
+            drawOne(plot);
     for (const Surface &surface : figures.surfaces)
-        drawn = drawn && draw(files, suffix, surface);
+        drawOne(surface);
     for (const SpacePlot &space : figures.spaces)
-        drawn = drawn && draw(files, suffix, space);
+        drawOne(space);
     if (!drawn)
         std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX files\n";
 }

@@ -40,11 +40,19 @@ void ExperimentCommand::pairs(OutputSet &files, std::ostream &csv, const vectorl
 void ExperimentCommand::calibration(OutputSet &files, std::ostream &csv) const {
     if (logs.empty())
         readLog(); // tells what is missing
+    std::vector<vectorlib::CarmenLog> read;
+    std::vector<PairsOptions> of(logs.size(), pairOptions);
+    std::vector<std::size_t> steps; // points of the scans: the more there are, the longer a pair takes
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+        of[i].every = every[std::min(i, every.size() - 1)];
+        read.push_back(readPairs(logs[i], of[i]));
+        steps.push_back(of[i].pairsOf(read[i]).size() * read[i].scans.front().ranges.size());
+    }
+    ProgressParts parts(options.progress, steps);
     std::vector<GlobalPairResult> results;
     for (std::size_t i = 0; i < logs.size(); ++i) {
-        PairsOptions of = pairOptions;
-        of.every = every[std::min(i, every.size() - 1)];
-        for (GlobalPairResult &pair : globalPairsExperiment(readPairs(logs[i], of), of))
+        of[i].progress = parts.next();
+        for (GlobalPairResult &pair : globalPairsExperiment(read[i], of[i]))
             results.push_back(std::move(pair));
     }
     const Calibration found = calibrationOf(results);
@@ -66,8 +74,14 @@ void ExperimentCommand::places(OutputSet &files, std::ostream &csv) const {
 
 void ExperimentCommand::drawnPlaces(OutputSet &files, std::ostream &csv) const {
     std::ostream &json = open(files, ".json");
-    std::vector<PlaceTrial> trials = drawnPlacesExperiment(allWorlds(), options);
-    const std::vector<PlaceTrial> towns = townsExperiment(options);
+    const std::vector<World> found = allWorlds();
+    ProgressParts parts(options.progress,
+                        {stepsOfDrawnPlaces(found.size(), options.runs), stepsOfTowns(options.runs)});
+    ExperimentOptions each = options;
+    each.progress = parts.next();
+    std::vector<PlaceTrial> trials = drawnPlacesExperiment(found, each);
+    each.progress = parts.next();
+    const std::vector<PlaceTrial> towns = townsExperiment(each);
     writeCsv(csv, trials);
     tell(json, {{"sets", summaryBySet(trials)},
                 {"walls_of_towns", summaryBySet(towns)},
@@ -90,15 +104,25 @@ void ExperimentCommand::placeTrust(OutputSet &files, std::ostream &csv) const {
 
 void ExperimentCommand::poseTrust(OutputSet &files, std::ostream &csv) const {
     std::ostream &json = open(files, ".json");
-    std::vector<PoseTrial> trials = posesOfDrawnDrives(options.seed, options.runs, options.progress);
-    const auto append = [&trials](const std::vector<std::string> &of, bool strange) {
-        const std::vector<std::string> names = setNames(of);
-        for (std::size_t i = 0; i < of.size(); ++i)
-            for (PoseTrial &trial : posesOfLog(names[i], readLog(of[i]), strange))
-                trials.push_back(std::move(trial));
+    struct NamedLog {
+        std::string name;
+        bool isStrange;
+        vectorlib::CarmenLog log;
     };
-    append(logs, false);
-    append(others, true);
+    std::vector<NamedLog> read;
+    std::vector<std::size_t> steps{countPoses(options.runs)};
+    for (const auto *of : {&logs, &others}) {
+        const std::vector<std::string> names = setNames(*of);
+        for (std::size_t i = 0; i < of->size(); ++i) {
+            read.push_back({names[i], of == &others, readLog((*of)[i])});
+            steps.push_back(countPoses(read.back().log));
+        }
+    }
+    ProgressParts parts(options.progress, steps);
+    std::vector<PoseTrial> trials = posesOfDrawnDrives(options.seed, options.runs, parts.next());
+    for (const NamedLog &of : read)
+        for (PoseTrial &trial : posesOfLog(of.name, of.log, of.isStrange, parts.next()))
+            trials.push_back(std::move(trial));
     writeCsv(csv, trials);
     tell(json, poseTrustSummary(trials));
 }

@@ -15,8 +15,14 @@ void ExperimentCommand::accuracy(OutputSet &files, std::ostream &csv) const {
 
 void ExperimentCommand::dispersion(OutputSet &files, std::ostream &csv) const {
     const World square = world("cutsquare"), pillars = world("pillars");
-    const auto rows = registrationExperiment(square, scansOf({100, 300, 1000}, sigmas), options);
-    const auto hard = registrationExperiment(pillars, scansOf({300}, {0.05}), options);
+    const RegistrationCase ofSquare = scansOf({100, 300, 1000}, sigmas), ofPillars = scansOf({300}, {0.05});
+    ProgressParts parts(options.progress,
+                        {stepsOf(square, ofSquare, options), stepsOf(pillars, ofPillars, options)});
+    ExperimentOptions each = options;
+    each.progress = parts.next();
+    const auto rows = registrationExperiment(square, ofSquare, each);
+    each.progress = parts.next();
+    const auto hard = registrationExperiment(pillars, ofPillars, each);
     std::vector<RegistrationRow> all = rows;
     all.insert(all.end(), hard.begin(), hard.end());
     writeCsv(csv, all);
@@ -36,9 +42,17 @@ void ExperimentCommand::dispersion(OutputSet &files, std::ostream &csv) const {
 }
 
 void ExperimentCommand::weighting(OutputSet &files, std::ostream &csv) const {
+    const World places[] = {world("cutsquare"), world("oblique"), world("pillars")};
+    const RegistrationCase which = scansOf(manyPoints, sigmas);
+    std::vector<std::size_t> steps;
+    for (const World &place : places)
+        steps.push_back(stepsOf(place, which, options));
+    ProgressParts parts(options.progress, steps);
+    ExperimentOptions each = options;
     std::vector<RegistrationRow> rows;
-    for (const char *place : {"cutsquare", "oblique", "pillars"}) {
-        const auto some = registrationExperiment(world(place), scansOf(manyPoints, sigmas), options);
+    for (const World &place : places) {
+        each.progress = parts.next();
+        const auto some = registrationExperiment(place, which, each);
         rows.insert(rows.end(), some.begin(), some.end());
     }
     writeCsv(csv, rows);

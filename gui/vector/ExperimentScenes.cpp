@@ -114,7 +114,8 @@ void ExperimentCommand::hausdorffCriteria(OutputSet &files, std::ostream &csv) c
         }
     writeCsv(csv, all, "criterion");
     constexpr int trials = 1000;
-    const std::vector<CriterionProperty> properties = criterionProperties(options.seed, trials);
+    const std::vector<CriterionProperty> properties =
+        criterionProperties(options.seed, trials, options.progress);
     tell(open(files, ".json"), summaryOf(properties));
     draw(files, {{}, all, {tableOf(properties)}});
 }

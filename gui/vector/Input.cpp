@@ -1,6 +1,7 @@
 #include "gui/vector/Input.h"
 
 #include "common/platform/ReadableFile.h"
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 
 #include <zlib.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 namespace hermes::vector {
@@ -17,8 +19,10 @@ namespace fs = std::filesystem;
 /// Bytes of a file through zlib, which passes on what is not compressed.
 class Input::Buffer : public std::streambuf {
 public:
-    explicit Buffer(int file)
-        : file_(gzdopen(file, "rb")) {
+    /// bytes: of the file, 0 when that is not known.
+    Buffer(int file, std::uintmax_t bytes)
+        : file_(gzdopen(file, "rb"))
+        , kilobytes_(double(bytes) / 1000) {
         if (file_ == nullptr)
             throw std::bad_alloc();
         gzbuffer(file_, 1 << 17);
@@ -43,11 +47,17 @@ protected:
         if (count < 0 || (count == 0 && code != Z_OK && code != Z_STREAM_END))
             throw Failure("damaged data");
         setg(block_.data(), block_.data(), block_.data() + count);
+        if (progress_) // of a compressed file its own bytes count
+            progress_->update(count == 0 ? kilobytes_ : double(gzoffset(file_)) / 1000, kilobytes_);
+        if (count == 0)
+            progress_.reset();
         return count == 0 ? traits_type::eof() : traits_type::to_int_type(block_[0]);
     }
 
 private:
     gzFile file_;
+    const double kilobytes_;
+    std::optional<Progress> progress_{std::in_place, "reading, kB"};
     std::array<char, 1 << 16> block_;
 };
 
@@ -65,6 +75,13 @@ int descriptorOf(const std::string &path) {
     return *file;
 }
 
+/// 0 of what is no file, as a pipe.
+std::uintmax_t sizeOf(const std::string &path) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(fs::u8path(path), error);
+    return error ? 0 : size;
+}
+
 std::string lowerCase(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
@@ -79,7 +96,7 @@ bool endsWith(const std::string &text, const std::string &end) {
 
 Input::Input(const std::string &path)
     : name_(path == "-" ? "standard input" : path)
-    , buffer_(std::make_unique<Buffer>(descriptorOf(path)))
+    , buffer_(std::make_unique<Buffer>(descriptorOf(path), sizeOf(path)))
     , stream_(buffer_.get()) {}
 
 Input::~Input() = default;
@@ -111,6 +128,37 @@ std::string Input::readAll(std::size_t limit) {
             ": found input that ends or breaks off too early, expected input that can be read to its end");
     return text;
 }
+
+/// Hands the text out in blocks.
+class TextStream::Buffer : public std::streambuf {
+public:
+    explicit Buffer(std::string text)
+        : text_(std::move(text)) {}
+
+protected:
+    int_type underflow() override {
+        constexpr std::size_t block = 1 << 16;
+        char *const begin = text_.data() + at_;
+        const std::size_t count = std::min(block, text_.size() - at_);
+        progress_.update(double(at_) / 1000, double(text_.size()) / 1000);
+        at_ += count;
+        setg(begin, begin, begin + count);
+        return count == 0 ? traits_type::eof() : traits_type::to_int_type(*begin);
+    }
+
+private:
+    std::string text_;
+    std::size_t at_ = 0;
+    Progress progress_{"reading, kB"};
+};
+
+TextStream::TextStream(std::string text)
+    : std::istream(nullptr)
+    , buffer_(std::make_unique<Buffer>(std::move(text))) {
+    rdbuf(buffer_.get());
+}
+
+TextStream::~TextStream() = default;
 
 bool hasExtension(const std::string &path, const std::string &extension) {
     std::string lower = lowerCase(path);

@@ -8,7 +8,7 @@
 namespace hermes::vector {
 
 /// A file to read, plain or gzip-compressed, or standard input for `-`. A file that breaks off in the middle
-/// of its compressed data makes the stream bad instead of ending it.
+/// of its compressed data makes the stream bad instead of ending it. Reading tells its progress.
 class Input {
 public:
     /// Throws Failure when there is no such file or it is a folder.
@@ -29,6 +29,17 @@ private:
     std::string name_;
     std::unique_ptr<Buffer> buffer_;
     std::istream stream_;
+};
+
+/// A text as a stream, which tells how far it is read.
+class TextStream : public std::istream {
+public:
+    explicit TextStream(std::string text);
+    ~TextStream() override;
+
+private:
+    class Buffer;
+    std::unique_ptr<Buffer> buffer_;
 };
 
 /// Whether the path ends with the extension (with dot, lower case), a further .gz left aside; case does not

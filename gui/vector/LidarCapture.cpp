@@ -74,15 +74,11 @@ LidarCapture::LidarCapture(Input &input, const SensorOptions &options, velodyne:
         throw Failure(opened.error());
 }
 
-std::string LidarCapture::read(velodyne::TurnAssembler &assembler,
-                               const std::function<void(std::uint64_t)> &progress) {
+std::string LidarCapture::read(velodyne::TurnAssembler &assembler) {
     Datagram datagram;
     PcapReader::Next next;
-    while ((next = reader_.next(datagram)) == PcapReader::Next::Datagram) {
+    while ((next = reader_.next(datagram)) == PcapReader::Next::Datagram)
         stream_.take(datagram, {&assembler});
-        if (progress)
-            progress(reader_.counts().records);
-    }
     if (next == PcapReader::Next::Failed)
         throw Failure(reader_.error());
     assembler.finish();

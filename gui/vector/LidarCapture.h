@@ -6,7 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include <functional>
+#include <optional>
+#include <string>
 
 namespace hermes::vector {
 
@@ -25,12 +26,10 @@ public:
     /// capture that can be read.
     LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model = velodyne::Model::Blank);
 
-    /// Feeds all of them to an assembler and lets the sensor's position packets tell the hour; progress gets
-    /// the number of records read. Gives a message about who else sent data packets, or nothing. Throws
-    /// Failure where the capture is damaged, after feeding what came before, and when the sensor is not in
-    /// it.
-    std::string read(velodyne::TurnAssembler &assembler,
-                     const std::function<void(std::uint64_t)> &progress = {});
+    /// Feeds all of them to an assembler and lets the sensor's position packets tell the hour. Gives a
+    /// message about who else sent data packets, or nothing. Throws Failure where the capture is damaged,
+    /// after feeding what came before, and when the sensor is not in it.
+    std::string read(velodyne::TurnAssembler &assembler);
 
 private:
     std::string notice(const velodyne::PacketCounts &counts) const;

@@ -1,9 +1,10 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/LocalizeRun.h"
 #include "gui/vector/MapFiles.h"
 #include "gui/vector/MapOptions.h"
+#include "gui/vector/MapProgress.h"
 #include "gui/vector/MapRun.h"
-#include "gui/vector/Progress.h"
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/G2o.h"
 #include "vectorlib/io/MapCsv.h"
@@ -52,9 +53,14 @@ private:
         std::ostream *svgFile = openIfNamed(files, options.svg);
         std::ostream &summaryFile = files.open(options.summary);
 
-        std::optional<Progress> progress("finishing");
-        const MapSourceReport report = readScans("tracking, scan", [&](MapScan &scan) { run.take(scan); });
-        run.finish([&](const char *stage) { progress->tell(stage); });
+        std::optional<MapProgress> progress(run.closesLoops);
+        const MapSourceReport report =
+            readMapScans(options.source, [&](MapScan &scan, std::size_t number, std::size_t total) {
+                run.take(scan);
+                progress->track(number + 1, total);
+            });
+        run.finish([&](const char *stage) { progress->begin(stage); },
+                   [&](std::size_t done, std::size_t all) { progress->finish(done, all); });
         progress.reset();
         const vectorlib::MapDrawing drawing = {title(": map of ", run.trajectory().size()), run.segments(),
                                                run.trajectory(), run.reference()};
@@ -93,8 +99,13 @@ private:
         std::ostream *trajectoryFile = openIfNamed(files, options.outTrajectory);
         std::ostream *svgFile = openIfNamed(files, options.svg);
         std::ostream &summaryFile = files.open(options.summary);
+        Progress progress("finding, scan");
         const MapSourceReport report =
-            readScans("finding, scan", [&](const MapScan &scan) { run.take(scan); });
+            readMapScans(options.source, [&](const MapScan &scan, std::size_t number, std::size_t total) {
+                run.take(scan);
+                if (total > 0) // a capture tells how far it is read
+                    progress.update(double(number + 1), double(total));
+            });
         report.warn(std::cerr);
         run.finish(options.source.path);
         nlohmann::ordered_json json = run.summary();
@@ -143,14 +154,6 @@ private:
         tracker.builder.extract.vectorize.settings.sigma = options.sigma;
     }
     void setUp(vectorlib::MapLocalizer &localizer) const { setUp(localizer.tracker); }
-    template <typename Take>
-    MapSourceReport readScans(const char *phase, Take take) const {
-        Progress progress(phase);
-        return readMapScans(options.source, [&](MapScan &scan, std::size_t number, std::size_t total) {
-            take(scan);
-            progress.update(number + 1, total);
-        });
-    }
     static std::ostream *openIfNamed(OutputSet &files, const std::string &path) {
         return path.empty() ? nullptr : &files.open(path);
     }

@@ -1,3 +1,4 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/MapFiles.h"
 #include "gui/vector/Options.h"
@@ -53,6 +54,10 @@ private:
 
     MapAlignment align(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
         vectorlib::MapAligner aligner;
+        Progress progress("searching, place");
+        aligner.progress = [&](std::size_t done, std::size_t all) {
+            progress.update(double(done), double(all));
+        };
         const MapAlignment found = aligner(map, added);
         const auto count = [](std::size_t n) { return std::to_string(n); };
         const std::string of = count(found.places) + " places of the second map ";
@@ -129,7 +134,7 @@ void addMapMergeCommand(CLI::App &app) {
         ->check(MapFile::knownName())
         ->type_name("FILE");
     sub->add_option("--at", command->at,
-                    "Where B's frame lies in A's, about: within 0.5 m and 0.15 rad; not given: it is sought")
+                    "Where B's frame lies in A's, to within 0.5 m and 0.15 rad; not given: it is searched")
         ->check(poseText())
         ->type_name("X,Y,THETA");
     sub->add_option("--summary", command->summary,

@@ -55,35 +55,40 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     closeSeconds_ += secondsSince(begin);
 }
 
-void MapRun::finish(const std::function<void(const char *)> &tell) {
+void MapRun::finish(const std::function<void(const char *)> &begin, const ProgressSink &progress) {
     if (!closesLoops)
         return;
-    const auto begin = Clock::now();
-    tell("closing loops");
-    drive_.loops.correct();
+    const auto begun = Clock::now();
+    // Parts of the time, about; the last one is the review.
+    constexpr std::size_t correct = 10, refine = 30, rebuildMap = 40, allParts = 100;
+    ProgressParts parts(progress, {correct, refine, rebuildMap, allParts - correct - refine - rebuildMap});
+    begin("closing loops");
+    drive_.loops.correct(parts.next());
     std::vector<vectorlib::Pose2D> found = drive_.loops.poses();
     if (!found.empty())
         parts_ = divide_(drive_, found);
     if (drive_.loops.counts().closed > 0 || parts_.size() > 1)
-        rebuild(std::move(found), tell);
-    closeSeconds_ += secondsSince(begin);
+        rebuild(std::move(found), begin, parts);
+    closeSeconds_ += secondsSince(begun);
     const auto closed = Clock::now();
-    tell("reviewing the walls");
+    begin("reviewing the walls");
     reviewed_ = drive_.review(tracker.builder.map, poses());
     reviewSeconds_ = secondsSince(closed);
+    progress(allParts, allParts);
 }
 
-void MapRun::rebuild(std::vector<vectorlib::Pose2D> refined, const std::function<void(const char *)> &tell) {
+void MapRun::rebuild(std::vector<vectorlib::Pose2D> refined, const std::function<void(const char *)> &begin,
+                     ProgressParts &parts) {
     vectorlib::WallIds ids;
     ids.remember(tracker.builder.map, {drive_.edges(), poses()});
-    tell("refining the poses");
-    isRefined_ = refine_(refined, drive_.loopsOfScans());
+    begin("refining the poses");
+    isRefined_ = refine_(refined, drive_.loopsOfScans(), parts.next());
     for (std::size_t i = 0; i < refined.size(); ++i)
         trajectory_[i].pose = refined[i];
     for (std::size_t i = 1; i < parts_.size(); ++i)
         trajectory_[parts_[i].begin].isApart = true;
-    tell("making the map anew");
-    drive_.rebuild(tracker.builder, refined);
+    begin("making the map anew");
+    drive_.rebuild(tracker.builder, refined, parts.next());
     ids.keep(tracker.builder.map, {drive_.edges(), refined});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
+#include "gui/vector/ProgressParts.h"
 #include "vectorlib/graph/DriveParts.h"
 #include "vectorlib/graph/DriveRefiner.h"
 #include "vectorlib/graph/MappedDrive.h"
@@ -8,8 +9,6 @@
 #include "vectorlib/mapping/ScanTracker.h"
 
 #include <nlohmann/json.hpp>
-
-#include <functional>
 
 namespace hermes::vector {
 
@@ -22,9 +21,9 @@ public:
     /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
     /// After the last scan, unless it is told not to close loops: where there were any, moves and refines the
-    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map. `tell` takes what
-    /// it does now.
-    void finish(const std::function<void(const char *)> &tell);
+    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map. `begin` takes what
+    /// it does next.
+    void finish(const std::function<void(const char *)> &begin, const ProgressSink &progress);
 
     /// For people: where the way is not known, a line each; nothing where the drive never broke.
     void warnOfBreaks(std::ostream &out) const;
@@ -44,7 +43,8 @@ public:
 private:
     nlohmann::ordered_json errors() const;
     void remember(const MapScan &scan, const vectorlib::ScanReport &report);
-    void rebuild(std::vector<vectorlib::Pose2D> refined, const std::function<void(const char *)> &tell);
+    void rebuild(std::vector<vectorlib::Pose2D> refined, const std::function<void(const char *)> &begin,
+                 ProgressParts &parts);
     nlohmann::ordered_json parts() const;
     std::vector<vectorlib::Pose2D> poses() const;
     nlohmann::ordered_json twins() const;

@@ -98,11 +98,30 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
     return {};
 }
 
+/// Options that say nothing of what is read.
+void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
+    const auto refuse = [&options](const char *option, const char *what) {
+        throw CLI::ValidationError(option,
+                                   std::string("only of a ") + what + ", and " + options.path + " is none");
+    };
+    if (!isCapture && options.sensor.port)
+        refuse("--port", "capture");
+    if (!isCapture && !options.sensor.sender.empty())
+        refuse("--sender", "capture");
+    if (!isLog && options.corrected)
+        refuse("--corrected", "CARMEN log");
+    if (!isLog && options.skipDamaged)
+        refuse("--skip-damaged", "CARMEN log");
+}
+
 MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
     std::error_code ignored;
-    if (fs::is_directory(fs::u8path(options.path), ignored))
+    if (fs::is_directory(fs::u8path(options.path), ignored)) {
+        refuseUnused(options, false, false);
         return readFolder(options, sink);
+    }
     Input input(options.path);
+    refuseUnused(options, input.isCapture(), !input.isCapture());
     return input.isCapture() ? readCapture(input, options, sink) : readLog(input, options, sink);
 }
 

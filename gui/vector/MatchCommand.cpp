@@ -194,9 +194,9 @@ struct MatchCommand {
 void addMatchCommand(CLI::App &app) {
     auto command = std::make_shared<MatchCommand>();
     CLI::App *sub = app.add_subcommand(
-        "match", "Find the motion between two scans, or the place of a scan in a map, without known partners "
-                 "(JSON). Taken for granted: both show the same place; scans of different places that look "
-                 "alike match, too");
+        "match",
+        "Find the motion between two scans, or the place of a scan in a map, without known partners "
+        "(JSON). Both must show the same place: scans of different places that look alike match, too");
     const std::string kinds = "points (CSV x,y or ascii PCD), segments (CSV x1,y1,x2,y2)";
     sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
         ->required();

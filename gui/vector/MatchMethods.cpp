@@ -1,6 +1,6 @@
 #include "gui/vector/MatchMethods.h"
 
-#include "gui/vector/Progress.h"
+#include "common/progress/Progress.h"
 #include "vectorlib/correspondence/SolutionCovariance.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
@@ -87,9 +87,9 @@ Matched matchedOf(const GlobalPairMatch &match, const vectorlib::GlobalPairMatch
     result.outcome = outcomeOf(match.verdict);
     result.reason = describe(match.verdict);
     SegmentsUnderMotion segments(fixed, moving);
-    Progress progress("solution");
+    Progress progress("comparing segments, solution");
+    progress.update(0, double(match.solutions.size()));
     for (const vectorlib::GlobalPairSolution &s : match.solutions) {
-        progress.update(result.solutions.size() + 1, match.solutions.size());
         const bool best = result.solutions.empty();
         const std::string verdict = best ? result.reason : "another solution fits better";
         result.solutions.push_back(
@@ -99,6 +99,7 @@ Matched matchedOf(const GlobalPairMatch &match, const vectorlib::GlobalPairMatch
             result.potentialPairs = segments.potentialPairs;
             result.combinations = segments.combinations;
         }
+        progress.update(double(result.solutions.size()), double(match.solutions.size()));
     }
     return result;
 }

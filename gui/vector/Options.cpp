@@ -1,10 +1,12 @@
 #include "gui/vector/Options.h"
 
+#include "common/AngleText.h"
 #include "vectorlib/io/TextInput.h"
 
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <sstream>
 
 namespace hermes::vector {
@@ -80,8 +82,12 @@ CLI::Validator poseText() {
 vectorlib::Pose2D parsePose(const std::string &text) {
     std::vector<std::string_view> fields;
     vectorlib::splitCommas(text, fields);
-    return {vectorlib::parseNumber(fields.at(0)).value(), vectorlib::parseNumber(fields.at(1)).value(),
-            vectorlib::parseNumber(fields.at(2)).value()};
+    const vectorlib::Pose2D pose{vectorlib::parseNumber(fields.at(0)).value(),
+                                 vectorlib::parseNumber(fields.at(1)).value(),
+                                 vectorlib::parseNumber(fields.at(2)).value()};
+    if (isBeyondTurn(pose.theta))
+        std::cerr << "hermes-vector: " << text << ": " << beyondTurnText(pose.theta) << '\n';
+    return pose;
 }
 
 void OutputOptions::addTo(CLI::App &command, bool withPictures) {

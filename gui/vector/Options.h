@@ -32,7 +32,8 @@ CLI::Validator aboveZero();
 CLI::Validator pictureName(const std::string &format = ".svg");
 /// Three finite numbers `x,y,theta`.
 CLI::Validator poseText();
-/// The pose in a text that poseText() has let through; metres, radians.
+/// The pose in a text that poseText() has let through; metres, radians. Warns on stderr of a heading beyond a
+/// full turn.
 vectorlib::Pose2D parsePose(const std::string &text);
 
 /// The options of segmentation: --k --min-threshold --max-threshold --min-points --coordinates --open.

@@ -5,8 +5,6 @@
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/Pcd.h"
 
-#include <sstream>
-
 namespace hermes::vector {
 
 namespace {
@@ -21,7 +19,7 @@ namespace {
 
 std::vector<vectorlib::Vector2D<double>> loadPoints(const std::string &path) {
     Input input(path);
-    std::istringstream in(readScanText(input, path));
+    TextStream in(readScanText(input, path));
     return valueOrFail(hasExtension(path, ".pcd") ? vectorlib::readPcd<double>(in, input.name())
                                                   : vectorlib::readCsvPoints<double>(in, input.name()));
 }

@@ -42,7 +42,7 @@ struct RegisterCommand {
             p.weight = weightOf(p);
             if (!registration.add(frames.toNear(p)))
                 throw Failure(input.name() +
-                              ": found segments or weights beyond all measure, expected metres");
+                              ": found segments or weights that are far too large, expected metres");
         }
         const vectorlib::Transformation2D t = frames.fromNear(registration.transformation());
         if (!registration.isSolvable())

@@ -1,3 +1,4 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Output.h"
 #include "gui/vector/RelocalizePicture.h"
@@ -58,7 +59,15 @@ struct RelocalizeCommand {
             edges.emplace_back(vectorlib::TlsSums(), s, 0);
         vectorlib::PlaceSearch search;
         search.maxSeconds = seconds;
+        std::optional<Progress> progress("searching, step");
+        double steps = 0;
+        search.progress = [&](std::size_t done, std::size_t all) {
+            steps = double(all);
+            progress->update(double(done), steps);
+        };
         const vectorlib::Relocalized &result = search(slots, edges, seen.points);
+        progress->update(steps, steps);
+        progress.reset();
         Json json = {{"outcome", vectorlib::name(result.outcome)},
                      {"text", result.text()},
                      {"alike", result.alike},
@@ -80,7 +89,7 @@ struct RelocalizeCommand {
 void addRelocalizeCommand(CLI::App &app) {
     auto command = std::make_shared<RelocalizeCommand>();
     CLI::App *sub = app.add_subcommand(
-        "relocalize", "Find where in a whole map a scan was taken, with no idea of its place (JSON)");
+        "relocalize", "Find where in a whole map a scan was taken, without an expected pose (JSON)");
     sub->add_option("MAP", command->map, "A map by hermes-vector map, or segments (CSV x1,y1,x2,y2)")
         ->required();
     sub->add_option("SCAN", command->scan,

@@ -1,7 +1,7 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
-#include "gui/vector/Progress.h"
 #include "gui/vector/SearchOptions.h"
 #include "gui/vector/report/Worlds.h"
 
@@ -27,7 +27,7 @@ struct ReportCommand {
         if (overall + all + number.has_value() != 1)
             throw CLI::ValidationError("--case", "expected one of --case, --all and --overall");
         if (most && !everyCombination)
-            throw CLI::ValidationError("--most", "is of --all-combinations alone");
+            throw CLI::ValidationError("--most", "is only for --all-combinations");
         const std::string as = chosenFormat();
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
@@ -38,8 +38,9 @@ struct ReportCommand {
         } else {
             Progress progress("case");
             const OverallReport report =
-                reportOverall(world.world, settings,
-                              [&](std::size_t done, std::size_t among) { progress.update(done, among); });
+                reportOverall(world.world, settings, [&](std::size_t done, std::size_t among) {
+                    progress.update(double(done), double(among));
+                });
             if (overall)
                 write(out, as, world, settings, report);
             else

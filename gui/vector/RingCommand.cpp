@@ -1,7 +1,6 @@
 #include "gui/vector/Failure.h"
 #include "gui/vector/LidarCapture.h"
 #include "gui/vector/Options.h"
-#include "gui/vector/Progress.h"
 #include "vectorlib/io/Number.h"
 
 #include <iostream>
@@ -52,16 +51,11 @@ struct RingCommand {
         });
         out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
                     : "turn,stamp,azimuth,range,intensity,x,y\n");
-        const std::string otherSensors = read(capture, assembler);
+        const std::string otherSensors = capture.read(assembler);
         if (!otherSensors.empty())
             std::cerr << "hermes-vector: " << otherSensors << '\n';
         report(assembler, turns);
         files.commit();
-    }
-
-    static std::string read(LidarCapture &capture, velodyne::TurnAssembler &assembler) {
-        Progress progress("packet");
-        return capture.read(assembler, [&](std::uint64_t records) { progress.update(records, 0); });
     }
 
     void report(const velodyne::TurnAssembler &assembler, std::uint64_t turns) const {

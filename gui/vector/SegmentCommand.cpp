@@ -1,3 +1,4 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Points.h"
 #include "vectorlib/io/Svg.h"
@@ -22,8 +23,14 @@ struct SegmentCommand {
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation &clusters = segmenter(points);
         out << "index,cluster\n";
-        for (std::size_t i = 0; i < clusters.labels.size(); ++i)
+        const std::size_t rows = clusters.labels.size();
+        std::optional<Progress> progress("writing, row");
+        for (std::size_t i = 0; i < rows; ++i) {
             out << i << ',' << clusters.labels[i] << '\n';
+            if (i % 4096 == 0 || i + 1 == rows)
+                progress->update(double(i + 1), double(rows));
+        }
+        progress.reset();
         if (pictures.areWanted())
             pictures.write(pictureOf(points, clusters));
         files.commit();

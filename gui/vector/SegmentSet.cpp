@@ -66,11 +66,11 @@ void vectorize(SegmentSet &set, const SegmentSetSettings &settings) {
 
 SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &settings) {
     Input input(path);
-    const std::string text = readScanText(input, path);
-    std::istringstream in(text);
+    std::string text = readScanText(input, path);
     SegmentSet set;
     const bool isPcd = hasExtension(path, ".pcd");
     set.kind = isPcd ? Kind::Points : kindOf(text);
+    TextStream in(std::move(text));
     switch (set.kind) {
     case Kind::Points:
         set.points = inOrder(valueOrFail(isPcd ? vectorlib::readPcd<float>(in, input.name())

@@ -26,7 +26,7 @@ struct SimilarityCommand {
         for (const vectorlib::SegmentPair &p : table.pairs)
             if (!criterion.add(frames.toNear(p)))
                 throw Failure(input.name() +
-                              ": found segments or weights beyond all measure, expected metres");
+                              ": found segments or weights that are far too large, expected metres");
         out << "x,y,alpha,criterion\n";
         for (const std::string &text : poses) {
             const vectorlib::Pose2D pose = parsePose(text);
@@ -43,7 +43,7 @@ void addSimilarityCommand(CLI::App &app) {
     auto command = std::make_shared<SimilarityCommand>();
     CLI::App *sub = app.add_subcommand(
         "similarity",
-        "How unlike segments and their known partners are under motions (CSV x,y,alpha,criterion)");
+        "How much segments differ from their known partners under motions (CSV x,y,alpha,criterion)");
     sub->add_option("IN", command->in,
                     "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
         ->required();

@@ -1,3 +1,4 @@
+#include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Points.h"
 #include "gui/vector/Vectorizers.h"
@@ -77,6 +78,8 @@ struct VectorizeCommand {
         std::vector<Row> rows;
         std::vector<Point> part;
         std::size_t without = 0;
+        std::optional<Progress> progress("vectorizing, point");
+        progress->update(0, double(clusters.order.size()));
         for (std::size_t c = 0; c < clusters.size(); ++c) {
             const int *order = clusters.order.data() + clusters.starts[c];
             part.clear();
@@ -90,7 +93,9 @@ struct VectorizeCommand {
                 rows.push_back(
                     {static_cast<int>(c), order[l.first], order[l.last], l.line, l.sigma, l.segment});
             }
+            progress->update(double(clusters.starts[c + 1]), double(clusters.order.size()));
         }
+        progress.reset();
         if (without > 0)
             std::cerr << "hermes-vector: left out " << without
                       << " interval(s) of points that have no direction\n";

@@ -1,7 +1,9 @@
+#include "common/help/HelpText.h"
 #include "common/platform/Console.h"
 #include "common/platform/Pipes.h"
 #include "common/platform/Program.h"
 #include "common/platform/TemporaryNames.h"
+#include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
 
@@ -15,6 +17,36 @@ namespace {
 
 constexpr int failed = 1;
 constexpr int wrongUsage = 2;
+
+/// The first thing of a command line that nobody knows; an option, if there is one.
+std::string unknownIn(const CLI::App &app) {
+    const std::vector<std::string> all = app.remaining(true);
+    const auto option = std::find_if(all.begin(), all.end(), [](const auto &one) { return one[0] == '-'; });
+    if (option != all.end())
+        return "unknown option " + *option;
+    return (app.get_subcommands().empty() ? "unknown command " : "unexpected argument ") + all.front();
+}
+
+/// What is wrong with a command line, where CLI11 tells it in its own terms.
+std::string textOf(const CLI::ParseError &error, const CLI::App &app) {
+    const std::string text = error.what(), name = text.substr(0, text.find(':'));
+    const std::string most = ": At Most 1 required but received ", required = ": 1 required ",
+                      missing = " missing";
+    if (dynamic_cast<const CLI::ExtrasError *>(&error) != nullptr)
+        return unknownIn(app);
+    if (text.find(required) != std::string::npos && text.size() > missing.size())
+        return name + ": a value is missing, expected " +
+               text.substr(name.size() + required.size(),
+                           text.size() - name.size() - required.size() - missing.size());
+    if (text.find(most) == std::string::npos)
+        return text;
+    std::string names;
+    const auto commands = app.get_subcommands();
+    for (const std::string &one : commands.front()->get_option(name)->get_lnames())
+        names += (names.empty() ? "--" : " or --") + one;
+    return (names.empty() ? name : names) + ": given " + text.substr(name.size() + most.size()) +
+           " times, expected once";
+}
 
 } // namespace
 
@@ -40,6 +72,10 @@ int main(int argc, char **argv) {
     addRingCommand(app);
     addExperimentCommand(app);
     addReportCommand(app);
+    for (CLI::App *command : app.get_subcommands({}))
+        command->add_flag_callback(
+            "--json", Progress::useJson,
+            "Tell the progress of long work as JSON, one object a line, on standard error, terminal or not");
     removeTemporariesOnSignals();
     outliveClosedPipes();
     try {
@@ -48,11 +84,13 @@ int main(int argc, char **argv) {
         app.parse(std::move(arguments));
         if (app.get_subcommands().empty())
             throw CLI::RequiredError("A subcommand");
+    } catch (const CLI::CallForHelp &) {
+        std::cout << fittedHelp(app.help());
     } catch (const CLI::ParseError &e) {
         if (e.get_exit_code() == int(CLI::ExitCodes::Success))
             return app.exit(e); // prints the help or the version
         const auto commands = app.get_subcommands();
-        std::cerr << "hermes-vector: " << e.what() << "\nSee hermes-vector "
+        std::cerr << "hermes-vector: " << textOf(e, app) << "\nSee hermes-vector "
                   << (commands.empty() ? "" : commands.front()->get_name() + ' ') << "--help.\n";
         return wrongUsage;
     } catch (const Failure &e) {

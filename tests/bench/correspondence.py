@@ -1,6 +1,6 @@
 """The tables of the benchmark correspondence."""
 from measure import medians
-from tables import markdown, slope, verdict
+from tables import slope, verdict
 
 # Microseconds, at most.
 VIEW_GOALS = {("expected view, short edges", "1000"): 300, ("expected view, long edges", "1000"): 300,
@@ -26,7 +26,7 @@ def view_table(rows):
     median = cases[len(cases) // 2]
     body.append((PILLARS, f"median of {len(cases)}", f"{median:.1f}", f"under {PILLARS_GOAL} {verdict(median < PILLARS_GOAL)}"))
     body.append(("", "slowest", f"{cases[-1]:.1f}", ""))
-    return markdown(("what", "size", "us", "goal"), body)
+    return [("what", "size", "us", "goal"), *body]
 
 
 def pair_table(rows):
@@ -42,8 +42,7 @@ def pair_table(rows):
         body.append((f"{what}: {method}", f"{c['pairs']:.0f}",
                      *(f"{100 * c[key]:.1f} %" for key in ("within_10cm_2deg", "within_5cm_2deg", "believed", "far_wrong_believed")),
                      f"{c['median_us']:.0f}", f"{c['p99_us']:.0f}", f"{c['median_us'] / ours['median_us']:.2f}", goal))
-    return markdown(("pairs: method", "pairs", "10 cm, 2 deg", "5 cm, 2 deg", "believed", "far wrong", "us a pair", "99 %",
-                     f"to {OURS}", "goal"), body)
+    return [("pairs: method", "pairs", "10 cm, 2 deg", "5 cm, 2 deg", "believed", "far wrong", "us a pair", "99 %", f"to {OURS}", "goal"), *body]
 
 
 def place_table(rows):
@@ -59,11 +58,11 @@ def place_table(rows):
         points = [(r.counters["walls"], us) for r, us in zip(own, times)]
         body.append(("slope", "", f"{slope(points):.2f}", "", "", "", f"under {goal} {verdict(slope(points) < goal)}"))
         body.append(("slope of the last two", "", f"{slope(points[-2:]):.2f}", "", "", "", ""))
-    return markdown(("what", "walls", "us", "slowest", "found", "found wrongly", "goal"), body)
+    return [("what", "walls", "us", "slowest", "found", "found wrongly", "goal"), *body]
 
 
-def correspondence_table(report):
+def correspondence_tables(report):
     pairs, places, views = [], [], []
     for row in medians(report):
         (pairs if "pairs" in row.counters else places if "walls" in row.counters else views).append(row)
-    return "\n\n".join((view_table(views), pair_table(pairs), place_table(places)))
+    return {"views": view_table(views), "blind-pairs": pair_table(pairs), "place-search": place_table(places)}

@@ -18,8 +18,19 @@ def clock(seconds):
     return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
 
 
+def processor():
+    """The machine's processor, for whoever reads its times."""
+    model = "unknown processor"
+    if os.path.exists("/proc/cpuinfo"):
+        with open("/proc/cpuinfo", encoding="utf-8") as info:
+            model = next((line.split(":")[1].strip() for line in info if line.startswith("model name")), model)
+    return f"{model}, one of {os.cpu_count()} virtual cores"
+
+
 class Progress:
-    """What is done, and how long the rest may take: in one line of a terminal, elsewhere in a line every ten seconds."""
+    """What is done, and how long the rest may take: in one line of a terminal, elsewhere in a line every ten seconds. As JSON: an
+    object a line, twice a second at most, as the programs do with --json."""
+    is_json = False
 
     def __init__(self, name, total, stream=sys.stderr):
         self.name, self.total, self.stream = name, total, stream
@@ -27,11 +38,19 @@ class Progress:
 
     def tell(self, done, unit=""):
         now = time.monotonic()
-        one_line = self.stream.isatty()
-        if self.ended or self.shown is not None and now - self.shown < (0.2 if one_line else 10) and done < self.total:
+        one_line = self.stream.isatty() and not self.is_json
+        pause = 0.5 if self.is_json else 0.2 if one_line else 10
+        if self.ended or self.shown is not None and now - self.shown < pause and done < self.total:
             return
         self.shown, self.ended, passed = now, done >= self.total, now - self.begin
-        left = f", about {clock(passed * (self.total - done) / done)} left" if done else ""
+        left_s = passed * (self.total - done) / done if done else None
+        if self.is_json:
+            progress = {"what": self.name, "done": round(done, 1), "total": self.total, "elapsed_s": round(passed, 1),
+                        "left_s": None if left_s is None else round(left_s, 1)}
+            self.stream.write(json.dumps({"progress": progress}) + "\n")
+            self.stream.flush()
+            return
+        left = f", about {clock(left_s)} left" if done else ""
         text = f"{self.name}: {done:.0f} of {self.total:.0f}{unit}, {clock(passed)}{left}"
         self.stream.write(f"\r{text}\033[K" + ("\n" if self.ended else "") if one_line else text + "\n")
         self.stream.flush()
@@ -98,6 +117,7 @@ def logger(quick):
             time.sleep(0.2)
         if run.returncode != 0:
             sys.exit(run.returncode)
+        progress.tell(progress.total, " s")
         return json.loads(run.stdout.read())
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """tests/bench/run tells how far it is and how long the rest may take, is quick when asked, and gives medians."""
+import json
 import os
 import re
 import subprocess
@@ -55,6 +56,16 @@ def check_progress():
     check(clock(99), "99 s")
 
 
+def check_json():
+    Progress.is_json = True
+    try:
+        lines = [json.loads(text)["progress"] for text in (told(True, 30, 0, 40), told(False, 30, 10, 40), told(False, 30, 40, 40))]
+    finally:
+        Progress.is_json = False
+    check([p["left_s"] for p in lines], [None, 90, 0])
+    check(lines[1], {"what": "name", "done": 10, "total": 40, "elapsed_s": 30, "left_s": 90})
+
+
 def check_medians():
     run = lambda name, family, ns, lines: {"family_index": family, "per_family_instance_index": 0, "run_name": name,
                                            "time_unit": "us", "cpu_time": ns, "lines": lines}
@@ -78,6 +89,17 @@ def check_quick_run():
     print(f"segment --quick took {time.monotonic() - begin:.1f} s\n{shown.stderr}")
 
 
+def check_json_run():
+    shown = run("segment", "--quick", "--json")
+    assert shown.returncode == 0, shown.stderr
+    lines = [json.loads(line)["progress"] for line in shown.stderr.splitlines()]
+    done = [p["done"] for p in lines]
+    check(done, sorted(done))
+    check(len({p["total"] for p in lines}), 1)
+    check((lines[-1]["done"], lines[-1]["left_s"]), (lines[-1]["total"], 0))
+    assert len(lines) <= 2 * lines[-1]["elapsed_s"] + 2, lines
+
+
 def check_bad_options():
     for arguments, wanted in ((("segment", "--quick", "--write"), "not written"), (("segment", "--repetitions"), "a number"),
                               (("segment", "--repetitions", "0"), "a number"), (("unknown",), "there are")):
@@ -87,9 +109,11 @@ def check_bad_options():
 
 if __name__ == "__main__":
     check_progress()
+    check_json()
     check_medians()
     check_bad_options()
     if not os.path.exists(os.path.join(os.environ["HERMES_BUILD"], "tests", "bench", "bench_segment")):
         print("skipped: Google Benchmark is not installed")
         sys.exit(77)
     check_quick_run()
+    check_json_run()

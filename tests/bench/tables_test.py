@@ -1,7 +1,11 @@
 #!/usr/bin/env python3
 """The slope, and what the tables of the benchmark correspondence make of good and of bad figures."""
+import os
 import re
+import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "results"))
+from results import markdown  # noqa: E402
 from correspondence import INDEX, PLACE, pair_table, place_table
 from measure import Row
 from tables import slope, verdict
@@ -24,11 +28,11 @@ def places(power):
 
 
 def check_places():
-    shown = place_table(places(0.9))
+    shown = markdown(place_table(places(0.9)))
     assert re.search(r"\| place of a scan +\| +1,000 +\| +501 +\| +1002 +\| +75 % +\| +25 % +\|", shown), shown
     assert re.search(r"\| index of a map +\| +1,000 +\| +501 +\|", shown), shown
     assert shown.count("0.90") == 4 and "under 1 reached" in shown and "under 1.2 reached" in shown, shown
-    shown = place_table(places(1.3))
+    shown = markdown(place_table(places(1.3)))
     assert shown.count("1.30") == 4 and "under 1 missed" in shown and "under 1.2 missed" in shown, shown
 
 
@@ -42,10 +46,10 @@ def pairs(ours, rival):
 
 
 def check_pairs():
-    shown = pair_table(pairs(0.9, 0.8))
+    shown = markdown(pair_table(pairs(0.9, 0.8)))
     assert shown.count("reached") == 1 and "missed" not in shown, shown
     assert re.search(r"rooms: MRPT one +\| +10 +\| +80.0 % .*\| +500 +\| +2000 +\| +2.50 +\|", shown), shown
-    assert "rivals missed" in pair_table(pairs(0.8, 0.8))
+    assert "rivals missed" in markdown(pair_table(pairs(0.8, 0.8)))
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ public:
     TestedDaemon()
         : Daemon({"tested", "Tested daemon", "For tests", 1}) {
         addSetting(Field::number("gain", "A number").range(0, 10).byDefault(1));
+        addSetting(Field::number("heading", "An angle").unit("rad").byDefault(0));
         addTopic(Topic("numbers", "Numbers").schema({{"type", "object"}}));
         addTopic(Topic("state", "Begins with all").snapshot([] { return QJsonValue("all"); }));
         addCommand(Command("subtract", "As in the specification")
@@ -54,6 +55,9 @@ public:
                        .param(Field::array("items", "Many", {{"type", "number"}}))
                        .takes(20000)
                        .handler([](const Call &call) { return call.value("items").toArray().size(); }));
+        addCommand(Command("turn", "Takes an angle")
+                       .param(Field::number("by", "How far").unit("rad"))
+                       .handler([](const Call &call) { return call.number("by"); }));
         addCommand(Command("fault", "Fails").handler([](const Call &) -> Result<QJsonValue> {
             return Error(ErrorCode::DeviceFault, "unplugged", QJsonObject{{"device", "t0"}});
         }));

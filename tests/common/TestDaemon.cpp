@@ -19,6 +19,7 @@ private Q_SLOTS:
     void healthDegradesAndGoesStale();
     void whatIsPastIsNoWarning();
     void logIsATopic();
+    void degreesForRadiansAreTold();
 };
 
 void TestDaemon::commonCommands_data() {
@@ -161,6 +162,23 @@ void TestDaemon::logIsATopic() {
     const QJsonObject record = client.message()["params"].toObject()["data"].toObject();
     QCOMPARE(record["text"].toString(), QString("from a thread"));
     QCOMPARE(record["level"].toString(), QString("warning"));
+}
+
+void TestDaemon::degreesForRadiansAreTold() {
+    RawClient client(address());
+    const auto last = [] { return Log::instance().tail(1).back(); };
+    client.ask("turn", QJsonObject{{"by", 6.28}});
+    QVERIFY2(!last().text.contains("turns"), qPrintable(last().text));
+    QCOMPARE(client.ask("turn", QJsonObject{{"by", 90}})["result"].toDouble(), 90.0);
+    QCOMPARE(last().text, QString("by: 90 rad is 14.3 turns; did you mean 1.571 rad (90 degrees)?"));
+    client.ask("settings.set", QJsonObject{{"values", QJsonObject{{"heading", -180}}}});
+    QCOMPARE(last().text,
+             QString("heading: -180 rad is 28.6 turns; did you mean -3.142 rad (-180 degrees)?"));
+    start({"heading=45"});
+    const std::vector<LogMessage> log = Log::instance().tail(100);
+    QVERIFY(std::any_of(log.begin(), log.end(), [](const LogMessage &one) {
+        return one.level == "warning" && one.text.startsWith("heading: 45 rad is 7.16 turns");
+    }));
 }
 
 QTEST_GUILESS_MAIN(TestDaemon)

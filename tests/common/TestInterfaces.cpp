@@ -62,6 +62,12 @@ void TestInterfaces::parsesUrls_data() {
     QTest::newRow("port too large") << "tcp://1.2.3.4:99999"
                                     << ""
                                     << "";
+    QTest::newRow("port alone") << "7490"
+                                << ""
+                                << "";
+    QTest::newRow("port alone, in a URL") << "tcp://7490?protocol=json"
+                                          << ""
+                                          << "";
     QTest::newRow("space") << "tcp://a b:1"
                            << ""
                            << "";
@@ -245,10 +251,10 @@ void TestInterfaces::localSocketsReplaceOnlyWhatIsDead() {
     QCOMPARE(problem(at("dead")), QString());
     QFile file(folder.filePath("file"));
     QVERIFY(file.open(QIODevice::WriteOnly));
-    QVERIFY(problem(at("file")).contains("no socket"));
+    QVERIFY(problem(at("file")).contains("not a socket"));
     QVERIFY(file.exists());
     QVERIFY(QFile::link(folder.filePath("file"), folder.filePath("link")));
-    QVERIFY(problem(at("link")).contains("no socket"));
+    QVERIFY(problem(at("link")).contains("not a socket"));
     QVERIFY(problem(at("missing/socket")).contains("No such file"));
     QVERIFY(problem(at(QString(120, 'x'))).contains("1 to 107 bytes"));
     QVERIFY(problem(*InterfaceUrl::parse("local://" + folder.filePath("s") + "?mode=999")).contains("mode"));

@@ -24,6 +24,7 @@ private Q_SLOTS:
     void replacesOnlyWhenTold();
     void linkedFolderIsAFolder();
     void whateverIsNamed();
+    void tellsWhereARelativePathBegins();
 
 private:
     QString at(const QString &name) const { return root_->filePath(name); }
@@ -228,6 +229,25 @@ void TestNamedFile::whateverIsNamed() {
         writeNamedFile(at(name), folders(), "written", random() % 2 == 0);
         QVERIFY2(time.elapsed() < 1000, qPrintable(name));
         QVERIFY2(outside() == before, qPrintable(name));
+    }
+}
+
+// Whoever names a file may sit in another folder than the program that reads it.
+void TestNamedFile::tellsWhereARelativePathBegins() {
+    const QString before = QDir::currentPath(), here = QFileInfo(at("allowed")).canonicalFilePath();
+    QVERIFY(QDir::setCurrent(here));
+    const auto read = readNamedFile("sub/map", folders(), 100);
+    const auto missing = readNamedFile("sub/none", folders(), 100);
+    const auto unwritten = writeNamedFile("none/map", folders(), "new", false);
+    QVERIFY(QDir::setCurrent(before));
+    QVERIFY(read);
+    for (const auto &[error, path] : {std::pair{missing.error(), QString("sub/none")},
+                                      std::pair{unwritten.error(), QString("none/map")}}) {
+        QCOMPARE(error.data["path"].toString(), here + '/' + path);
+        QVERIFY2(error.message.startsWith(here + '/' + path + ": cannot be "), qPrintable(error.message));
+        QVERIFY2(error.message.endsWith(
+                     QString("(\"%1\" was looked for in %2, where this program runs)").arg(path, here)),
+                 qPrintable(error.message));
     }
 }
 

@@ -12,6 +12,7 @@ private Q_SLOTS:
     void nothingIsOverwritten();
     void lossesAreShown();
     void closingEndsTheRecording();
+    void diskIsWellFromTheStart();
 };
 
 void TestRecording::recordsAndDescribes() {
@@ -118,6 +119,15 @@ void TestRecording::closingEndsTheRecording() {
     QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
     logger.recording.close();
     QCOMPARE(sidecarOf(root.path() + "/a").value("ended").toString(), "stopped");
+}
+
+/// Its free space is read in a thread: until then nothing is wrong.
+void TestRecording::diskIsWellFromTheStart() {
+    QTemporaryDir root;
+    Logger logger(root.path() + "/recordings");
+    QCOMPARE(logger.level("disk"), "ok");
+    QTRY_VERIFY(logger.recording.status().freeBytes.has_value());
+    QCOMPARE(logger.level("disk"), "ok");
 }
 
 QTEST_GUILESS_MAIN(TestRecording)

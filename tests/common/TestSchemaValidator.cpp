@@ -1,3 +1,4 @@
+#include "common/schema/Angles.h"
 #include "common/schema/CheckableSchema.h"
 #include "common/schema/SchemaValidator.h"
 
@@ -15,6 +16,7 @@ private Q_SLOTS:
     void patterns_data();
     void patterns();
     void costIsBounded();
+    void anglesBeyondATurn();
 
 private:
     static QJsonObject object(const char *json) { return QJsonDocument::fromJson(json).object(); }
@@ -91,6 +93,27 @@ void TestSchemaValidator::costIsBounded() {
         values.append(i + 1);
     QVERIFY(isCheapToCheck(schema, values, 100000));
     QVERIFY(!isCheapToCheck(schema, values, 1000));
+}
+
+void TestSchemaValidator::anglesBeyondATurn() {
+    const QJsonObject schema = object(R"({"properties":{
+        "x":{"type":"number","unit":"m"}, "rate":{"type":"number","unit":"rad/s"},
+        "pose":{"properties":{"theta":{"type":"number","unit":"rad"}}},
+        "turns":{"items":{"type":"number","unit":"rad"}}, "ways":{"items":{"unit":"m"}}}})");
+    const QJsonObject fine =
+        object(R"({"x":90,"rate":90,"pose":{"theta":-6.28},"turns":[0,6.28],"ways":[90],"other":90})");
+    QCOMPARE(beyondTurn(schema, fine), QStringList());
+    QVERIFY(holdsBeyondTurn(fine)); // of whatever unit
+    QVERIFY(!holdsBeyondTurn(object(R"({"pose":{"theta":6.28},"name":"90"})")));
+    const QJsonObject wrong = object(R"({"pose":{"theta":-90},"turns":[0,7]})");
+    QVERIFY(holdsBeyondTurn(wrong));
+    QCOMPARE(beyondTurn(schema, wrong),
+             QStringList({"pose.theta: -90 rad is 14.3 turns; did you mean -1.571 rad (-90 degrees)?",
+                          "turns.1: 7 rad is 1.11 turns; did you mean 0.1222 rad (7 degrees)?"}));
+    QJsonArray many;
+    for (int i = 0; i < 100; ++i)
+        many.append(90);
+    QCOMPARE(beyondTurn(schema, QJsonObject{{"turns", many}}).size(), 5);
 }
 
 QTEST_APPLESS_MAIN(TestSchemaValidator)

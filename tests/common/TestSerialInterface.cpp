@@ -156,13 +156,13 @@ void TestSerialInterface::wrongSettingsAreNamed_data() {
     QTest::newRow("pace") << "?pace=0"
                           << "pace \"0\" is not a number above 0";
     QTest::newRow("data bits") << "?data_bits=9"
-                               << "data_bits \"9\" is none of: 5, 6, 7, 8";
+                               << "data_bits is \"9\", expected one of: 5, 6, 7, 8";
     QTest::newRow("parity") << "?parity=maybe"
-                            << "parity \"maybe\" is none of: none, even, odd";
+                            << "parity is \"maybe\", expected one of: none, even, odd";
     QTest::newRow("stop bits") << "?stop_bits=3"
-                               << "stop_bits \"3\" is none of: 1, 2";
+                               << "stop_bits is \"3\", expected one of: 1, 2";
     QTest::newRow("flow") << "?flow=rts"
-                          << "flow \"rts\" is none of: none, hardware, software";
+                          << "flow is \"rts\", expected one of: none, hardware, software";
 }
 
 void TestSerialInterface::wrongSettingsAreNamed() {
@@ -314,7 +314,7 @@ void TestSerialInterface::latencyThatMayNotBeLoweredIsTold() {
     QVERIFY(QFile::link("/proc/sys/kernel/ngroups_max", timer)); // a number that not even root may write
     const AdapterLatency latency = AdapterLatency::lower(system.filePath("motors"), system.path());
     QCOMPARE(latency.milliseconds, 65536);
-    QVERIFY2(latency.advice.contains("holds bytes for 65536 ms") && latency.advice.contains(timer) &&
+    QVERIFY2(latency.advice.contains("delays bytes by up to 65536 ms") && latency.advice.contains(timer) &&
                  latency.advice.contains("udev"),
              qPrintable(latency.advice));
 }

@@ -71,7 +71,7 @@ class Company(unittest.TestCase):
             text = b""
             while piece := os.read(reader, 65536):
                 text += piece
-            self.assertIn(b"lines of the log are not here", text)
+            self.assertIn(b"lines of the log are missing here", text)
             self.assertIn(b"stopped", text)
         os.close(reader)
 

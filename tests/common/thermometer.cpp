@@ -1,4 +1,4 @@
-// The example of docs/add-a-daemon.md, and the daemon that the tests of the skeleton run.
+// The daemon that the tests of the skeleton and of hermesctl run.
 #include "common/daemon/Daemon.h"
 
 #include <cmath>

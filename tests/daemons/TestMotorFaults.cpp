@@ -197,8 +197,8 @@ void TestMotorFaults::turningUncommandedIsAFault() {
     turn.start(5);
     QTRY_VERIFY_WITH_TIMEOUT(!state()["latched"].toObject().isEmpty(), 10000);
     const QString reason = QJsonDocument(state()["latched"].toObject()).toJson();
-    QVERIFY2(reason.contains("wheel rear_left turns and was told to stand") ||
-                 reason.contains("was told to stand and kept turning"), // first where readings come slowly
+    QVERIFY2(reason.contains("wheel rear_left turns although it was told to stop") ||
+                 reason.contains("was told to stop and kept turning"), // first where readings come slowly
              qPrintable(reason));
 }
 

@@ -251,7 +251,7 @@ void TestRecordingSync::aDiskThatFailsEndsTheRecording() {
     QTRY_VERIFY(!rig.isActive());
     diskFails = false;
     const Error told = rig.call("record.stop").error();
-    QVERIFY2(told.message.contains("cannot be brought to the disk"), qPrintable(told.message));
+    QVERIFY2(told.message.contains("cannot be written to the disk"), qPrintable(told.message));
     QVERIFY(told.data.toObject().value("path").toString().startsWith(root.path() + "/run1/" + kind));
 }
 

@@ -108,9 +108,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--debian", metavar="FOLDER", help="copy the Debian 12 in this folder instead of making one")
     parser.add_argument("--keep", action="store_true", help="leave the Debian there")
-    parser.add_argument("paths", metavar="PATH", nargs="*", type=int, choices=sorted(LIMITS_S), help="a path's number")
+    parser.add_argument("paths", metavar="PATH", nargs="*", type=int, help="a path's number")
     try:
-        run(parser.parse_args())
+        arguments = parser.parse_args()
+        if not set(arguments.paths) <= set(LIMITS_S):
+            parser.error(f"expected paths of {sorted(LIMITS_S)}, found {arguments.paths}")
+        run(arguments)
     except fresh_debian.Missing as error:
         print(f"cannot be tried here: {error}")
         sys.exit(77)

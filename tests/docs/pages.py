@@ -62,12 +62,13 @@ def blocks(page):
 
 
 def sentences(page):
-    """(line, sentence) of all prose of a page: paragraphs, list items and cells of tables; code in the text counts as one word."""
+    """(line, sentence) of all prose of a page: paragraphs, list items and cells of tables; code in the text counts as one word,
+    a comment (which names the result that a figure is of) as none."""
     found, paragraph, start, fence = [], [], 0, ""
 
     def flush():
         text = " ".join(paragraph)
-        text = re.sub(r"`[^`]*`", "CODE", text)
+        text = re.sub(r"<!--.*?-->", "", re.sub(r"`[^`]*`", "CODE", text))
         text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
         found.extend((start, sentence) for sentence in re.split(r"(?<=[.!?:;])\s+(?=[A-Z\"(*_0-9])|(?<=[.!?][)\"])\s", text) if sentence.strip())
         paragraph.clear()

@@ -106,7 +106,7 @@ private:
     /// As a replay does; NotReady at its end.
     Result<QJsonValue> obey(const QString &what) {
         if (source != "replay")
-            return Error(ErrorCode::NotReady, "no replay is under way");
+            return Error(ErrorCode::NotReady, "no replay is running");
         asked_.append(name_ + what);
         return state();
     }

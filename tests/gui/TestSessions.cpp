@@ -226,7 +226,7 @@ void TestSessions::whoIsGoneIsNotWaitedFor() {
         b_->writer.hold = false;
     });
     const QString told = start("run1").error().message;
-    QVERIFY2(told.contains("b: record.start: the connection was given up"), qPrintable(told));
+    QVERIFY2(told.contains("b: record.start: the connection was closed"), qPrintable(told));
 }
 
 void TestSessions::allAreReleasedTogether() {

@@ -55,6 +55,16 @@ private Q_SLOTS:
         for (const char *address :
              {"0x10.0.0.1", "010.0.0.1", "10.0.0.256", "10.0.0", "10.0.0.1.", "10..0.1", "10.0.0.1.2"})
             row(address, {"map", "x.pcap", "--sender", address}, "--sender");
+        row("port of no capture", {"map", log, "--port", "2368"}, "--port: only of a capture");
+        row("sender of no capture", {"map", log, "--sender", "10.0.0.1"}, "--sender: only of a capture");
+        row("half 3", {"experiment", "pairs", "--half", "3"}, "--half: 3 not in {1,2}");
+        row("unknown option and its value", {"map", log, "--ouy", "x", "--every", "2"},
+            ": unknown option --ouy\n");
+        row("one file more", {"map", log, "b.log", "c.log"}, ": unexpected argument b.log\n");
+        row("unknown command and its arguments", {"mapx", log}, ": unknown command mapx\n");
+        row("no value", {"segment", room, "--k"}, "--k: a value is missing, expected N");
+        row("one file twice", {"map", log, "--summary", path("s"), "--out", path("s")},
+            "--summary or --out: given 2 times, expected once");
         row("offsets without z", {"ring", "x.pcap", "--no-vertical-offsets"}, "--all");
     }
     void wrongUsage() {
@@ -87,7 +97,7 @@ private Q_SLOTS:
                                   << QByteArray("in:2:") << QByteArray("above 0");
         QTest::newRow("pairs beyond measure")
             << "register" << QByteArray("0,0,1,0,0,0,1,0\n0,1e160,1,1e160,0,0,1,0\n") << QByteArray("in:")
-            << QByteArray("beyond all measure");
+            << QByteArray("far too large");
         QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
                                              << QByteArray("in") << QByteArray("x1");
         QTest::newRow("world that is none")

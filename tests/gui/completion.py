@@ -6,6 +6,7 @@ import pty
 import re
 import select
 import shutil
+import socket
 import subprocess
 import tempfile
 import time
@@ -24,6 +25,16 @@ def candidates(line):
     shown = ctl("complete", "hermesctl " + line)
     assert (shown.returncode, shown.stderr) == (0, ""), shown
     return [one.split("\t")[0] for one in shown.stdout.splitlines()]
+
+
+def own_address():
+    """By which others reach this computer; where it is alone, loopback."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # sends nothing
+            return probe.getsockname()[0]
+        except OSError:
+            return "127.0.0.1"
 
 
 class Shell:
@@ -66,6 +77,9 @@ class Shell:
 class Completion(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()  # pylint: disable=consider-using-with
+        cls.addClassCleanup(folder.cleanup)
+        os.environ.update(XDG_CACHE_HOME=os.path.join(folder.name, "cache"), HERMES_KEYS=os.path.join(folder.name, "keys"))
         cls.daemon = Thermometer()
         cls.address = cls.daemon.address
 
@@ -94,6 +108,21 @@ class Completion(unittest.TestCase):
         self.assertEqual(candidates("drive motorcontrol --f"), ["--force", "--for"])
         self.assertEqual(candidates("record list --daemons supervisor,scan"), ["supervisor,scanmatcher"])
 
+    def test_hosts(self):
+        """Those of earlier connections, the last one first, and robots that keys were issued for."""
+        self.assertEqual(candidates("list --host "), [])
+        here = own_address()
+        with socket.create_server(("0.0.0.0", 0)) as somebody:
+            for host in ("127.0.0.1", here):
+                ctl("call", f"{host}:{somebody.getsockname()[1]}", "daemon.info", "--timeout", "0.2")
+        self.assertEqual(candidates("list --host "), [] if here.startswith("127.") else [here])
+        self.assertEqual(ctl("keys", "init").returncode, 0)
+        for name, role in (("rover", "daemon"), ("anna", "operator")):
+            self.assertEqual(ctl("keys", "issue", name, "--role", role).returncode, 0)
+        self.assertEqual(candidates("list --host r"), ["rover"])
+        self.assertEqual(candidates("list --host=r"), ["--host=rover"])
+        self.assertEqual(candidates("list --host a"), [])
+
     def test_silent_without_a_daemon(self):
         begun = time.monotonic()
         self.assertEqual(candidates("call 127.0.0.1:1 "), [])
@@ -110,6 +139,10 @@ class Completion(unittest.TestCase):
         self.assertEqual(subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=30).stdout, "C |K |")
 
     def test_shells(self):
+        hosts = os.path.join(os.environ["XDG_CACHE_HOME"], "hermes", "hosts")
+        os.makedirs(os.path.dirname(hosts), exist_ok=True)
+        with open(hosts, "w", encoding="utf-8") as file:
+            file.write("192.0.2.200\n10.0.0.7")
         for name in SHELLS:
             if not shutil.which(SHELLS[name][0][0]):
                 print(f"skipped: {name} is not installed")
@@ -120,7 +153,8 @@ class Completion(unittest.TestCase):
                     for keys, said in ((f"hermesctl cal\t{self.address} thermometer.re\tun\tK", f"call {self.address} thermometer.read unit=K"),
                                        (f"hermesctl wat\t{self.address} tempe\t--cs\t", f"watch {self.address} temperature --csv"),
                                        (f"hermesctl set {self.address} limits.cl\t7", f"set {self.address} limits.clients=7"),
-                                       ("hermesctl get 127.0.0.1:745\t", "get 127.0.0.1:7450")):
+                                       ("hermesctl get 127.0.0.1:745\t", "get 127.0.0.1:7450"),
+                                       ("hermesctl list --host 192.0.2.2\t", "list --host 192.0.2.200")):
                         self.assertEqual(shell.said(keys), said)
                 finally:
                     shell.end()

@@ -1,6 +1,7 @@
 """What tests of hermesctl share: running it, a small daemon, and a made-up one that says whatever a test wants."""
 import json
 import os
+import pty
 import socket
 import subprocess
 import threading
@@ -15,8 +16,24 @@ def ctl(*arguments):
     return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60)
 
 
+def at_terminal(*arguments):
+    """What it writes to a terminal that is its stderr."""
+    far, near = pty.openpty()
+    with subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.DEVNULL, stderr=near) as process:
+        os.close(near)
+        text = b""
+        try:
+            while more := os.read(far, 4096):
+                text += more
+        except OSError:
+            pass  # it has ended
+        os.close(far)
+        process.wait(60)
+    return text.decode()
+
+
 class Thermometer:
-    """The daemon of docs/add-a-daemon.md on a free port; with another framing too where that is named."""
+    """A small daemon for tests on a free port; with another framing too where that is named."""
 
     def __init__(self, protocol="json"):
         self.process = subprocess.Popen([DAEMON, "--listen", f"tcp://127.0.0.1:0?protocol={protocol}", "--set", "period_s=0.01"],

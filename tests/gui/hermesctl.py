@@ -5,9 +5,10 @@ import os
 import signal
 import socket
 import subprocess
+import tempfile
 import unittest
 
-from ctl_support import MadeUpDaemon
+from ctl_support import MadeUpDaemon, at_terminal
 
 BUILD = os.environ["HERMES_BUILD"]
 PROGRAM = os.path.join(BUILD, "bin", "hermesctl")
@@ -104,6 +105,27 @@ class Hermesctl(unittest.TestCase):
                 done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, timeout=30)
             self.assertEqual(done.returncode, 1, arguments)
             self.assertIn(b"stdout cannot be written", done.stderr)
+
+    def test_progress(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            address = f"127.0.0.1:{silent.getsockname()[1]}"
+            waiting = ["call", address, "daemon.info", "--timeout", "2.5"]
+            self.assertRegex(at_terminal(*waiting), r"\rwaiting at most, second 1 of 2 \(\d+ %\), [12] s left.*\r\x1b\[K")
+            self.assertNotIn("waiting", ctl(*waiting).stderr)
+            shown = ctl(*waiting, "--json")  # a wait is no progress
+            self.assertEqual([list(json.loads(line)) for line in shown.stderr.splitlines()], [["code", "message"]])
+        many = ["watch", self.address, "temperature", "--count", "250"]  # 100 a second
+        with tempfile.TemporaryDirectory() as folder:
+            out = ["--out", os.path.join(folder, "messages"), "--force"]
+            self.assertRegex(at_terminal(*many, *out), r"\rmessage \d+ of 250 \(\d+ %\), \d s left")
+            self.assertEqual(ctl(*many, *out).stderr, "")
+            shown = ctl(*many, *out, "--json")
+            self.assertEqual(shown.returncode, 0, shown.stderr)
+            told = [json.loads(line)["progress"] for line in shown.stderr.splitlines()]
+            self.assertEqual({(p["what"], p["total"]) for p in told}, {("message", 250)})
+            self.assertEqual((told[-1]["done"], told[-1]["left_s"]), (250, 0))
+            with open(out[1], encoding="utf-8") as messages:
+                self.assertEqual(len(messages.readlines()), 250)
 
     def test_help_and_version(self):
         self.assertIn("watch D TOPIC", self.ok("--help"))

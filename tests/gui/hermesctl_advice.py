@@ -1,10 +1,24 @@
 #!/usr/bin/env python3
 """hermesctl says what to do about a failure, and speaks JSON where it is asked to."""
 import json
+import os
+import pty
 import socket
+import subprocess
+import tempfile
+import time
 import unittest
 
-from ctl_support import MadeUpDaemon, Thermometer, ctl
+from ctl_support import PROGRAM, MadeUpDaemon, Thermometer, ctl
+
+# A command with an object, and a setting, as their daemon describes them.
+WHEN = {"type": "object", "additionalProperties": False, "properties": {
+    "kind": {"type": "string"}, "period_s": {"type": "number", "unit": "s", "description": "Of the firings"},
+    "angle": {"type": "number", "unit": "rad"}}}
+DESCRIPTION = {"methods": [{"name": "trigger.define", "summary": "Defines", "params": [
+    {"name": "id", "schema": {"type": "string"}}, {"name": "when", "schema": WHEN}]}]}
+SETTINGS = {"properties": {"sensor": {"properties": {"theta_rad": {"type": "number", "unit": "rad"}}},
+                           "ports": {"type": "array", "items": {"properties": {"url": {"type": "string"}, "name": {"type": "string"}}}}}}
 
 
 class Advice(unittest.TestCase):
@@ -61,6 +75,46 @@ class Advice(unittest.TestCase):
         text = self.fails("set", self.daemon.address, "period_s=often")
         self.assertIn("period_s: a number from 0.001 to 60 in s; default 0.1; Time between readings", text)
 
+    def made_up(self, **replies):
+        daemon = MadeUpDaemon({"rpc.discover": DESCRIPTION, "settings.schema": SETTINGS,
+                               **{name.replace("__", "."): reply for name, reply in replies.items()}})
+        self.addCleanup(daemon.stop)
+        return daemon.address
+
+    def test_members_of_parameters(self):
+        def refused(path, expected="nothing of this name"):
+            return MadeUpDaemon.Error(code=-32602, message="invalid params", data={"errors": [{"path": path, "expected": expected}]})
+        for path, advice in (("when.perod_s", "when.perod_s is unknown; did you mean when.period_s?; when holds angle, kind, period_s"),
+                             ("when.period_s", "when.period_s: a number in s; Of the firings"),
+                             ("wen", "wen is unknown; did you mean when?; there is id, when")):
+            address = self.made_up(trigger__define=refused(path))
+            self.assertIn(advice + "\n", self.fails("call", address, "trigger.define", "id=x"))
+        wrong = MadeUpDaemon.Error(code=-32003, message="wrong", data={"errors": [{"path": "ports.0.ulr"}]})
+        self.assertIn("ports.0.ulr is unknown; did you mean ports.0.url?; ports.0 holds name, url",
+                      self.fails("set", self.made_up(settings__set=wrong), 'ports=[{"ulr":"x"}]'))
+
+    def test_dotted_parameters_make_objects(self):
+        echo = json.loads(ctl("call", self.daemon.address, "thermometer.echo", "value.a.b=1", "value.c=x").stdout)
+        self.assertEqual(echo, {"a": {"b": 1}, "c": "x"})
+
+    def test_degrees_for_radians(self):
+        for arguments, text in ((("trigger.define", "when.angle=90"), "when.angle: 90 rad is 14.3 turns; did you mean 1.571 rad (90 degrees)?"),
+                                (("trigger.define", "when.angle=6.28", "when.period_s=90"), None)):
+            shown = ctl("call", self.made_up(trigger__define={}), *arguments)
+            self.assertEqual((shown.returncode, shown.stderr), (0, f"hermesctl: {text}\n" if text else ""), arguments)
+        address = self.made_up(settings__set={"changed": ["sensor.theta_rad"], "restart": []})
+        shown = ctl("set", address, "sensor.theta_rad=-180", "--json")
+        self.assertEqual((shown.returncode, json.loads(shown.stderr)),
+                         (0, {"note": "sensor.theta_rad: -180 rad is 28.6 turns; did you mean -3.142 rad (-180 degrees)?"}))
+
+    def test_relative_paths(self):
+        address = self.made_up(trigger__define=MadeUpDaemon.Error(code=-32008, message="/x: No such file"))
+        with tempfile.NamedTemporaryFile(dir=".") as file:
+            name = os.path.basename(file.name)
+            self.assertIn(f"for the file in this folder: id={os.path.join(os.getcwd(), name)}",
+                          self.fails("call", address, "trigger.define", f"id={name}"))
+        self.assertNotIn("folder", self.fails("call", address, "trigger.define", f"id={name}"))  # it is nowhere
+
     def test_control_of_another(self):
         held = MadeUpDaemon.Error(code=-32002, message="Ann holds the control", data={"holder": "Ann"})
         daemon = MadeUpDaemon({"motor.drive": held})
@@ -68,6 +122,55 @@ class Advice(unittest.TestCase):
         daemon.stop()
         self.assertIn("Ann holds the control until", text)
         self.assertIn("take_over=true", text)
+
+
+class Patience(unittest.TestCase):
+    """A call takes as long as it takes, while the daemon answers other requests."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Thermometer()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.stop()
+
+    def calibrate(self, settle_ms, *options):
+        return ("call", self.daemon.address, "thermometer.calibrate", "offset_k=0", f"settle_ms={settle_ms}", *options)
+
+    def test_a_long_call(self):
+        shown = ctl(*self.calibrate(7000))
+        self.assertEqual((shown.returncode, shown.stderr), (0, ""))
+
+    def test_a_limit(self):
+        begun = time.monotonic()
+        shown = ctl(*self.calibrate(9000, "--timeout", "0.5"))
+        self.assertEqual((shown.returncode, shown.stderr.splitlines()[0]),
+                         (1, "hermesctl: thermometer.calibrate: no reply within 0.5 s (-32010)"))
+        self.assertIn("the daemon answers other requests", shown.stderr)
+        self.assertLess(time.monotonic() - begun, 8)
+
+    def test_progress_at_a_terminal(self):
+        terminal, far = pty.openpty()
+        with subprocess.Popen([PROGRAM, *self.calibrate(4500)], stdout=subprocess.DEVNULL, stderr=far) as process:
+            os.close(far)
+            shown = b""
+            try:
+                while block := os.read(terminal, 4096):
+                    shown += block
+            except OSError:  # it has ended
+                pass
+            self.assertEqual(process.wait(60), 0)
+        os.close(terminal)
+        self.assertIn(b"waiting, second 3", shown)
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
+
+    def test_a_daemon_that_hangs(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            begun = time.monotonic()
+            shown = ctl("call", f"127.0.0.1:{silent.getsockname()[1]}", "daemon.info")
+            self.assertIn("daemon.info: no reply within 5 s (-32010)", shown.stderr)
+            self.assertLess(time.monotonic() - begun, 20)
 
 
 class Json(unittest.TestCase):

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Fails when docs/sources.md names what is not there: a file, a header without its folder, an experiment or an option that it does not
 take, another command of hermes-vector or an option that no source declares (of `report`: that its own source does not), a test, a
-picture, a place of a page, or an erratum that its table does not have; or when a table that docs/pictures/make-sources fills is empty
-or has an exponent. Which figures stand there it does not check. The commands of docs/pictures/make-sources are checked alike."""
+picture, a place of a page, or an erratum that its table does not have; or when a table that docs/results/make fills is empty or
+has an exponent. Which figures stand there tests/docs/figures.py checks. The commands of docs/pictures/make-sources are checked alike."""
 import os
 import re
 import sys
 
 ROOT = os.environ.get("HERMES_SOURCE") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 HEADERS = "vectorlib/include/vectorlib"
-ALWAYS = {"--out", "--force", "--help"}  # what every experiment takes
+ALWAYS = {"--out", "--force", "--help", "--json"}  # what every experiment takes
 OPTION = r"(?<![\w-])--[a-z][\w-]*"
 
 
@@ -82,7 +82,7 @@ def of_table(page):
     wrong = []
     for name, table in re.findall(r"<!-- ([\w-]+) -->\n(.*?)<!-- end of \1 -->", page, re.S):
         if "|---" not in table:
-            wrong.append(f"the table {name} is empty: docs/pictures/make-sources LOGS {name}")
+            wrong.append(f"the table {name} is empty: docs/results/make LOGS")
         if re.search(r"\d[eE][+-]?\d", table):
             wrong.append(f"the table {name} has a number with an exponent")
     errata = page.partition("\n## Errata\n")[2].partition("\n## ")[0]

@@ -101,6 +101,20 @@ class Drive(unittest.TestCase):
         self.assertFalse(self.motors.call("control.state")["held"])
         self.assertRegex(self.run_ctl("omega=0.5", "--for=0.5"), r"drove for 0\.\d s and stands; .* degrees, and is at x ")
 
+    def test_progress(self):
+        with open(os.path.join(self.folder.name, "said"), "w+", encoding="utf-8") as said:
+            done = subprocess.run([HERMESCTL, "drive", self.address, "omega=0.1", "--for", "3", "--json"], stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.DEVNULL, stderr=said, timeout=60, check=False)
+            said.seek(0)
+            lines = [json.loads(line) for line in said]
+        if done.returncode == 1 and lines[-1].get("code") == TOO_LATE:
+            self.skipTest("this machine is too busy for the simulated controllers")
+        self.assertEqual(done.returncode, 0, lines)
+        told = [line["progress"] for line in lines]
+        self.assertEqual([p["done"] for p in told], sorted(p["done"] for p in told))
+        self.assertEqual({p["total"] for p in told}, {3})
+        self.assertEqual((told[-1]["done"], told[-1]["left_s"]), (3, 0))
+
     def test_signals(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             process = self.begun("vx=0.3", "vy=-0.1")

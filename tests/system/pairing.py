@@ -292,7 +292,7 @@ def check_edited_list(authority, scratch):
     with open(revoked, "a", encoding="utf-8") as file:
         file.write("J\u00fcrgen\n")
     for words in (("pair", "late"), ("issue", "late")):
-        assert "no serial number" in ctl(authority, "keys", *words, "--role", "operator", "--timeout", "1", status=1), words
+        assert "not a serial number" in ctl(authority, "keys", *words, "--role", "operator", "--timeout", "1", status=1), words
     os.replace(revoked + ".right", revoked)
     assert state_of(authority, "late") == []
 
@@ -380,14 +380,14 @@ def check_pretended(eva, scratch):
     locked = subprocess.run(["openssl", "ec", "-aes128", "-passout", "pass:x"], input=own["key"], capture_output=True, text=True, check=True).stdout
     for sent, expected in ((struct.pack(">I", 0xffffffff), "bytes"), (framed(b"nonsense"), "an object"), (framed([]), "an object"),
                            (framed({}), "an object"), (framed({**own, "../../x": "y"}), "an object"),
-                           (framed({**{name: own[name] for name in ("authority", "certificate", "key")}, "/etc/x": "y"}), "revoked is no text"),
-                           (framed({**own, "key": 3}), "key is no text"), (framed({**own, "key": ""}), "the key is none"),
-                           (framed({**own, "key": locked}), "the key is none"), (framed({**own, "key": other["key"]}), "not that of"),
-                           (framed({**own, "authority": other["authority"]}), "not signed"), (framed({**own, "certificate": "x"}), "a certificate is none"),
-                           (framed({**own, "certificate": own["certificate"] * 2}), "a certificate is none"),
+                           (framed({**{name: own[name] for name in ("authority", "certificate", "key")}, "/etc/x": "y"}), "revoked is not a text"),
+                           (framed({**own, "key": 3}), "key is not a text"), (framed({**own, "key": ""}), "the key is not valid"),
+                           (framed({**own, "key": locked}), "the key is not valid"), (framed({**own, "key": other["key"]}), "not that of"),
+                           (framed({**own, "authority": other["authority"]}), "not signed"), (framed({**own, "certificate": "x"}), "a certificate is not valid"),
+                           (framed({**own, "certificate": own["certificate"] * 2}), "a certificate is not valid"),
                            (framed({**own, "certificate": own["authority"], "key": own["key"]}), "not that of"),
                            (framed({**own, "authority": own["certificate"]}), "cannot be read"),
-                           (framed({**own, "revoked": "zz\n"}), "no serial number"), (framed({**own, "revoked": "\x1b[2J"}), "no text"),
+                           (framed({**own, "revoked": "zz\n"}), "not a serial number"), (framed({**own, "revoked": "\x1b[2J"}), "not a text"),
                            (framed(own) + framed(b"rejected"), "does not accept")):
         try_pretended(scratch, sent, expected)
 

@@ -282,6 +282,19 @@ class Setup(unittest.TestCase):
         self.assertIn("exclude each other", self.ctl("quiet", "--list", status=2))
         self.assertIn("this is no terminal", self.ctl(status=2))
 
+    def test_a_process_that_leaves_the_list_is_named(self):
+        samples = os.path.join(self.folder, "samples")
+        os.makedirs(os.path.join(samples, "scanner"))
+        with open(os.path.join(samples, "scanner", "supervisor.json"), "w", encoding="utf-8") as file:
+            json.dump({"processes": [self.sleeper("scanmatcher")]}, file)
+        supervisor = self.supervisor([], samples=samples, processes=[self.sleeper("scanmatcher"), self.sleeper("motorcontrol")])
+        shown = self.ctl("scanner", both=True)
+        self.assertIn("motorcontrol is no process of the supervisor any more, and ends; setup.undo puts it back", shown)
+        self.assertNotIn("scanmatcher is no process", shown)
+        self.assertEqual([one["name"] for one in supervisor.call("process.list")["processes"]], ["scanmatcher"])
+        self.ctl("--undo")
+        self.assertEqual([one["name"] for one in supervisor.call("process.list")["processes"]], ["scanmatcher", "motorcontrol"])
+
     def test_command_line_holds(self):
         supervisor = self.supervisor([], given={"setup.folder": self.folder, "robot": "told"})
         with open(os.path.join(self.folder, "supervisor.json"), "w", encoding="utf-8") as file:

@@ -27,7 +27,8 @@ printf '%s\n' "${COMPREPLY[@]}" """
 
 
 def help_of(*command):
-    return subprocess.run([*command, "--help"], env=ENVIRONMENT, capture_output=True, text=True, timeout=60 * SLOWNESS, check=True).stdout
+    return subprocess.run([*command, "--help"], env={**ENVIRONMENT, "COLUMNS": "10000"}, capture_output=True, text=True,
+                          timeout=60 * SLOWNESS, check=True).stdout
 
 
 def options_of(help_text):
@@ -186,6 +187,7 @@ class Zsh(Completion):
                            ("hermes-vector match --method=fi\t", ["match", "--method=finder"]),
                            ("hermes-vector match --svg=sett\t", ["match", "--svg=settings.json"]),
                            ("hermes-vector ring --model vl\t--lase\t", ["ring", "--model", "vlp16", "--laser"]),
+                           ("hermes-vector map-m\t--he\t", ["map-merge", "--help"]),
                            ("hermes-vector experiment free-h\t", ["experiment", "free-home"]),
                            ("hermes-vector experiment --out sca\t", ["experiment", "--out", "scans"]),
                            ("hermes-vector report quad\t", ["report", "quadratic"]),

@@ -222,6 +222,33 @@ def check_hermesctl(port, folder):
         assert heard == [b""], "spoke to who is no daemon"
 
 
+def check_advice(port, folder, foreign):
+    """hermesctl says what is likely when it does not come to terms with a daemon, and what to do."""
+    def ctl(keys_folder, address):
+        done = subprocess.run([CTL, "call", address, "daemon.info", "--timeout", "5"], env={**os.environ, "HERMES_KEYS": keys_folder},
+                              capture_output=True, text=True, check=False)
+        assert done.returncode == 1, done
+        return done.stderr
+    text = ctl(foreign, f"tls://127.0.0.1:{port}")
+    assert "the certificate there is not accepted" in text and "of different authorities" in text, text
+    text = ctl(folder, f"127.0.0.1:{port}")
+    assert f"name the daemon as tls://127.0.0.1:{port}" in text, text
+    plain = Process(BINARIES, "softwaretrigger", free_port(0), foreign, {})
+    try:
+        plain.connect().close()
+        text = ctl(folder, f"tls://127.0.0.1:{plain.port}")
+        assert f"speaks plain text, no TLS; name it as 127.0.0.1:{plain.port}" in text, text
+    finally:
+        plain.stop()
+    text = ctl(folder, f"tls://127.0.0.1:{free_port(0)}")
+    assert "Connection refused" in text and "no daemon listens at tls://" in text, text
+    keys(folder, "issue", "lost", "--role", "operator")
+    keys(folder, "revoke", "lost")
+    wait_for("that it is refused", lambda: is_refused(port, context_of(issued(folder, "lost"))), 5)
+    text = ctl(issued(folder, "lost"), f"tls://127.0.0.1:{port}")
+    assert "the daemon refuses your keys" in text and "hermesctl keys issue makes new ones" in text, text
+
+
 def check_bad_keys(folder, scratch):
     """The daemon does not start, and names the file and the remedy."""
     def start(change, *expected):
@@ -238,11 +265,11 @@ def check_bad_keys(folder, scratch):
     start(lambda bad: os.chmod(os.path.join(bad, "own.key"), 0o644), "own.key", "chmod 600")
     start(lambda bad: shutil.copy(os.path.join(issued(folder, "eva"), "own.key"), bad), "own.key", "is not the key of")
     start(lambda bad: shutil.copy(os.path.join(scratch, "foreign", "authority.crt"), bad), "own.crt", "not signed by")
-    start(lambda bad: open(os.path.join(bad, "own.crt"), "w", encoding="utf-8").close(), "own.crt", "no certificate")
+    start(lambda bad: open(os.path.join(bad, "own.crt"), "w", encoding="utf-8").close(), "own.crt", "not a certificate")
     start(lambda bad: shutil.copy(os.path.join(scratch, "expired", "own.crt"), bad), "own.crt", "is valid from")
     start(lambda bad: os.replace(os.path.join(bad, "own.key"), os.path.join(bad, "x")) or os.mkfifo(os.path.join(bad, "own.key"), 0o600),
           "own.key")
-    start(lambda bad: open(os.path.join(bad, "revoked"), "w", encoding="utf-8").write("zz\n") and None, "revoked", "no serial number")
+    start(lambda bad: open(os.path.join(bad, "revoked"), "w", encoding="utf-8").write("zz\n") and None, "revoked", "not a serial number")
 
 
 def check_unreachable_list(folder, scratch):
@@ -349,6 +376,7 @@ def main():
                 check_hermesctl(port, folder)
                 check_unreachable_list(folder, scratch)
                 took = check_revocation(process, port, folder)
+                check_advice(port, folder, foreign)
                 steady.call("daemon.info")  # not affected by anything
                 assert steady.call("daemon.status")["health"], "no health"
         finally:

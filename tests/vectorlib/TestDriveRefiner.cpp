@@ -42,7 +42,12 @@ private Q_SLOTS:
         for (unsigned building = 0; building < 3; ++building) {
             Drive d(seed + building);
             std::vector<Pose2D> refined = d.wavering;
-            QVERIFY(d.refine(refined, {}));
+            std::size_t told = 0, keys = 0;
+            QVERIFY(d.refine(refined, {}, [&](std::size_t done, std::size_t all) {
+                QCOMPARE(done, ++told);
+                keys = all;
+            }));
+            QVERIFY(told > 0 && told == keys);
             const double before = revisitError(d.poses, d.wavering), after = revisitError(d.poses, refined);
             qInfo("%.4f to %.4f m", before, after);
             QVERIFY2(after < 0.5 * before, qPrintable(QString("%1 to %2").arg(before).arg(after)));

@@ -119,7 +119,12 @@ private Q_SLOTS:
         const std::vector<Pose2D> drive = driveOf(400, random_);
         PoseGraph graph = chain(drive, 0.02, 0.01);
         addLoops(graph, drive, 150);
-        QVERIFY(graph.optimise());
+        std::size_t told = 0;
+        QVERIFY(graph.optimise([&told](std::size_t done, std::size_t all) {
+            QVERIFY(done >= told && done <= all);
+            told = done;
+        }));
+        QVERIFY(told > 1);
         double sum = 0;
         for (const PoseConstraint &c : graph.constraints)
             sum += graph.squaredErrorOf(c);

@@ -139,7 +139,7 @@ void WheelsTest::onSeen() {
     const auto changes = wheelSettings(now_, seen_);
     if (!changes)
         return message_->tell(changes.error().message, true);
-    message_->tell(changes->isEmpty() ? tr("All wheels turn as they are told; nothing is to be changed.")
+    message_->tell(changes->isEmpty() ? tr("All wheels turn as they are told; nothing needs a change.")
                                       : tr("What is to change is shown; Apply writes it."));
     Q_EMIT ended(*changes);
 }

@@ -150,11 +150,15 @@ BaselineSet baselineSet(const std::string &name, const vectorlib::CarmenLog &log
 }
 
 std::vector<BaselineRow> baselineExperiment(const std::vector<BaselineSet> &sets, std::uint64_t seed,
-                                            int runs,
-                                            const std::function<void(std::size_t, std::size_t)> &progress) {
+                                            int runs, const ProgressSink &progress) {
     std::vector<BaselineRow> rows;
     Matchers match;
+    std::vector<std::size_t> steps;
+    for (const BaselineSet &set : sets)
+        steps.push_back(set.pairs.size());
+    ProgressParts parts(progress, steps);
     for (const BaselineSet &set : sets) {
+        const ProgressSink tell = parts.next();
         std::vector<Account> accounts;
         for (const Off &off : sizes)
             for (const char *name : names)
@@ -173,7 +177,7 @@ std::vector<BaselineRow> baselineExperiment(const std::vector<BaselineSet> &sets
                         account.take(set.pairs[i], found);
                     }
                 }
-            progress(i + 1, set.pairs.size());
+            tell(i + 1, set.pairs.size());
         }
         for (Account &account : accounts)
             rows.push_back(account.conclude());

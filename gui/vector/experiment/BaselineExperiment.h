@@ -41,8 +41,7 @@ BaselineSet baselineSet(const std::string &name, const vectorlib::CarmenLog &log
 /// The matcher of overview paper 2.2, its pairs with our criterion, our tracker and our pair matcher, on the
 /// same pairs with the same errors of the expected motion, `runs` for each pair and size.
 std::vector<BaselineRow> baselineExperiment(const std::vector<BaselineSet> &sets, std::uint64_t seed,
-                                            int runs,
-                                            const std::function<void(std::size_t, std::size_t)> &progress);
+                                            int runs, const ProgressSink &progress);
 
 void writeCsv(std::ostream &out, const std::vector<BaselineRow> &rows);
 nlohmann::ordered_json summaryOf(const std::vector<BaselineRow> &rows);

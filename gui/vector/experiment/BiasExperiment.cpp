@@ -76,19 +76,16 @@ Plot plotOf(const std::vector<BiasRow> &rows, const char *name, const char *titl
 std::vector<BiasRow> biasExperiment(const World &world, const RegistrationCase &which,
                                     const ExperimentOptions &options) {
     std::vector<BiasRow> rows;
-    std::size_t done = 0;
+    ProgressParts parts(options.progress,
+                        std::vector<std::size_t>(std::size(pairings), stepsOf(world, which, options)));
     ExperimentOptions each = options;
     for (const NamedPairing &p : pairings) {
-        each.progress = [&](std::size_t i, std::size_t all) {
-            if (options.progress)
-                options.progress(done * all + i, std::size(pairings) * all);
-        };
+        each.progress = parts.next();
         RegistrationCase some = which;
         some.pairing = p.pairing;
         const std::vector<BiasRow> means =
             meansOverPoses(registrationExperiment(world, some, each), p.pairing);
         rows.insert(rows.end(), means.begin(), means.end());
-        ++done;
     }
     return rows;
 }

@@ -134,6 +134,7 @@ struct Property {
     const char *what;
     const char *source;
     bool (Trial::*holds)();
+    std::size_t time = 1; ///< of a trial, beside the others, about
 };
 
 constexpr Property asked[] = {
@@ -145,8 +146,8 @@ constexpr Property asked[] = {
     {"grows with the angle", "figure 7.3", &Trial::growsWithTheAngle},
     {"grows with the length", "figure 7.4", &Trial::growsWithTheLength},
     {"keeps its shape at small lengths", "figure 7.4, sub-plot", &Trial::keepsItsShapeAtSmallLengths},
-    {"smooth, without conditions", "7.1.4, 7.2", &Trial::isSmooth},
-    {"a set of pairs takes constant time, by sums", "(7.18)", &Trial::isSummed},
+    {"smooth, without conditions", "7.1.4, 7.2", &Trial::isSmooth, 1000},
+    {"a set of pairs takes constant time, by sums", "(7.18)", &Trial::isSummed, 50},
     {"the same when the two are exchanged", "not asked for", &Trial::isSymmetric}};
 
 } // namespace
@@ -162,15 +163,24 @@ const std::vector<SegmentCriterion> &segmentCriteria() {
     return all;
 }
 
-std::vector<CriterionProperty> criterionProperties(std::uint64_t seed, int trials) {
+std::vector<CriterionProperty> criterionProperties(std::uint64_t seed, int trials,
+                                                   const ProgressSink &progress) {
+    std::vector<std::size_t> times;
+    for (const Property &property : asked)
+        times.push_back(property.time);
+    ProgressParts parts(progress, times);
     std::vector<CriterionProperty> properties;
     for (const Property &property : asked) {
         properties.push_back({property.what, property.source, {}});
+        const ProgressSink tell = parts.next();
+        std::size_t done = 0;
         for (const SegmentCriterion &criterion : segmentCriteria()) {
             std::mt19937_64 random(seed); // the same segments for each
             int held = 0;
-            for (int i = 0; i < trials; ++i)
+            for (int i = 0; i < trials; ++i) {
                 held += (Trial(criterion, random).*property.holds)();
+                tell(++done, segmentCriteria().size() * std::size_t(trials));
+            }
             properties.back().shares.push_back(double(held) / trials);
         }
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "gui/vector/experiment/Plot.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 
@@ -29,7 +30,8 @@ struct CriterionProperty {
 };
 
 /// Each property tried with random segments.
-std::vector<CriterionProperty> criterionProperties(std::uint64_t seed, int trials);
+std::vector<CriterionProperty> criterionProperties(std::uint64_t seed, int trials,
+                                                   const ProgressSink &progress = {});
 
 Table tableOf(const std::vector<CriterionProperty> &properties);
 nlohmann::ordered_json summaryOf(const std::vector<CriterionProperty> &properties);

@@ -3,6 +3,7 @@
 #include "vectorlib/io/Number.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hermes::vector {
 
@@ -12,6 +13,19 @@ using Point = vectorlib::Vector2D<double>;
 namespace {
 
 constexpr int rooms = DrawnPlaces::rooms, placesOfPlan = 50;
+constexpr std::size_t setsOfWorld = 2, setsOfPlan = 16;                              // see below
+constexpr std::size_t wallsOfTowns[] = {100, 300, 1000, 3000, 10000, 30000, 100000}; // walls, at least
+// Time of a search, as measured: tenths of a millisecond; in a town it grows with the walls.
+constexpr std::size_t timeInWorld = 4, timeInPlan = 30, wallsOfTime = 20;
+constexpr std::size_t searchesOfTown = 2; // that take as long as to make a town and its index
+
+std::size_t inWorlds(std::size_t worlds, int runs) {
+    return setsOfWorld * worlds * std::size_t(placesOfPlan * runs);
+}
+
+std::size_t inPlans(int runs) {
+    return setsOfPlan * std::size_t(placesOfPlan * runs);
+}
 
 std::vector<std::string> namesOf(const std::vector<PlaceTrial> &trials) {
     std::vector<std::string> names;
@@ -140,24 +154,37 @@ void DrawnPlaces::search(const Walls &walls, int places, bool hasPlace, Scan sca
     }
 }
 
+std::size_t stepsOfDrawnPlaces(std::size_t worlds, int runs) {
+    return inWorlds(worlds, runs) * timeInWorld + inPlans(runs) * timeInPlan;
+}
+
+std::size_t stepsOfTowns(int runs) {
+    return std::accumulate(std::begin(wallsOfTowns), std::end(wallsOfTowns), std::size_t(0)) / wallsOfTime *
+           (2 * std::size_t(runs) + searchesOfTown);
+}
+
 std::vector<PlaceTrial> drawnPlacesExperiment(const std::vector<World> &worlds,
                                               const ExperimentOptions &options) {
     DrawnPlaces drawn(options.seed);
+    const std::size_t first = inWorlds(worlds.size(), options.runs), second = inPlans(options.runs);
+    ProgressParts parts(options.progress, {first * timeInWorld, second * timeInPlan});
+    drawn.expect(first, parts.next());
     searchWorlds(drawn, worlds, options.runs);
+    drawn.expect(second, parts.next());
     for (int i = 0; i < options.runs; ++i) {
         const auto seed = unsigned(options.seed * 1000 + std::uint64_t(i));
         searchPlan(drawn, seed);
         searchRefurnished(drawn, seed);
         searchCopies(drawn, seed);
-        if (options.progress)
-            options.progress(std::size_t(i + 1), std::size_t(options.runs));
     }
     return drawn.trials();
 }
 
 std::vector<PlaceTrial> townsExperiment(const ExperimentOptions &options) {
     DrawnPlaces drawn(options.seed);
-    for (const std::size_t least : {100u, 300u, 1000u, 3000u, 10000u, 30000u, 100000u}) {
+    ProgressParts parts(options.progress, {std::begin(wallsOfTowns), std::end(wallsOfTowns)});
+    for (const std::size_t least : wallsOfTowns) {
+        const ProgressSink tell = parts.next();
         Walls town, first;
         const int perPlan = std::min<int>(rooms, int(least) / 25),
                   columns = int(std::sqrt(least / 2000.0)) + 1;
@@ -169,6 +196,9 @@ std::vector<PlaceTrial> townsExperiment(const ExperimentOptions &options) {
         }
         drawn.setMap(town);
         drawn.begin(std::to_string(town.size()));
+        drawn.expect(2 * std::size_t(options.runs), [&tell](std::size_t done, std::size_t all) {
+            tell(done + searchesOfTown, all + searchesOfTown);
+        });
         drawn.search(first, 2 * options.runs);
     }
     return drawn.trials();

@@ -41,6 +41,8 @@ public:
     /// or are of another building.
     void search(const Walls &walls, int places, bool hasPlace = true, Scan scan = Scan::FullTurn);
     const std::vector<PlaceTrial> &trials() const { return trials_.all; }
+    /// Scans at so many places follow, whose progress is told.
+    void expect(std::size_t places, ProgressSink progress) { trials_.expect(places, std::move(progress)); }
 
 private:
     std::mt19937 random_;
@@ -50,6 +52,10 @@ private:
     std::string set_;
     bool isFirstHalf_ = true;
 };
+
+/// Steps that the progress of both experiments has.
+std::size_t stepsOfDrawnPlaces(std::size_t worlds, int runs);
+std::size_t stepsOfTowns(int runs);
 
 /// The search in worlds, and in floor plans of 20 rooms, `runs` of them: 50 places each, 50 runs in a world.
 std::vector<PlaceTrial> drawnPlacesExperiment(const std::vector<World> &worlds,

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "gui/vector/experiment/Quantile.h"
 #include "vectorlib/io/CarmenLog.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 
 #include <nlohmann/json.hpp>
 
-#include <functional>
 #include <ostream>
 #include <vector>
 
@@ -20,7 +20,7 @@ struct PairsOptions {
     std::size_t first = 0; ///< only so many pairs; 0: all
     /// Blocks of 50 pairs belong to the first and to the second half in turn.
     PairHalf half = PairHalf::Both;
-    std::function<void(std::size_t done, std::size_t all)> progress;
+    ProgressSink progress;
 
     /// Numbers of the first scan of each pair.
     std::vector<std::size_t> pairsOf(const vectorlib::CarmenLog &log) const;

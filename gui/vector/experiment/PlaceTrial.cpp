@@ -32,6 +32,12 @@ void compare(PlaceTrial &trial, const std::vector<Place> &places, const Pose2D &
 
 } // namespace
 
+void PlaceTrials::expect(std::size_t trials, ProgressSink progress) {
+    before_ = all.size();
+    expected_ = trials;
+    progress_ = std::move(progress);
+}
+
 void PlaceTrials::setMap(const std::vector<vectorlib::MapEdge> &slots) {
     slots_ = &slots;
     search_.index().clear();
@@ -58,6 +64,8 @@ PlaceTrial &PlaceTrials::add(vectorlib::PointSpan<float> points, const std::opti
     if (truth)
         compare(trial, found.places, *truth);
     all.push_back(trial);
+    if (progress_)
+        progress_(all.size() - before_, expected_);
     return all.back();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/places/PlaceSearch.h"
 
@@ -35,6 +36,8 @@ public:
     vectorlib::EdgeExtractor extract;
     std::vector<PlaceTrial> all;
 
+    /// So many trials follow, whose progress is told.
+    void expect(std::size_t trials, ProgressSink progress);
     /// The map of all scans until the next one; must live as long.
     void setMap(const std::vector<vectorlib::MapEdge> &slots);
     /// Searches a scan, sensor frame; `truth` is its pose in the map, nothing for one of another building.
@@ -45,6 +48,8 @@ public:
 private:
     vectorlib::PlaceSearch search_;
     const std::vector<vectorlib::MapEdge> *slots_ = nullptr;
+    std::size_t before_ = 0, expected_ = 0; // trials
+    ProgressSink progress_;
 };
 
 /// Shares of all trials and processor times; what is right only where scans have a place.

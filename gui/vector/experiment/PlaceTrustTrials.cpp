@@ -13,6 +13,8 @@ using vectorlib::Transformation2D;
 namespace {
 
 constexpr int fewPlaces = 20, placesOfWorld = 200;
+constexpr std::size_t timeOfLogTrial = 6, timeOfPlanTrial = 7,
+                      timeOfWorldTrial = 1; // of a search, beside each other, about
 
 // A scan of a log in the map that is set.
 void search(PlaceTrials &trials, const std::string &set, const CarmenLog &log, std::size_t i,
@@ -70,8 +72,6 @@ void searchPlans(DrawnPlaces &drawn, const ExperimentOptions &options) {
         }
         drawn.begin("plans, other building", isFirstHalf);
         drawn.search(other.walls(), fewPlaces, false);
-        if (options.progress)
-            options.progress(std::size_t(i + 1), std::size_t(2 * options.runs));
     }
 }
 
@@ -91,14 +91,42 @@ void searchWorlds(DrawnPlaces &drawn, const std::vector<World> &worlds) {
     }
 }
 
+// How many scans are searched.
+std::size_t countOfLogs(const std::vector<CarmenLog> &logs, const CarmenLog *other) {
+    const auto inOther = [](const CarmenLog &log) { return (log.scans.size() + 2) / 3; };
+    std::size_t count = 0;
+    for (const CarmenLog &log : logs) {
+        count += log.scans.size() / 2 * 2; // in its own map and in the one with drift
+        for (const CarmenLog &strange : logs)
+            count += &strange == &log ? 0 : inOther(strange);
+        count += other ? inOther(*other) : 0;
+    }
+    return count;
+}
+
+std::size_t countOfPlans(int runs) {
+    return std::size_t(2 * runs) * 5 * fewPlaces;
+}
+
+std::size_t countOfWorlds(std::size_t worlds) {
+    return 2 * worlds * (placesOfWorld + (worlds - 1) * (placesOfWorld / 10));
+}
+
 } // namespace
 
 std::vector<PlaceTrial> placeTrustTrials(const std::vector<CarmenLog> &logs, const CarmenLog *other,
                                          const std::vector<World> &worlds, const ExperimentOptions &options) {
+    const std::size_t searchesInLogs = countOfLogs(logs, other), searchesInPlans = countOfPlans(options.runs),
+                      searchesInWorlds = countOfWorlds(worlds.size());
+    ProgressParts parts(options.progress, {timeOfLogTrial * searchesInLogs, timeOfPlanTrial * searchesInPlans,
+                                           timeOfWorldTrial * searchesInWorlds});
     PlaceTrials ofLogs;
+    ofLogs.expect(searchesInLogs, parts.next());
     searchLogs(ofLogs, logs, other);
     DrawnPlaces drawn(options.seed);
+    drawn.expect(searchesInPlans, parts.next());
     searchPlans(drawn, options);
+    drawn.expect(searchesInWorlds, parts.next());
     searchWorlds(drawn, worlds);
     std::vector<PlaceTrial> all = std::move(ofLogs.all);
     all.insert(all.end(), drawn.trials().begin(), drawn.trials().end());

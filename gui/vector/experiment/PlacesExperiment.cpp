@@ -8,35 +8,40 @@
 
 namespace hermes::vector {
 
+constexpr std::size_t searchTime = 10; // beside that of a scan that makes the map, about
+
 vectorlib::EarSettings scannerOf(const vectorlib::CarmenScan &scan) {
     return vectorlib::EarSettings::forScanner(scan.angleStep * double(scan.ranges.size()),
                                               scan.ranges.size());
 }
 
-std::vector<vectorlib::MapEdge> mapOfHalf(const vectorlib::CarmenLog &log) {
+std::vector<vectorlib::MapEdge> mapOfHalf(const vectorlib::CarmenLog &log, const ProgressSink &progress) {
     vectorlib::MapBuilder build;
     for (std::size_t i = 0; i < log.scans.size(); i += 2) {
         build.extract.segment.settings = scannerOf(log.scans[i]);
         build.process(pointsOf(log.scans[i]), log.scans[i].laserPose);
+        if (progress)
+            progress(std::min(i + 2, log.scans.size()), log.scans.size());
     }
     return build.map.slots();
 }
 
 PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::CarmenLog *other,
-                              const std::function<void(std::size_t done, std::size_t all)> &progress) {
-    const std::vector<vectorlib::MapEdge> map = mapOfHalf(log);
+                              const ProgressSink &progress) {
+    const std::vector<vectorlib::CarmenScan> &scans = other ? other->scans : log.scans;
+    const std::size_t searches = other ? scans.size() : scans.size() / 2;
+    ProgressParts parts(progress, {log.scans.size() / 2, searches * searchTime});
+    const std::vector<vectorlib::MapEdge> map = mapOfHalf(log, parts.next());
     PlacesReport report;
     report.isSameBuilding = !other;
     report.mapSegments = std::size_t(std::count_if(
         map.begin(), map.end(), [](const vectorlib::MapEdge &edge) { return edge.observations > 0; }));
     PlaceTrials trials;
     trials.setMap(map);
-    const std::vector<vectorlib::CarmenScan> &scans = other ? other->scans : log.scans;
+    trials.expect(searches, parts.next());
     for (std::size_t i = other ? 0 : 1; i < scans.size(); i += other ? 1 : 2) {
         trials.extract.segment.settings = scannerOf(scans[i]);
         trials.add(pointsOf(scans[i]), other ? std::nullopt : std::optional(scans[i].laserPose)).scan = i;
-        if (progress)
-            progress(i + 1, scans.size());
     }
     report.trials = std::move(trials.all);
     return report;

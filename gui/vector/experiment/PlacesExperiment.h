@@ -1,9 +1,9 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "gui/vector/experiment/PlaceTrial.h"
 #include "vectorlib/io/CarmenLog.h"
 
-#include <functional>
 #include <ostream>
 #include <vector>
 
@@ -20,12 +20,12 @@ struct PlacesReport {
 vectorlib::EarSettings scannerOf(const vectorlib::CarmenScan &scan);
 /// The map of every other scan of a log whose scan poses are a corrected reference, each expected at its
 /// reference pose.
-std::vector<vectorlib::MapEdge> mapOfHalf(const vectorlib::CarmenLog &log);
+std::vector<vectorlib::MapEdge> mapOfHalf(const vectorlib::CarmenLog &log, const ProgressSink &progress = {});
 
 /// Makes such a map, and searches the scans between in it; or, with another log, all of its scans, which are
 /// then to be refused.
 PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::CarmenLog *other,
-                              const std::function<void(std::size_t done, std::size_t all)> &progress);
+                              const ProgressSink &progress);
 
 /// Shares of all scans, and processor times.
 nlohmann::ordered_json summaryOf(const PlacesReport &report);

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t before = 5; // poses
 constexpr double sure = 0.9;
+constexpr std::size_t eachNth[] = {1, 5}; // scan of a log
 
 /// Follows one drive and judges its poses.
 class Judge {
@@ -58,7 +59,7 @@ private:
 };
 
 void follow(const CarmenLog &log, std::size_t every, bool useOdometry, const PoseTrial &kind,
-            std::vector<PoseTrial> &trials) {
+            std::vector<PoseTrial> &trials, const std::function<void()> &tell) {
     constexpr auto corrected = vectorlib::CarmenOdometryKind::Corrected;
     const auto judge = std::make_unique<Judge>();
     vectorlib::ScanTrackerSettings settings;
@@ -70,7 +71,10 @@ void follow(const CarmenLog &log, std::size_t every, bool useOdometry, const Pos
         drive.advance();
         vectorlib::TimedScan scan;
         scan.points = pointsOf(source);
-        if (i % every != 0 || drive.isRepeated() || scan.points.empty())
+        if (i % every != 0)
+            continue;
+        tell();
+        if (drive.isRepeated() || scan.points.empty())
             continue;
         scan.stamp = source.stamp;
         scan.odometry = drive.odometry();
@@ -134,20 +138,37 @@ const char *name(PoseTrial::Part part) {
 
 } // namespace
 
-std::vector<PoseTrial> posesOfLog(const std::string &name, const CarmenLog &log, bool strange) {
+std::size_t countPoses(const CarmenLog &log) {
+    std::size_t count = 0;
+    for (const std::size_t every : eachNth)
+        count += 2 * ((log.scans.size() + every - 1) / every);
+    return count;
+}
+
+std::size_t countPoses(int drives) {
+    return std::size_t(drives) * DrawnDrive::scans;
+}
+
+std::vector<PoseTrial> posesOfLog(const std::string &name, const CarmenLog &log, bool strange,
+                                  const ProgressSink &progress) {
     std::vector<PoseTrial> trials;
+    std::size_t done = 0;
+    const auto tell = [&, all = countPoses(log)] {
+        ++done;
+        if (progress)
+            progress(done, all);
+    };
     PoseTrial kind;
     kind.part = strange ? PoseTrial::Part::Never : PoseTrial::Part::First;
-    for (const std::size_t every : {1, 5})
+    for (const std::size_t every : eachNth)
         for (const bool useOdometry : {true, false}) {
             kind.set = name + (every == 1 ? "" : ", each fifth scan") + (useOdometry ? "" : ", no odometry");
-            follow(log, every, useOdometry, kind, trials);
+            follow(log, every, useOdometry, kind, trials, tell);
         }
     return trials;
 }
 
-std::vector<PoseTrial> posesOfDrawnDrives(std::uint64_t seed, int drives,
-                                          const std::function<void(std::size_t, std::size_t)> &progress) {
+std::vector<PoseTrial> posesOfDrawnDrives(std::uint64_t seed, int drives, const ProgressSink &progress) {
     std::vector<PoseTrial> trials;
     for (int i = 0; i < drives; ++i) {
         DrawnDrive drive(unsigned(seed * 1000 + std::uint64_t(i)));

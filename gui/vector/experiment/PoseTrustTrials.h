@@ -1,11 +1,11 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "vectorlib/io/CarmenLog.h"
 #include "vectorlib/mapping/PoseTrust.h"
 
 #include <nlohmann/json.hpp>
 
-#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -25,10 +25,13 @@ struct PoseTrial {
 /// Drives of a log whose scan poses are a corrected reference: with each scan and with each fifth, by its
 /// odometry and without. Blocks of 50 poses belong to the first and the second part in turn; those of a
 /// `strange` log to neither. Sets are called after the log.
-std::vector<PoseTrial> posesOfLog(const std::string &name, const vectorlib::CarmenLog &log, bool strange);
+std::vector<PoseTrial> posesOfLog(const std::string &name, const vectorlib::CarmenLog &log, bool strange,
+                                  const ProgressSink &progress);
 /// So many drives through drawn buildings; each belongs to one part, in turn.
-std::vector<PoseTrial> posesOfDrawnDrives(std::uint64_t seed, int drives,
-                                          const std::function<void(std::size_t, std::size_t)> &progress);
+std::vector<PoseTrial> posesOfDrawnDrives(std::uint64_t seed, int drives, const ProgressSink &progress);
+/// Poses that those two track: steps of their progress.
+std::size_t countPoses(const vectorlib::CarmenLog &log);
+std::size_t countPoses(int drives);
 
 /// The weights of the least loss on the first part.
 vectorlib::PoseTrust fittedPoseTrust(const std::vector<PoseTrial> &trials);

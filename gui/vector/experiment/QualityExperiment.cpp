@@ -154,7 +154,7 @@ std::vector<QualityRow> logExperiment(const std::vector<vectorlib::CarmenScan> &
     for (std::size_t i = 0; i < scans.size(); i += step) {
         compare.take(logScan(scans[i]));
         if (options.progress)
-            options.progress(i + 1, scans.size());
+            options.progress(std::min(i + step, scans.size()), scans.size());
     }
     std::vector<QualityRow> rows;
     compare.append(rows, 0);

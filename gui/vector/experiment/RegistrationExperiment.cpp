@@ -65,15 +65,22 @@ double RegistrationStatistics::biasAlpha() const {
     return squareOfMean(mean(2) * mean(2), spread(2, 2), runs - unsolved);
 }
 
+std::size_t stepsOf(const World &world, const RegistrationCase &which, const ExperimentOptions &options) {
+    std::size_t points = 0;
+    for (const int each : which.points)
+        if (static_cast<std::size_t>(each) <= options.maxPoints)
+            points += static_cast<std::size_t>(each);
+    return points * world.poses.size() * which.sigmas.size();
+}
+
 std::vector<RegistrationRow> registrationExperiment(const World &world, const RegistrationCase &which,
                                                     const ExperimentOptions &options) {
     std::vector<RegistrationRow> rows;
     std::mt19937_64 random(options.seed);
+    const std::size_t all = stepsOf(world, which, options);
     std::size_t done = 0;
     for (const int points : which.points)
         for (std::size_t pose = 0; pose < world.poses.size(); ++pose) {
-            if (options.progress)
-                options.progress(++done, which.points.size() * world.poses.size());
             if (static_cast<std::size_t>(points) > options.maxPoints)
                 continue;
             const KnownScan scan(world, world.poses[pose], points);
@@ -87,6 +94,9 @@ std::vector<RegistrationRow> registrationExperiment(const World &world, const Re
                 }
                 rows.push_back({world.name, pose, world.poses[pose], points, sigma, false, plain.result()});
                 rows.push_back({world.name, pose, world.poses[pose], points, sigma, true, weighted.result()});
+                done += static_cast<std::size_t>(points);
+                if (options.progress)
+                    options.progress(done, all);
             }
         }
     return rows;

@@ -49,6 +49,9 @@ struct RegistrationCase {
     Pairing pairing = Pairing::Extracted;
 };
 
+/// How many points of scans take part, each with one noise.
+std::size_t stepsOf(const World &world, const RegistrationCase &which, const ExperimentOptions &options);
+
 /// Localization in a known map with known correspondences (paper 4): every pose of the world, with every
 /// number of points and noise, each without and with weights (length of the shorter segment) on the same
 /// scans.

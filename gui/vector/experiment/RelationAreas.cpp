@@ -115,7 +115,7 @@ std::vector<Plot> plotsOf(const std::vector<InjectedError> &rows) {
 }
 
 ApproachResult approach(const World &world, std::uint64_t seed, std::size_t every,
-                        const std::function<void(std::size_t, std::size_t)> &progress) {
+                        const ProgressSink &progress) {
     const std::vector<PosedScan> scans = scansAt(world, posesAlong(world, 1480), halfTurnScanner(seed));
     const std::vector<TypedSegments> segments = segmentsOf(scans);
     vectorlib::RelationMatcher match;
@@ -123,6 +123,9 @@ ApproachResult approach(const World &world, std::uint64_t seed, std::size_t ever
     vectorlib::MatchErrors errors;
     ApproachResult result;
     std::map<int, std::pair<double, std::size_t>> bins;
+    std::size_t all = scans.size() - 1;
+    for (std::size_t i = every; i < scans.size(); i += every)
+        all += (scans.size() - 1 - i) / every;
     for (std::size_t i = 0; i < scans.size(); i += every) {
         for (std::size_t j = i + (i == 0 ? 1 : every); j < scans.size(); j += i == 0 ? 1 : every) {
             const vectorlib::RelationMatch &found = match(segments[i], segments[j]);
@@ -142,7 +145,7 @@ ApproachResult approach(const World &world, std::uint64_t seed, std::size_t ever
             ++bin.second;
         }
         if (progress)
-            progress(i + 1, scans.size());
+            progress(result.pairs, all);
     }
     for (const auto &[centimetre, bin] : bins)
         result.rows.push_back({true, (centimetre + 0.5) / 100, bin.first / double(bin.second), bin.second});

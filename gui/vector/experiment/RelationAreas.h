@@ -35,7 +35,7 @@ struct ApproachResult {
 
 /// 1,480 scans on the way of a world; of all pairs only those of every N-th scan.
 ApproachResult approach(const World &world, std::uint64_t seed, std::size_t every,
-                        const std::function<void(std::size_t, std::size_t)> &progress);
+                        const ProgressSink &progress);
 void writeCsv(std::ostream &out, const ApproachResult &result);
 std::vector<Plot> plotsOf(const ApproachResult &result);
 nlohmann::ordered_json summaryOf(const ApproachResult &result);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/RelationScans.h"
 #include "vectorlib/io/Svg.h"
@@ -8,7 +9,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <functional>
 #include <ostream>
 
 namespace hermes::vector {
@@ -38,7 +38,7 @@ struct RelationRun {
 struct RelationRunOptions {
     double fieldOfView = vectorlib::pi;
     std::size_t rays = halfTurnRays;
-    std::function<void(std::size_t done, std::size_t all)> progress;
+    ProgressSink progress;
 };
 
 /// Matches each scan with the last one that was matched, and makes a local map of them (Algorithm 11). A scan

@@ -46,7 +46,13 @@ void add(SearchStages &row, const ScanPair &scans, vectorlib::PublishedSearch &s
     row.microseconds += processorMicroseconds() - begin;
 }
 
-SearchStages stagesAt(const SearchScene &scene, double accuracy, int runs, std::mt19937_64 &random) {
+/// Of a search, beside that with other accuracies, about.
+std::size_t workAt(double accuracy) {
+    return 10 + static_cast<std::size_t>(25 * accuracy * accuracy);
+}
+
+SearchStages stagesAt(const SearchScene &scene, double accuracy, int runs, std::mt19937_64 &random,
+                      const std::function<void()> &searched) {
     SearchStages row;
     row.scene = scene.name;
     row.accuracy = accuracy;
@@ -58,8 +64,10 @@ SearchStages stagesAt(const SearchScene &scene, double accuracy, int runs, std::
     vectorlib::CorrespondenceFinder find;
     find.settings.permitted = search.settings.permitted;
     for (const ScanPair &scans : scene.pairs)
-        for (int run = 0; run < runs; ++run)
+        for (int run = 0; run < runs; ++run) {
             add(row, expectedWithin(scans, search.settings.permitted, random), search, find);
+            searched();
+        }
     for (double *sum : {&row.potentialPairs, &row.truePairs, &row.bundles, &row.buckets, &row.tried,
                         &row.solutions, &row.microseconds})
         *sum /= row.searches;
@@ -106,12 +114,17 @@ std::vector<SearchStages> searchStages(const std::vector<SearchScene> &scenes,
                                        const ExperimentOptions &options) {
     std::vector<SearchStages> rows;
     std::mt19937_64 random(options.seed);
+    std::size_t done = 0, all = 0;
     for (const SearchScene &scene : scenes)
-        for (const double accuracy : accuracies) {
-            rows.push_back(stagesAt(scene, accuracy, options.runs, random));
-            if (options.progress)
-                options.progress(rows.size(), scenes.size() * std::size(accuracies));
-        }
+        for (const double accuracy : accuracies)
+            all += workAt(accuracy) * scene.pairs.size() * std::size_t(options.runs);
+    for (const SearchScene &scene : scenes)
+        for (const double accuracy : accuracies)
+            rows.push_back(stagesAt(scene, accuracy, options.runs, random, [&] {
+                done += workAt(accuracy);
+                if (options.progress)
+                    options.progress(done, all);
+            }));
     return rows;
 }
 

@@ -35,6 +35,11 @@ std::vector<Cluster> clustersOf(const std::vector<Point> &scan, std::size_t rays
     return clusters;
 }
 
+/// Beside that of scans of other numbers of points, about: measuring takes its time in any case.
+std::size_t timeOfScan(std::size_t points) {
+    return 20 + points / 1000;
+}
+
 /// An algorithm behind segmentation in the coordinates.
 struct Contender : Algorithm {
     Coordinates coordinates = Coordinates::Cartesian;
@@ -100,14 +105,14 @@ std::vector<Point> semicircle(std::size_t count) {
 }
 
 std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options) {
+    constexpr std::size_t counts[] = {20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000};
+    constexpr double sigmas[] = {0.03, 0.003, 0.0003};
     std::vector<ResultRow> rows;
+    const auto most = std::upper_bound(std::begin(counts), std::end(counts), options.maxPoints);
+    const std::size_t all = std::size(sigmas) * static_cast<std::size_t>(most - std::begin(counts));
     std::size_t done = 0;
-    const double sigmas[] = {0.03, 0.003, 0.0003};
     for (const double sigma : sigmas)
-        for (const std::size_t n :
-             {20ul, 50ul, 100ul, 200ul, 500ul, 1000ul, 2000ul, 5000ul, 10000ul, 20000ul}) {
-            if (options.progress)
-                options.progress(++done, 10 * std::size(sigmas));
+        for (const std::size_t n : counts) {
             if (n > options.maxPoints)
                 continue;
             const Cluster arc = semicircle(n);
@@ -116,6 +121,8 @@ std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options) {
                 collector.take({arc}, {});
                 rows.push_back(collector.row(sigma, n, 0));
             }
+            if (options.progress)
+                options.progress(++done, all);
         }
     return rows;
 }
@@ -123,7 +130,9 @@ std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options) {
 std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptions &options) {
     const auto truth = scene.visible();
     std::vector<ResultRow> rows;
-    std::size_t done = 0;
+    std::size_t done = 0, all = 0;
+    for (const std::size_t n : pointCounts)
+        all += n > options.maxPoints ? 0 : timeOfScan(n) * static_cast<std::size_t>(options.runs);
     for (const std::size_t n : pointCounts) {
         if (n > options.maxPoints)
             continue;
@@ -140,7 +149,7 @@ std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptio
                 collectors[c].take(contenders[c].coordinates == Coordinates::Polar ? polar : cartesian,
                                    truth);
             if (options.progress)
-                options.progress(++done, std::size(pointCounts) * static_cast<std::size_t>(options.runs));
+                options.progress(done += timeOfScan(n), all);
         }
         for (const Collector &collector : collectors)
             rows.push_back(collector.row(sceneSigma, n, truth.size()));

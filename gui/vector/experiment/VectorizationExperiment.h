@@ -1,10 +1,9 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "gui/vector/experiment/MeanBand.h"
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/Scene.h"
-
-#include <functional>
 
 namespace hermes::vector {
 
@@ -27,7 +26,7 @@ struct ExperimentOptions {
     std::size_t maxPoints = 20000;
     std::uint64_t seed = 1;
     double noise = 0.01; ///< of the range, standard deviation; metres
-    std::function<void(std::size_t done, std::size_t all)> progress;
+    ProgressSink progress;
 };
 
 /// The points of thesis figure 6.7a, evenly spaced on half a circle of radius 1 m; two or more.

@@ -40,7 +40,7 @@ CaseReport reportCase(const World &world, std::size_t number, const ReportSettin
 }
 
 OverallReport reportOverall(const World &world, const ReportSettings &settings,
-                            const std::function<void(std::size_t, std::size_t)> &progress) {
+                            const ProgressSink &progress) {
     OverallReport report;
     for (std::size_t i = 0; i + 1 < world.poses.size(); ++i) {
         report.cases.push_back(reportCase(world, i, settings));

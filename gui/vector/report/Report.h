@@ -1,9 +1,8 @@
 #pragma once
 
+#include "gui/vector/ProgressParts.h"
 #include "gui/vector/report/Drawing.h"
 #include "gui/vector/report/ScanPair.h"
-
-#include <functional>
 
 namespace hermes::vector {
 
@@ -56,7 +55,7 @@ struct ReportWorld {
 
 CaseReport reportCase(const World &world, std::size_t number, const ReportSettings &settings);
 OverallReport reportOverall(const World &world, const ReportSettings &settings,
-                            const std::function<void(std::size_t done, std::size_t all)> &progress = {});
+                            const ProgressSink &progress = {});
 
 void writeJson(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                const CaseReport &report);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -60,8 +61,10 @@ public:
     }
     /// Moves the poses, one for each scan that was added (metres, radians). `loops` are motions between scans
     /// that were found before, with their weights. False, and the poses are as before, where there are not as
-    /// many poses as scans or the equations cannot be solved. The first pose stays.
-    bool operator()(std::vector<Pose2D> &poses, const std::vector<PoseConstraint> &loops) {
+    /// many poses as scans or the equations cannot be solved. The first pose stays. progress counts key scans
+    /// that are compared with earlier ones, which takes most of the time.
+    bool operator()(std::vector<Pose2D> &poses, const std::vector<PoseConstraint> &loops,
+                    const std::function<void(std::size_t done, std::size_t all)> &progress = {}) {
         if (poses.size() != scans_)
             return false;
         graph_.poses = poses;
@@ -73,7 +76,7 @@ public:
             c.information *= c.weight;
             graph_.constraints.push_back(c);
         }
-        comparePasses();
+        comparePasses(progress);
         if (!graph_.optimise())
             return false;
         poses = graph_.poses;
@@ -132,13 +135,15 @@ private:
                  Eigen::Vector3d(1 / (xy * xy), 1 / (xy * xy), 1 / (alpha * alpha)).asDiagonal(), false, 1});
         }
     }
-    void comparePasses() {
+    void comparePasses(const std::function<void(std::size_t, std::size_t)> &progress) {
         SegmentGrid grid(settings.reach);
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             const Pose2D &here = graph_.poses[keys_[k].scan];
             const Vector2D<double> place(here.x, here.y);
             compareWithNearest(k, grid);
             grid.insert(static_cast<int>(k), {place, place, {1, 0}});
+            if (progress)
+                progress(k + 1, keys_.size());
         }
     }
     // The nearest key scans of earlier passes, one of each pass.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -92,11 +93,11 @@ public:
         return news_ && keys_.size() - corrected_ >= std::max(settings.fewKeys, few);
     }
     /// Moves the poses so that all motions fit best. False where none was found since the last time, or
-    /// nothing fits.
-    bool correct() {
+    /// nothing fits. progress: as of PoseGraph.
+    bool correct(const std::function<void(std::size_t done, std::size_t all)> &progress = {}) {
         news_ = false;
         corrected_ = keys_.size();
-        if (!std::exchange(found_, false) || !graph_.optimise())
+        if (!std::exchange(found_, false) || !graph_.optimise(progress))
             return false;
         counts_.closed = 0;
         for (const PoseConstraint &c : graph_.constraints)

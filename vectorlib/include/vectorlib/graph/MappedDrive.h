@@ -4,6 +4,7 @@
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MapReview.h"
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -41,10 +42,15 @@ public:
         startAnew(builder);
         extend(builder, 0);
     }
-    /// The same at other poses, one a scan.
-    void rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses) const {
+    /// The same at other poses, one a scan; progress counts the scans.
+    void rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses,
+                 const std::function<void(std::size_t done, std::size_t all)> &progress = {}) const {
         startAnew(builder);
-        extend(builder, poses, 0, edges_.size());
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            extend(builder, poses, i, i + 1);
+            if (progress)
+                progress(i + 1, edges_.size());
+        }
     }
     /// The builder's map takes the scans from that number on.
     void extend(MapBuilder &builder, std::size_t from) const {

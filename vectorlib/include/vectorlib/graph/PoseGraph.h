@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -47,12 +48,15 @@ public:
     }
     /// Moves the poses and weighs the doubtful constraints. False, and the poses are as before, where the
     /// equations cannot be solved. Poses and motions must be finite, constraints must refer to poses that
-    /// there are, and information must be positive definite.
-    bool optimise() {
+    /// there are, and information must be positive definite. progress counts steps, about.
+    bool optimise(const std::function<void(std::size_t done, std::size_t all)> &progress = {}) {
         if (poses.size() < 2 || constraints.empty())
             return true;
         const std::vector<Pose2D> before = poses;
         Equations equations;
+        const double widths = std::ceil(std::log(startWidth()) / std::log(settings.narrowing));
+        const auto most = static_cast<std::size_t>(2 * widths + settings.steps);
+        std::size_t done = 0;
         for (double width = startWidth();; width = std::max(1.0, width / settings.narrowing)) {
             const bool isLast = !(width > 1);
             for (int i = 0; i < (isLast ? settings.steps : 2); ++i) {
@@ -62,6 +66,8 @@ public:
                     poses = before;
                     return false;
                 }
+                if (progress)
+                    progress(std::min(++done, most), most);
                 if (*moved < settings.enough)
                     break;
             }

@@ -5,6 +5,7 @@
 #include "vectorlib/places/PlaceSearch.h"
 
 #include <cstdint>
+#include <functional>
 #include <set>
 
 namespace vectorlib {
@@ -40,6 +41,7 @@ public:
     double same = 0.4, bent = 0.03;
     double sameAlpha = 0.1; ///< radians
     MapRegistration registration;
+    std::function<void(std::size_t done, std::size_t all)> progress; ///< counts places that were sought
 
     /// Seeks the second map (`moving`) in the first (`fixed`), each in its own frame; metres. The motion
     /// takes the second into the frame of the first. `fixed` is not changed; its search keeps buffers.
@@ -131,15 +133,18 @@ private:
     }
     void findVotes(VectorMap &fixed, const std::vector<MapEdge> &moving) {
         votes_.clear();
+        std::size_t done = 0;
         for (const PlaceOfMap &place : places_) {
             const Relocalized &found = search(inFixed_, fixed.slots(), place);
-            if (!found.isFound())
-                continue;
-            const Transformation2D motion =
-                Transformation2D(found.places.front().pose) * Transformation2D(place.pose).inverse();
-            const Relocalized &own = search(inMoving_, moving, place);
-            if (own.isFound() && isNear(Transformation2D(own.places.front().pose), place.pose, 0))
-                votes_.push_back({place.pose, motion});
+            if (found.isFound()) {
+                const Transformation2D motion =
+                    Transformation2D(found.places.front().pose) * Transformation2D(place.pose).inverse();
+                const Relocalized &own = search(inMoving_, moving, place);
+                if (own.isFound() && isNear(Transformation2D(own.places.front().pose), place.pose, 0))
+                    votes_.push_back({place.pose, motion});
+            }
+            if (progress)
+                progress(++done, places_.size());
         }
     }
     static const Relocalized &search(PlaceSearch &search, const std::vector<MapEdge> &map,

@@ -6,6 +6,7 @@
 #include "vectorlib/places/Relocalized.h"
 
 #include <chrono>
+#include <functional>
 #include <numeric>
 
 namespace vectorlib {
@@ -25,6 +26,8 @@ public:
     PlaceProposals propose;
     PlaceFitter fit;
     PlaceTrust trust;
+    /// Steps of the search, about; it may end before all are done.
+    std::function<void(std::size_t done, std::size_t all)> progress;
 
     /// `slots` are those of a VectorMap; `edges` and `points` of the scan in the sensor's frame, points
     /// counter-clockwise. Without points the edges stand for them. Valid until the next call.
@@ -33,7 +36,14 @@ public:
         const auto begin = Clock::now();
         const auto end = begin + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(std::clamp(maxSeconds, 0.0, 1e6)));
-        const auto isLate = [end] { return Clock::now() >= end; };
+        // As often as it is asked whether it is late.
+        const std::size_t steps = slots.size() / 64 + propose.mostWalls * slots.size() / 16;
+        std::size_t asked = 0;
+        const auto isLate = [&, end] {
+            if (progress)
+                progress(std::min(++asked, steps), steps);
+            return Clock::now() >= end;
+        };
         result_.places.clear();
         result_.alike = result_.parts = result_.searched = 0;
         scan.take(edges, points);

@@ -1,0 +1,71 @@
+#include "gui/hermesctl/Hosts.h"
+
+#include "common/interface/InterfaceUrl.h"
+#include "common/tls/Authority.h"
+#include "common/tls/KeyFolder.h"
+#include "gui/hermesctl/NetworkBrowser.h"
+
+#include <QDir>
+#include <QFileInfo>
+#include <QHostAddress>
+#include <QSaveFile>
+#include <QStandardPaths>
+
+namespace hermes::ctl {
+namespace {
+
+constexpr int most = 20;
+constexpr qint64 mostBytes = 10000;
+
+QString fileName() {
+    return QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation) +
+           QStringLiteral("/hermes/hosts");
+}
+
+QStringList reached() {
+    QFile file(fileName());
+    if (!file.open(QIODevice::ReadOnly))
+        return {};
+    return QString::fromUtf8(file.read(mostBytes)).split(QLatin1Char('\n'), Qt::SkipEmptyParts).mid(0, most);
+}
+
+/// Empty: one of this computer, or none.
+QString hostOf(const QString &address) {
+    const auto url = InterfaceUrl::parse(address);
+    const bool isFar = url &&
+                       (url->scheme == QStringLiteral("tcp") || url->scheme == QStringLiteral("tls")) &&
+                       url->host != QStringLiteral("localhost") && !QHostAddress(url->host).isLoopback();
+    return isFar ? url->host : QString();
+}
+
+} // namespace
+
+void rememberHost(const QString &address) {
+    const QString host = hostOf(address);
+    QStringList hosts = reached();
+    if (host.isEmpty() || hosts.value(0) == host)
+        return;
+    hosts.removeAll(host);
+    hosts.prepend(host);
+    // It only helps to complete: where it cannot be written, nothing is lost.
+    QDir().mkpath(QFileInfo(fileName()).path());
+    QSaveFile file(fileName());
+    if (file.open(QIODevice::WriteOnly) &&
+        file.write(hosts.mid(0, most).join(QLatin1Char('\n')).toUtf8()) > 0)
+        file.commit();
+}
+
+QStringList knownHosts(std::chrono::milliseconds patience) {
+    QStringList hosts = reached();
+    if (const auto issued = Authority(KeyFolder::usual()).list())
+        for (const Authority::Issued &one : *issued)
+            if (one.subject.role == PeerCertificate::daemonRole() && !one.isRevoked)
+                hosts.append(one.subject.name);
+    if (const auto announced = NetworkBrowser().look(patience))
+        for (const QJsonObject &daemon : *announced)
+            hosts.append(daemon[QStringLiteral("host")].toString());
+    hosts.removeDuplicates();
+    return hosts;
+}
+
+} // namespace hermes::ctl
