@@ -22,7 +22,7 @@ public:
     /// bytes: of the file, 0 when that is not known.
     Buffer(int file, std::uintmax_t bytes)
         : file_(gzdopen(file, "rb"))
-        , kilobytes_(double(bytes) / 1000) {
+        , kilobytes_(double(bytes / 1000)) {
         if (file_ == nullptr)
             throw std::bad_alloc();
         gzbuffer(file_, 1 << 17);
@@ -48,7 +48,7 @@ protected:
             throw Failure("damaged data");
         setg(block_.data(), block_.data(), block_.data() + count);
         if (progress_) // of a compressed file its own bytes count
-            progress_->update(count == 0 ? kilobytes_ : double(gzoffset(file_)) / 1000, kilobytes_);
+            progress_->update(count == 0 ? kilobytes_ : double(gzoffset(file_) / 1000), kilobytes_);
         if (count == 0)
             progress_.reset();
         return count == 0 ? traits_type::eof() : traits_type::to_int_type(block_[0]);
@@ -140,7 +140,7 @@ protected:
         constexpr std::size_t block = 1 << 16;
         char *const begin = text_.data() + at_;
         const std::size_t count = std::min(block, text_.size() - at_);
-        progress_.update(double(at_) / 1000, double(text_.size()) / 1000);
+        progress_.update(double(at_ / 1000), double(text_.size() / 1000));
         at_ += count;
         setg(begin, begin, begin + count);
         return count == 0 ? traits_type::eof() : traits_type::to_int_type(*begin);
@@ -149,7 +149,7 @@ protected:
 private:
     std::string text_;
     std::size_t at_ = 0;
-    Progress progress_{"reading, kB"};
+    Progress progress_{"parsing, kB"};
 };
 
 TextStream::TextStream(std::string text)

@@ -7,7 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <memory>
+#include <optional>
 
 namespace hermes::vector {
 
@@ -61,9 +65,12 @@ struct RelocalizeCommand {
         search.maxSeconds = seconds;
         std::optional<Progress> progress("searching, step");
         double steps = 0;
+        const auto begin = std::chrono::steady_clock::now();
         search.progress = [&](std::size_t done, std::size_t all) {
+            const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
             steps = double(all);
-            progress->update(double(done), steps);
+            const double ofTime = std::floor(steps * std::min(1.0, passed.count() / seconds)); // it ends then
+            progress->update(std::max(double(done), ofTime), steps);
         };
         const vectorlib::Relocalized &result = search(slots, edges, seen.points);
         progress->update(steps, steps);
