@@ -18,7 +18,7 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr std::chrono::milliseconds patience{400}; // with a connection, and with each reply
+constexpr std::chrono::milliseconds promptPatience{400}; // with a connection, and with each reply
 
 struct Candidate {
     QString text;
@@ -86,7 +86,7 @@ private:
         if (option == QStringLiteral("--out"))
             return {{QStringLiteral(":files"), QString()}};
         if (option == QStringLiteral("--host"))
-            return plain(knownHosts(patience), before);
+            return plain(knownHosts(promptPatience), before);
         if (option == QStringLiteral("--role"))
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option != QStringLiteral("--daemons"))
@@ -148,11 +148,11 @@ private:
             client_ = std::make_unique<Client>();
             const auto address = daemonAddress(line_.arguments.words.value(0), line_.arguments.host);
             if (address)
-                (void)connectOnce(*client_, *address, patience);
+                (void)connectOnce(*client_, *address, promptPatience);
         }
         if (!client_->isConnected())
             return {};
-        const auto answer = client_->callAndWait(QLatin1String(method), QJsonObject(), patience);
+        const auto answer = client_->callAndWait(QLatin1String(method), QJsonObject(), promptPatience);
         return answer ? *answer : QJsonValue();
     }
 
@@ -230,7 +230,7 @@ private:
     }
 
     Candidates sessions() {
-        line_.arguments.timeout = patience;
+        line_.arguments.timeout = promptPatience;
         const auto loggers = Loggers::find(line_.arguments);
         if (!loggers)
             return {};
