@@ -16,8 +16,8 @@ Loggers are the daemons with the command record.start that answer at their defau
 
   --daemons A,B  record, replay, doc --all: these daemons and no others; setup: the supervisor, the motor control
   --host HOST    where daemons given by name run (127.0.0.1)
-  --timeout S    how long to wait for a connection and for a reply; without it: 5 s for a connection, and for
-                 a reply as long as the daemon answers other requests; keys pair: for the other (120)
+  --timeout S    limits the wait for a connection (5) and for a reply (as long as the daemon answers other
+                 requests); keys pair: the wait for the other computer (120)
   --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
   --out FILE     prints there instead of to stdout; FILE must not exist
   --force        --out: overwrites FILE

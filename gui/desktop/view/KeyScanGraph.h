@@ -35,7 +35,7 @@ public:
     const KeyScans &known() const { return known_; }
     /// A large graph comes in parts.
     bool isWhole() const { return !isBehind_ && known_.size() >= size_; }
-    /// Since the last call: values that are no numbers or beyond any place, loops between key scans that
+    /// Since the last call: values that are no numbers, impossible coordinates, loops between key scans that
     /// there are not, what is beyond mostKeyScans and mostLoops.
     quint64 takeIgnored() { return std::exchange(ignored_, 0); }
 

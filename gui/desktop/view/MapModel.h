@@ -68,7 +68,7 @@ public:
     /// Forgets the paths of the map that is shown.
     void clearPaths();
 
-    /// What came and is not shown: values that are no numbers or beyond any place on Earth (farthest_m),
+    /// What came and is not shown: values that are no numbers, or impossible coordinates (beyond farthest_m),
     /// edges beyond mostEdges, and of the graph what KeyScanGraph passes over.
     quint64 ignored() const { return ignored_; }
 
