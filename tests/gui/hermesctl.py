@@ -110,14 +110,14 @@ class Hermesctl(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as silent:
             address = f"127.0.0.1:{silent.getsockname()[1]}"
             waiting = ["call", address, "daemon.info", "--timeout", "2.5"]
-            self.assertRegex(at_terminal(*waiting), r"\rwaiting at most, second 1 of 2 \(\d+ %\), [12] s left.*\r\x1b\[K")
+            self.assertRegex(at_terminal(*waiting), r"\r\x1b\[Kwaiting at most, second 1 of 2 \(\d+ %\), [12] s left.*\r\x1b\[K")
             self.assertNotIn("waiting", ctl(*waiting).stderr)
             shown = ctl(*waiting, "--json")  # a wait is no progress
             self.assertEqual([list(json.loads(line)) for line in shown.stderr.splitlines()], [["code", "message"]])
         many = ["watch", self.address, "temperature", "--count", "250"]  # 100 a second
         with tempfile.TemporaryDirectory() as folder:
             out = ["--out", os.path.join(folder, "messages"), "--force"]
-            self.assertRegex(at_terminal(*many, *out), r"\rmessage \d+ of 250 \(\d+ %\), \d s left")
+            self.assertRegex(at_terminal(*many, *out), r"\r\x1b\[Kmessage \d+ of 250 \(\d+ %\), \d s left")
             self.assertEqual(ctl(*many, *out).stderr, "")
             shown = ctl(*many, *out, "--json")
             self.assertEqual(shown.returncode, 0, shown.stderr)

@@ -14,7 +14,7 @@ from support import BINARIES, SLOWNESS
 
 PROGRAMS = sorted(glob.glob(os.path.join(BINARIES, "hermes*")))
 QUIET = {"QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8"}
-WITHOUT = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
+WITHOUT = {key: value for key, value in os.environ.items() if key != "COLUMNS"} | {"QT_LOGGING_RULES": "*=false"}  # no notes of Qt
 
 
 def help_of(command, width=None):
