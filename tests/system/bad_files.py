@@ -203,7 +203,7 @@ class BadFiles(RobotCase):
             return any("audit" in item for item in robot.items("motorcontrol"))
         wait_for("a full disk under the audit", audits, 15)
         for name, words in {"velodynelogger": ("recording", "run"), "seriallogger": ("recording", "run"),
-                            "motorcontrol": ("audit", "not written down")}.items():
+                            "motorcontrol": ("audit", "audit of commands cannot be written")}.items():
             self.tells(name, *words, disk, "[Ss]pace|full", since=since)
             self.fill(disk)  # recordings that ended have given back what they had reserved
         for method, params in {"setup.apply": {"settings": {"seriallogger": {"limits": {"clients": 30}}, "simulator": {}}},
