@@ -113,7 +113,7 @@ class Hermesctl(unittest.TestCase):
             self.assertRegex(at_terminal(*waiting), r"\r\x1b\[Kwaiting at most, second 1 of 2 \(\d+ %\), [12] s left.*\r\x1b\[K")
             self.assertNotIn("waiting", ctl(*waiting).stderr)
             shown = ctl(*waiting, "--json")  # a wait is no progress
-            self.assertEqual([list(json.loads(line)) for line in shown.stderr.splitlines()], [["code", "message"]])
+            self.assertEqual([list(json.loads(line)) for line in shown.stderr.splitlines()], [["code", "hint", "message"]])
         many = ["watch", self.address, "temperature", "--count", "250"]  # 100 a second
         with tempfile.TemporaryDirectory() as folder:
             out = ["--out", os.path.join(folder, "messages"), "--force"]

@@ -270,6 +270,7 @@ class Sessions(unittest.TestCase):
 
     def test_progress_as_json(self):
         self.record("run1")
+        self.ctl("record", "stop")
         shown = ctl("--daemons", self.daemons, "replay", "run1", "--json", "--speed", "0.25")
         self.assertEqual(shown.returncode, 0, shown.stderr)
         progress = [json.loads(line)["progress"] for line in shown.stderr.splitlines()]
