@@ -44,7 +44,7 @@ RUN = {"sh", "console", "python", "cpp", "json"}
 ISOLATED = ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc"] + ([] if os.geteuid() == 0 else ["--map-root-user"])
 PRELUDE = """
 set -u
-FOLDER=$PWD
+export FOLDER=$PWD
 background() {  # TEXT FILE: runs FILE until TEXT is printed, and lets it go on
     bash -e "$2" >"$2.out" 2>&1 &
     for _ in $(seq 600); do
