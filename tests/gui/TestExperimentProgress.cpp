@@ -8,6 +8,7 @@
 #include <vectorlib/observation/FloorPlan.h>
 
 #include <iostream>
+#include <sstream>
 
 using namespace hermes::vector;
 
@@ -98,10 +99,10 @@ private Q_SLOTS:
         ExperimentCommand command = quickly(QTest::currentDataTag());
         Told told;
         command.options.progress = told.sink();
-        std::streambuf *const shown = std::cout.rdbuf(nullptr);
+        std::ostringstream aside;
+        std::streambuf *const shown = std::cout.rdbuf(aside.rdbuf());
         command.run();
         std::cout.rdbuf(shown);
-        std::cout.clear();
         QVERIFY(told.isSteady);
         QCOMPARE(told.last, told.total);
         QVERIFY2(isShort || told.calls > 1, "to be told, or to be listed as short");
