@@ -16,8 +16,8 @@ RequestParser::Result RequestParser::feed(std::uint8_t byte) {
         return Result::Incomplete;
     const std::string_view written = dialect_ == Dialect::Usual ? layout->fields : layout->otherFields;
     const std::string_view fields = layout->isRead ? layout->arguments : written;
-    const std::size_t crcSize = layout->isRead ? 0 : 2;
-    return bytes_.size() < 2 + sizeOf(fields) + crcSize ? Result::Incomplete : finish(*layout, fields);
+    const std::size_t checkSize = layout->isRead ? 0 : 2;
+    return bytes_.size() < 2 + sizeOf(fields) + checkSize ? Result::Incomplete : finish(*layout, fields);
 }
 
 RequestParser::Result RequestParser::finish(const Layout &layout, std::string_view fields) {
