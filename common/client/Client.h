@@ -62,6 +62,8 @@ public:
     void prefer(const QString &protocol) { preferred_ = protocol; }
     bool isConnected() const { return channel_ && channel_->isOpen() && !agreeing_; }
     QString address() const;
+    /// Whether what it sends may be damaged on the way, as on a serial line, and is repeated then.
+    bool isLossy() const { return channel_ && channel_->isLossy(); }
     /// What came over this connection and could not be used.
     struct Rejected {
         quint64 unreadable = 0; ///< no JSON, no JSON-RPC, or larger than the limit

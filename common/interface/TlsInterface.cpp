@@ -2,15 +2,22 @@
 
 #include "common/tls/KeyFolder.h"
 
+#include <algorithm>
+
 namespace hermes {
 
 namespace {
 
-/// Without what robots may do, who change their addresses; empty: nothing else is wrong.
+/// Robots change their addresses.
+bool isAccepted(const QSslError &error) {
+    return error.error() == QSslError::HostNameMismatch;
+}
+
+/// What is wrong besides.
 QString textOf(const QList<QSslError> &errors) {
     QStringList texts;
     for (const QSslError &error : errors)
-        if (error.error() != QSslError::HostNameMismatch)
+        if (!isAccepted(error))
             texts.append(error.errorString());
     texts.removeDuplicates();
     return texts.join(QStringLiteral("; "));
@@ -23,10 +30,9 @@ TlsInterface::TlsInterface(const InterfaceUrl &address, QObject *parent)
     connect(socket_, &QSslSocket::encrypted, this, &TlsInterface::onEncrypted, Qt::QueuedConnection);
     connect(socket_, QOverload<const QList<QSslError> &>::of(&QSslSocket::sslErrors), this,
             [this](const QList<QSslError> &errors) {
-                const QString wrong = textOf(errors);
-                if (wrong.isEmpty())
+                if (std::all_of(errors.begin(), errors.end(), isAccepted))
                     return socket_->ignoreSslErrors();
-                refused_ = QStringLiteral("the certificate there is not accepted: ") + wrong;
+                refused_ = QStringLiteral("the certificate there is not accepted: ") + textOf(errors);
             });
 }
 

@@ -38,7 +38,7 @@ void SettingsCheck::next() {
     process->setProcessChannelMode(QProcess::MergedChannels);
     connect(process, &QProcess::errorOccurred, this, [=](QProcess::ProcessError error) {
         if (error == QProcess::FailedToStart)
-            onEnded(daemon, process->errorString());
+            onEnded(daemon, process->program() + ": " + process->errorString());
     });
     connect(
         process, QOverload<int, QProcess::ExitStatus>::of(&QProcess::finished), this,

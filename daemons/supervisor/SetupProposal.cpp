@@ -70,6 +70,7 @@ public:
 
     Proposal make(const Findings &all) {
         const Findings findings = withoutSimulated(all);
+        busy(findings);
         motors(findings.serial);
         receivers(findings.serial);
         lidar(findings.lidars);
@@ -102,6 +103,15 @@ private:
         leaveOut(findings.serial);
         leaveOut(findings.lidars);
         return findings;
+    }
+
+    /// What is found below may be less than there is.
+    void busy(const Findings &findings) {
+        for (const FoundSerial &line : findings.serial)
+            if (line.kind == "in_use")
+                note(QString("%1 was not searched: another program uses it").arg(line.device));
+        for (const QString &problem : findings.problems)
+            note("not searched: " + problem);
     }
 
     void motors(const std::vector<FoundSerial> &lines) {
@@ -165,7 +175,7 @@ private:
 
     void lidar(const std::vector<FoundLidar> &lidars) {
         if (lidars.empty())
-            return note("no lidar sends packets to this computer");
+            return note("no packets of a lidar were found");
         if (lidars.size() > 1)
             note(QString("%1 lidars send packets; that at %2 is taken")
                      .arg(lidars.size())

@@ -4,6 +4,7 @@ import argparse
 import asyncio
 import itertools
 import json
+import math
 import os
 import signal
 import socket
@@ -88,7 +89,7 @@ class Daemon:
         try:
             if os.path.exists(self.options.config):
                 with open(self.options.config, encoding="utf-8") as kept:
-                    self.settings_set(json.load(kept))
+                    self.settings_set(from_json(kept.read()))
             self.settings_set(dict(self.options.set))
         except Refusal as error:
             sys.exit(f"{self.name}: settings: {error.args[1]}")
@@ -114,24 +115,25 @@ class Daemon:
 
     async def _serve(self, reader, client):
         line = b"\n"
-        while line and not client.transport.is_closing():
-            try:
+        try:
+            while line and not client.transport.is_closing():
                 line = await reader.readline()
-            except (OSError, ValueError, asyncio.CancelledError):  # gone, a line beyond the limit, the end
-                break
-            self.client = client
-            reply = self._answer(line) if line.strip() else None
-            if reply and not send(client, reply):
-                client.transport.abort()  # does not read its replies
-        for number in [n for n, s in self.subscriptions.items() if s["client"] is client]:
-            del self.subscriptions[number]
-        client.close()
+                self.client = client
+                reply = self._answer(line) if line.strip() else None
+                if reply and not send(client, reply):
+                    client.transport.abort()  # does not read its replies
+        except (OSError, ValueError, asyncio.CancelledError):  # gone, a line beyond the limit, the end
+            pass
+        finally:
+            for number in [n for n, s in self.subscriptions.items() if s["client"] is client]:
+                del self.subscriptions[number]
+            client.close()
 
     def _answer(self, line):
         """The reply to a request; None: it is a notification."""
         request = None
         try:
-            request = json.loads(line)
+            request = from_json(line)
             if request["method"] not in self.methods:
                 raise Refusal(-32601, f"no method {request['method']}")
             _, schemas, function = self.methods[request["method"]]
@@ -218,19 +220,32 @@ def setting(text):
     """NAME=VALUE, of which the value is JSON or a text."""
     name, value = text.split("=", 1)
     try:
-        return name, json.loads(value)
+        return name, from_json(value)
     except ValueError:
         return name, value
+
+
+def finite(text):
+    if not math.isfinite(number := float(text)):
+        raise json.JSONDecodeError("not a finite number", text, 0)
+    return number
+
+
+def from_json(text):
+    """What Python also takes for JSON, NaN and Infinity, is none."""
+    return json.loads(text, parse_float=finite, parse_constant=finite)
 
 
 def check(schemas, values, code):
     """Refuses values that are unknown, of another type or beyond their limits."""
     for name, value in values.items():
-        schema = schemas.get(name, {"type": "nothing of this name"})
+        if name not in schemas:
+            raise Refusal(code, f"{name} is unknown, there is {', '.join(schemas) or 'nothing'}", {"errors": [{"path": name, "value": value}]})
+        schema = schemas[name]
         right = isinstance(value, TYPES.get(schema["type"], ())) and isinstance(value, bool) == (schema["type"] == "boolean")
         if not right or "minimum" in schema and not schema["minimum"] <= value <= schema.get("maximum", 1e9):
-            expected = f"{schema['type']} {schema.get('minimum', '')} to {schema.get('maximum', '')}"
-            raise Refusal(code, f"{name}: expected {expected}", {"errors": [{"path": name, "value": value, "expected": expected}]})
+            expected = schema["type"] + (f" from {schema['minimum']} to {schema.get('maximum', 1e9)}" if "minimum" in schema else "")
+            raise Refusal(code, f"{name} is {json.dumps(value)}, expected {expected}", {"errors": [{"path": name, "value": value, "expected": expected}]})
 
 
 def send(client, message):

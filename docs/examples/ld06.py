@@ -58,7 +58,10 @@ def read_packets(device):
     """Yields each packet that is not damaged."""
     port, data = open_port(device, BAUD), b""
     try:
-        termios.tcflush(port, termios.TCIFLUSH)  # what came before, whenever that was
+        try:
+            termios.tcflush(port, termios.TCIFLUSH)  # what came before, whenever that was
+        except termios.error as error:
+            raise OSError(f"{device}: {error.args[-1]}") from error
         while True:
             more = os.read(port, 4096)
             if not more:
@@ -88,6 +91,8 @@ def read_scans(device):
             if is_whole:
                 yield begin, points
             points, is_whole = [], True
+        elif points and came - begin > 1:  # its head does not turn
+            points, is_whole = [], False
         if not points:
             begin, start = came - DELAY_S, first
         before = first

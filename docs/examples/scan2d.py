@@ -14,9 +14,9 @@ laser = Daemon(
     settings={
         "device": {"type": "string", "default": "/dev/ttyUSB0", "description": "Of the scanner"},
         "field_of_view_deg": {"type": "number", "minimum": 1, "maximum": 360, "unit": "°", "default": 360, "description": "Of a scan"},
-        "min_range_m": {"type": "number", "minimum": 0, "maximum": 100, "unit": "m", "default": 0.1, "description": "None nearer"},
-        "max_range_m": {"type": "number", "minimum": 0, "maximum": 1000, "unit": "m", "default": 12, "description": "None farther"},
-        "upside_down": {"type": "boolean", "default": False, "description": "The scanner hangs"},
+        "min_range_m": {"type": "number", "minimum": 0, "maximum": 100, "unit": "m", "default": 0.1, "description": "Nearer points are left out"},
+        "max_range_m": {"type": "number", "minimum": 0, "maximum": 1000, "unit": "m", "default": 12, "description": "Farther points are left out"},
+        "upside_down": {"type": "boolean", "default": False, "description": "It is mounted upside down"},
         "period_s": {"type": "number", "minimum": 0.001, "maximum": 1, "unit": "s", "default": 0.01, "description": "Of publishing"}},
     topics={"scan2d": "The points of each scan, counter-clockwise, in the sensor's frame"})
 scans = collections.deque(maxlen=10)  # that were read and not yet published
@@ -29,12 +29,12 @@ def read():
     global fault, lost
     while True:
         try:
-            fault = "it is silent"
+            fault = "no whole turn comes"
             for scan in read_scans(laser.settings["device"]):
                 lost += len(scans) == scans.maxlen  # the oldest
                 scans.append(scan)
-        except OSError as error:
-            fault = str(error)
+        except Exception as error:  # whatever a driver raises: it begins anew
+            fault = str(error) or repr(error)
         time.sleep(1)
 
 
@@ -45,7 +45,7 @@ def work():
     while scans:
         stamp, beams = scans.popleft()
         side = -1 if settings["upside_down"] else 1
-        points = [point for point in beams if settings["min_range_m"] <= point[1] <= settings["max_range_m"]]
+        points = [point for point in beams if math.isfinite(point[0]) and settings["min_range_m"] <= point[1] <= settings["max_range_m"]]
         laser.publish("scan2d", {
             "stamp": stamp, "turn": turn,
             "rays": round(len(beams) * 360 / settings["field_of_view_deg"]),  # as many as in a full turn

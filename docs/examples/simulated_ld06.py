@@ -12,7 +12,7 @@ import threading
 import time
 import tty
 
-from hermes import Daemon
+from hermes import Daemon, DaemonError
 from ld06 import HEAD, POINTS, crc8
 
 BEAMS_PER_S, DEGREES_PER_S, RANGE_M = 4500, 3600, 12
@@ -24,7 +24,7 @@ def follow(port):
         with Daemon(port=port) as simulator:
             for message in simulator.subscribe("truth"):
                 truth.update(message["data"], stamp=message["stamp"])
-    except OSError as error:
+    except (OSError, ValueError, KeyError, TypeError, DaemonError) as error:
         truth["fault"] = f"the simulator: {error}"
 
 
@@ -66,7 +66,10 @@ def main():
     parser.add_argument("--port", type=int, default=7490, help="of the simulator")
     arguments = parser.parse_args()
     with open(arguments.world, encoding="utf-8") as file:
-        edges = [(ax, ay, bx - ax, by - ay) for ax, ay, bx, by in json.load(file)["edges"]]
+        try:
+            edges = [(ax, ay, bx - ax, by - ay) for ax, ay, bx, by in json.load(file)["edges"]]
+        except (ValueError, KeyError, TypeError) as error:
+            sys.exit(f"simulated_ld06.py: {arguments.world}: expected a world of the simulator: {error!r}")
     line, near = os.openpty()
     tty.setraw(near)
     os.set_blocking(line, False)

@@ -27,11 +27,27 @@ bool onlyPrints(int argc, char **argv) {
     });
 }
 
+/// Qt would abort.
+bool lacksDisplay(int argc, char **argv) {
+    const std::vector<std::string_view> words(argv + 1, argv + argc);
+    const char *const says[] = {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"};
+    return QSysInfo::kernelType() == "linux" &&
+           std::all_of(std::begin(says), std::end(says), qEnvironmentVariableIsEmpty) &&
+           std::find(words.begin(), words.end(), "-platform") == words.end();
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
     if (onlyPrints(argc, argv))
         qputenv("QT_QPA_PLATFORM", "offscreen"); // needs no display
+    if (lacksDisplay(argc, argv)) {
+        std::fputs("hermes-gui: this computer has no display (DISPLAY, WAYLAND_DISPLAY). Start the window on "
+                   "your own "
+                   "computer and connect it to the robot: docs/remote.md. In a terminal use hermesctl.\n",
+                   stderr);
+        return 1;
+    }
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
     QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
     QApplication application(argc, argv);

@@ -102,6 +102,12 @@ QStringList nobodyThere(const Error &error, const Arguments &arguments) {
         return {QStringLiteral("this computer knows no host \"%1\": check the name, or give the IP address")
                     .arg(url->host)};
     const bool isRefused = error.message.contains(QStringLiteral("Connection refused"));
+    if (url->scheme == QStringLiteral("tcp") && !isRefused)
+        return {QStringLiteral(
+                    "this computer does not reach %1: are both in the same network (ip address, ping %1)? A "
+                    "firewall there may also drop what comes to port %2")
+                    .arg(url->host)
+                    .arg(url->port)};
     if (url->scheme == QStringLiteral("tls") && !isRefused) // somebody listens, or keys are missing here
         return aboutTls(error, *url);
     const QString program = programAt(*url);
@@ -234,9 +240,11 @@ QStringList aboutControl(const Error &error, const Arguments &arguments) {
                            "motion command for the time that it asked for; hermesctl call %2 control.state "
                            "shows it")
                 .arg(holder.toString(), theDaemon(arguments)));
-    lines.append(QStringLiteral("the control belongs to one connection, and ends with it: hermesctl drive "
-                                "takes it and keeps it; a client that drives calls control.acquire first, "
-                                "with take_over=true to take it from another one; the robot stops then"));
+    if (arguments.command != QStringLiteral("drive"))
+        lines.append(
+            QStringLiteral("the control belongs to one connection, and ends with it: hermesctl drive "
+                           "takes it and keeps it; a client that drives calls control.acquire first, "
+                           "with take_over=true to take it from another one; the robot stops then"));
     return lines;
 }
 
@@ -267,15 +275,20 @@ QStringList adviceFor(const Error &error, const Arguments &arguments) {
 QStringList adviceFor(const Error &error, Client &client, const Arguments &arguments) {
     const QString &command = arguments.command;
     const bool isCall = command == QStringLiteral("call");
-    if (error.is(ErrorCode::TimedOut))
-        return client.callAndWait(QStringLiteral("daemon.info"), QJsonObject(), patience)
+    if (error.is(ErrorCode::TimedOut)) {
+        if (!client.callAndWait(QStringLiteral("daemon.info"), QJsonObject(), patience))
+            return otherFraming(arguments);
+        return arguments.timeoutIsGiven && isCall
                    ? QStringList(QStringLiteral("the daemon answers other requests: this one takes longer; "
                                                 "without --timeout hermesctl waits for it"))
-                   : otherFraming(arguments);
+                   : QStringList();
+    }
     if (error.is(ErrorCode::Disconnected))
         return wasClosed(error, arguments);
     if (error.is(ErrorCode::ControlHeld))
         return aboutControl(error, arguments);
+    if (command == QStringLiteral("drive") && error.is(ErrorCode::MethodNotFound))
+        return {QStringLiteral("%1 drives no robot; hermes-motorcontrol does").arg(theDaemon(arguments))};
     if (isCall && error.is(ErrorCode::MethodNotFound))
         return aboutMethod(client, arguments);
     if (error.is(ErrorCode::NoSuchTopic) && command == QStringLiteral("watch"))

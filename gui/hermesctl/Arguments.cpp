@@ -2,6 +2,7 @@
 
 #include "gui/hermesctl/Nearest.h"
 
+#include <QRegularExpression>
 #include <cmath>
 
 namespace hermes::ctl {
@@ -75,10 +76,22 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
     return {};
 }
 
+Result<void> takeHost(Arguments &arguments, const QString &text) {
+    static const QRegularExpression withPort(QStringLiteral("^[^:]*:[0-9]*$"));
+    if (text.isEmpty() || withPort.match(text).hasMatch())
+        return Error(
+            ErrorCode::InvalidParams,
+            QStringLiteral("option --host is \"%1\", expected a name or address without a port; a daemon "
+                           "at another port is named as HOST:PORT")
+                .arg(text));
+    arguments.host = text;
+    return {};
+}
+
 Result<void> takeValue(Arguments &arguments, const QString &option, const QString &text) {
     if (option == QStringLiteral("--host"))
-        arguments.host = text;
-    else if (option == QStringLiteral("--out"))
+        return takeHost(arguments, text);
+    if (option == QStringLiteral("--out"))
         arguments.out = text;
     else if (option == QStringLiteral("--role"))
         arguments.role = text;
@@ -121,6 +134,7 @@ Result<Arguments> Arguments::parse(const QStringList &list) {
             continue;
         }
         const QString option = word.section(QLatin1Char('='), 0, 0);
+        result.given.append(option);
         bool *const flag = flagOf(result, word);
         if (flag) {
             *flag = true;

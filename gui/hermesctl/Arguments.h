@@ -21,6 +21,7 @@ struct Arguments {
     QString role;
     double speed = 1;
     double for_s = 0;    ///< 0: without end
+    QStringList given;   ///< names of all options, as they came
     QStringList daemons; ///< speak to these; empty: to those at their default ports
     QString out;         ///< file instead of stdout
     bool force = false;  ///< overwrites it

@@ -20,6 +20,7 @@
 #include <QEventLoop>
 #include <QJsonArray>
 #include <QJsonDocument>
+#include <functional>
 
 namespace hermes::ctl {
 namespace {
@@ -54,10 +55,15 @@ void printChanged(const QJsonValue &result, const QString &daemon) {
                                          : QStringLiteral(" changed")));
 }
 
-/// Angles in radians beyond a full turn were most often meant in degrees.
-void noteAngles(const QJsonObject &schema, const QJsonObject &values) {
-    for (const QString &text : beyondTurn(schema, values))
-        note(text);
+/// Angles in radians beyond a full turn were most often meant in degrees. `method` describes the values. The
+/// daemon's log asks the same: no description is no error, and a large one does not go over a serial line.
+void noteAngles(Client &client, const QString &method, const QJsonObject &values,
+                const std::function<QJsonObject(const QJsonValue &)> &schemaOf) {
+    if (!holdsBeyondTurn(values) || client.isLossy())
+        return;
+    if (const auto description = client.callAndWait(method))
+        for (const QString &text : beyondTurn(schemaOf(*description), values))
+            note(text);
 }
 
 QString logLine(WireView record) {
@@ -179,13 +185,17 @@ Result<void> listDaemons(const Arguments &arguments) {
     }
     if (arguments.json && !calls.empty())
         printJson(found);
-    if (calls.empty())
-        return Error(ErrorCode::Disconnected,
-                     QStringLiteral("no daemon answers at its default port on %1; start one, as "
-                                    "hermes-simulator; on a robot see systemctl status hermes-supervisor; "
-                                    "--host HOST asks another computer, --network all of them")
-                         .arg(arguments.host));
-    return {};
+    if (!calls.empty())
+        return {};
+    for (const auto &client : all)
+        if (!client->problem().contains(
+                QStringLiteral("Connection refused"))) // by a host that cannot be asked
+            return Error(ErrorCode::Disconnected, client->problem());
+    return Error(ErrorCode::Disconnected,
+                 QStringLiteral("no daemon answers at its default port on %1; start one, as "
+                                "hermes-simulator; on a robot see systemctl status hermes-supervisor; "
+                                "--host HOST asks another computer, --network all of them")
+                     .arg(arguments.host));
 }
 
 Result<void> discover(Client &client, const Arguments &arguments) {
@@ -215,18 +225,15 @@ Result<void> call(Client &client, const Arguments &arguments) {
     const auto params = assignments(arguments.words.mid(2));
     if (!params)
         return params.error();
-    // Nothing else goes over the line: where it damages much, a stop is not to wait for a repeat.
+    // Urgent: where a line damages much, a stop is not to wait for a repeat.
     const auto result = ask(client, arguments, arguments.words.at(1), *params, Client::Repeats::AtOnce);
     if (!result)
         return result.error();
     printLine(pretty(*result));
-    if (!holdsBeyondTurn(*params)) // the description is large
-        return {};
-    const auto description = ask(client, arguments, QStringLiteral("rpc.discover"));
-    if (!description)
-        return description.error();
-    const QJsonArray methods = (*description)[QStringLiteral("methods")].toArray();
-    noteAngles(parametersSchema(named(methods, arguments.words.at(1))), *params);
+    noteAngles(client, QStringLiteral("rpc.discover"), *params, [&arguments](const QJsonValue &description) {
+        const QJsonArray methods = description[QStringLiteral("methods")].toArray();
+        return parametersSchema(named(methods, arguments.words.at(1)));
+    });
     return {};
 }
 
@@ -251,12 +258,8 @@ Result<void> setSettings(Client &client, const Arguments &arguments) {
         printJson(*result);
     else
         printChanged(*result, arguments.words.first());
-    if (!holdsBeyondTurn(*values))
-        return {};
-    const auto schema = ask(client, arguments, QStringLiteral("settings.schema"));
-    if (!schema)
-        return schema.error();
-    noteAngles(schema->toObject(), *values);
+    noteAngles(client, QStringLiteral("settings.schema"), *values,
+               [](const QJsonValue &schema) { return schema.toObject(); });
     return {};
 }
 

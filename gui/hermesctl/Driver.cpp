@@ -25,10 +25,8 @@ double secondsOf(const QElapsedTimer &timer) {
 Result<void> Driver::run() {
     if (const auto acquired = acquire(); !acquired)
         return acquired;
-    QObject::connect(&client_, &Client::disconnected, &loop_, [this](const QString &reason) {
-        fail(Error(ErrorCode::Disconnected,
-                   reason + "; the motor control stops a robot whose driver has gone"));
-    });
+    QObject::connect(&client_, &Client::disconnected, &loop_,
+                     [this](const QString &reason) { fail(Error(ErrorCode::Disconnected, reason)); });
     const int odometry = client_.subscribe(QStringLiteral("odometry"), {{"queue", 1}},
                                            [this](const TopicUpdate &update) { onOdometry(update); });
     QTimer timer;
@@ -111,7 +109,9 @@ void Driver::onRefused(const Error &error) {
         fail(error);
 }
 
-void Driver::fail(const Error &error) {
+void Driver::fail(Error error) {
+    if (error.is(ErrorCode::Disconnected)) // says the connection, or a command on its way
+        error.message += "; the motor control stops a robot whose driver has gone";
     if (failure_)
         failure_ = error;
     end();
@@ -120,12 +120,22 @@ void Driver::fail(const Error &error) {
 Result<void> Driver::stop() {
     if (!client_.isConnected())
         return failure_;
+    if (!failure_ && failure_.error().is(ErrorCode::ControlHeld) && !client_.isLossy())
+        client_.call(QStringLiteral("motor.state"), QJsonObject(),
+                     [this, guard = QPointer<QEventLoop>(&loop_)](const Result<QJsonValue> &state) {
+                         if (guard && state)
+                             halted_ = (*state)["halted"].toString();
+                     });
     const auto stopped = client_.callAndWait(
         QStringLiteral("motor.stop"), QJsonObject{{"wait_s", standing_s}},
         arguments_.timeout + std::chrono::seconds(int(standing_s)), Client::Repeats::AtOnce);
     (void)ask(client_, arguments_, QStringLiteral("control.release"));
-    if (!failure_)
-        return failure_;
+    if (!failure_) {
+        Error error = failure_.error();
+        if (!halted_.isEmpty())
+            error.message += "; the robot had stopped: " + halted_;
+        return error;
+    }
     if (!stopped)
         return stopped.error();
     if (!(*stopped)["confirmed"].toBool())

@@ -42,7 +42,7 @@ private:
     void tick();
     void send();
     void onRefused(const Error &error);
-    void fail(const Error &error);
+    void fail(Error error);
     Result<void> stop();
 
     Client &client_;
@@ -58,6 +58,7 @@ private:
     bool isDriving_ = false, hasEnded_ = false;
     double seconds_ = 0;
     Result<void> failure_;
+    QString halted_; ///< why the robot had stopped before that
 };
 
 /// Waits for the controllers, which may be found a moment after the daemon has begun; not longer than the

@@ -26,10 +26,11 @@ QString stateOf(const Authority::Issued &one) {
 Result<void> checkKeyRole(const Arguments &arguments) {
     if (roleFrom(arguments.role) || arguments.role == PeerCertificate::daemonRole())
         return {};
-    return Error(
-        ErrorCode::InvalidParams,
-        QStringLiteral("option --role is \"%1\", expected one of %2 (for people), daemon (for robots)")
-            .arg(arguments.role, roleNames().join(QStringLiteral(", "))));
+    const QString found =
+        arguments.role.isEmpty() ? QStringLiteral("missing") : QStringLiteral("\"%1\"").arg(arguments.role);
+    return Error(ErrorCode::InvalidParams,
+                 QStringLiteral("option --role is %1, expected one of %2 (for people), daemon (for robots)")
+                     .arg(found, roleNames().join(QStringLiteral(", "))));
 }
 
 int daysOfKeys(const Arguments &arguments) {

@@ -16,8 +16,8 @@ Loggers are the daemons with the command record.start that answer at their defau
 
   --daemons A,B  record, replay, doc --all: these daemons and no others; setup: the supervisor, the motor control
   --host HOST    where daemons given by name run (127.0.0.1)
-  --timeout S    limits the wait for a connection (5) and for a reply (as long as the daemon answers other
-                 requests); keys pair: the wait for the other computer (120)
+  --timeout S    the longest wait. Without it 5 s for a connection, 120 s for the other computer of keys pair;
+                 for a reply as long as the daemon answers other requests
   --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
   --out FILE     prints there instead of to stdout; FILE must not exist
   --force        --out: overwrites FILE
@@ -275,6 +275,18 @@ const Subcommand *findSubcommand(const QString &name) {
             return &one;
     }
     return nullptr;
+}
+
+QString foreignOption(const Subcommand &command, const QStringList &given) {
+    const QStringList ofAll{"--host", "--timeout", "--json", "--out", "--force", "--help", "-h", "--version"};
+    const QStringList own = QString::fromLatin1(command.options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
+    for (const QString &option : given)
+        if (!ofAll.contains(option) && !own.contains(option))
+            return QStringLiteral("%1 is no option of \"%2\"%3")
+                .arg(option, QLatin1String(command.name),
+                     own.isEmpty() ? QString()
+                                   : QStringLiteral(", which has ") + own.join(QStringLiteral(", ")));
+    return {};
 }
 
 QString helpText() {

@@ -44,6 +44,9 @@ QStringList subcommandNames();
 /// nullptr where there is none.
 const Subcommand *findSubcommand(const QString &name);
 
+/// What is wrong with an option that none of its kind has; empty: nothing.
+QString foreignOption(const Subcommand &command, const QStringList &given);
+
 /// What --help prints.
 QString helpText();
 

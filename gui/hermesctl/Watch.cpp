@@ -6,6 +6,7 @@
 
 #include <QEventLoop>
 #include <QJsonArray>
+#include <QTimer>
 #include <optional>
 
 namespace hermes::ctl {
@@ -41,6 +42,18 @@ public:
             options.insert(QStringLiteral("max_rate_hz"), arguments_.rate_hz);
         client_.subscribe(arguments_.words.at(1), options,
                           [this](const TopicUpdate &update) { onMessage(update); });
+        silence_.setSingleShot(true);
+        QObject::connect(&silence_, &QTimer::timeout, &loop_, [&] {
+            if (!arguments_.timeoutIsGiven)
+                return note(
+                    QStringLiteral("no message of %1 yet; hermesctl list shows what is wrong with a daemon")
+                        .arg(arguments_.words.at(1)));
+            result = Error(ErrorCode::TimedOut, QStringLiteral("%1: no message within %2 s")
+                                                    .arg(arguments_.words.at(1))
+                                                    .arg(double(arguments_.timeout.count()) / 1000));
+            loop_.quit();
+        });
+        silence_.start(arguments_.timeout);
         runStream(loop_);
         progress_.reset();
         tellWhatIsMissing();
@@ -78,6 +91,7 @@ private:
     void onMessage(const TopicUpdate &update) {
         if (arguments_.count > 0 && left_ == 0)
             return; // more came in the same read than were asked for
+        arguments_.timeoutIsGiven ? silence_.start() : silence_.stop();
         dropped_ = update.dropped;
         arguments_.csv ? printRow(update) : printMessage(update);
         if (readerIsGone() || (arguments_.count > 0 && --left_ == 0))
@@ -119,6 +133,7 @@ private:
     Client &client_;
     const Arguments &arguments_;
     QEventLoop loop_;
+    QTimer silence_; ///< without --timeout only until the first message
     CsvTable table_{{}};
     int left_;
     std::optional<Progress> progress_;

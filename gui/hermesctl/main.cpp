@@ -22,6 +22,22 @@ namespace {
 
 constexpr int usageStatus = 2;
 
+/// What the data of an error say, for people: "motion.vx: a number from -1 to 1 m/s", "needed: engineer".
+QStringList linesOf(const Error &error) {
+    QStringList lines;
+    const QJsonObject data = error.data.toObject();
+    for (const QJsonValue &wrong : data[QStringLiteral("errors")].toArray())
+        lines.append(
+            QStringLiteral("%1: expected %2")
+                .arg(wrong[QStringLiteral("path")].toString(), wrong[QStringLiteral("expected")].toString()));
+    for (auto one = data.begin(); one != data.end(); ++one)
+        if (one.key() != QStringLiteral("errors"))
+            lines.append(
+                one.key() + QStringLiteral(": ") +
+                (one->isString() ? printable(one->toString()) : QString::fromUtf8(compactJson(*one))));
+    return lines;
+}
+
 /// Tells of a failure on stderr, for people or, with --json, for programs.
 void tell(const Error &error, const QStringList &advice, bool json) {
     if (json) {
@@ -34,8 +50,8 @@ void tell(const Error &error, const QStringList &advice, bool json) {
         return;
     }
     std::fprintf(stderr, "hermesctl: %s (%d)\n", qPrintable(error.message), error.code);
-    if (!error.data.isUndefined() && advice.isEmpty())
-        std::fprintf(stderr, "%s\n", compactJson(error.data).constData());
+    for (const QString &line : advice.isEmpty() ? linesOf(error) : QStringList())
+        std::fprintf(stderr, "  %s\n", qPrintable(line));
     for (const QString &line : advice)
         std::fprintf(stderr, "  %s\n", qPrintable(line));
 }
@@ -93,6 +109,9 @@ int runRobotCommand(const Subcommand &command, const Arguments &arguments) {
 
 QString unknownCommand(const QString &command) {
     const QString first = command.section(QLatin1Char(' '), 0, 0);
+    if (command == QStringLiteral("stop"))
+        return QStringLiteral(
+            "unknown command \"stop\"; the robot stops with: hermesctl call motorcontrol motor.stop");
     if (!hasSecondWord(first))
         return QStringLiteral("unknown command \"%1\"%2")
             .arg(command, didYouMean(command, subcommandNames()));
@@ -119,6 +138,8 @@ int run(Arguments arguments) {
     if (arguments.words.size() < least || arguments.words.size() > most)
         return usageError(QStringLiteral("usage: hermesctl %1").arg(QLatin1String(command->usage)),
                           arguments.json);
+    if (const QString foreign = foreignOption(*command, arguments.given); !foreign.isEmpty())
+        return usageError(foreign, arguments.json);
     if (arguments.csv && arguments.json)
         return usageError(QStringLiteral("--csv and --json exclude each other"), true);
     setJsonNotes(arguments.json);
@@ -154,7 +175,7 @@ int main(int argc, char **argv) {
     if (!arguments)
         return usageError(arguments.error().message, list.contains(QStringLiteral("--json")));
     int status = 0;
-    if (arguments->help)
+    if (arguments->help || arguments->command == QStringLiteral("help"))
         printLine(QString::fromStdString(fittedHelp(helpText().toStdString())).trimmed());
     else if (arguments->version)
         printVersion(arguments->json);

@@ -177,7 +177,8 @@ void SessionRecorder::mark(const QString &text, const Done<Result<SessionReplies
             if (isRecording(state) && state.member.marks)
                 takers.push_back(state.member);
         if (takers.empty())
-            return done(sessionError("no logger that takes marks is recording", states.problems));
+            return done(sessionError(
+                "no logger that takes marks is recording; hermes-seriallogger takes them", states.problems));
         callAll(callsOf(takers, {{"text", text}}), "mark", members_.timeout, this,
                 [=](const SessionReplies &replies) {
                     const QStringList lines = states.problems + complaints(replies);

@@ -8,6 +8,7 @@
 #include <vectorlib/observation/FloorPlan.h>
 
 #include <iostream>
+#include <memory>
 #include <sstream>
 
 using namespace hermes::vector;
@@ -100,9 +101,9 @@ private Q_SLOTS:
         Told told;
         command.options.progress = told.sink();
         std::ostringstream aside;
-        std::streambuf *const shown = std::cout.rdbuf(aside.rdbuf());
+        const std::unique_ptr<std::streambuf, void (*)(std::streambuf *)> shown(
+            std::cout.rdbuf(aside.rdbuf()), [](std::streambuf *usual) { std::cout.rdbuf(usual); });
         command.run();
-        std::cout.rdbuf(shown);
         QVERIFY(told.isSteady);
         QCOMPARE(told.last, told.total);
         QVERIFY2(isShort || told.calls > 1, "to be told, or to be listed as short");

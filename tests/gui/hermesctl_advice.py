@@ -2,14 +2,13 @@
 """hermesctl says what to do about a failure, and speaks JSON where it is asked to."""
 import json
 import os
-import pty
 import socket
 import subprocess
 import tempfile
 import time
 import unittest
 
-from ctl_support import PROGRAM, MadeUpDaemon, Thermometer, ctl
+from ctl_support import PROGRAM, MadeUpDaemon, Thermometer, at_terminal, ctl
 
 # A command with an object, and a setting, as their daemon describes them.
 WHEN = {"type": "object", "additionalProperties": False, "properties": {
@@ -69,6 +68,28 @@ class Advice(unittest.TestCase):
                                 (("watch", address, "x", "--cvs"), "--csv")):
             self.assertIn(f"did you mean {near}", self.fails(*arguments, status=2))
 
+    def test_options_of_another_command(self):
+        for words, text in ((("drive", "motorcontrol", "vx=0", "--count", "3"), '--count is no option of "drive", which has --for'),
+                            (("watch", self.daemon.address, "temperature", "--for=1"), '--for is no option of "watch"'),
+                            (("keys", "list", "--csv"), '--csv is no option of "keys list"')):
+            self.assertIn(text, self.fails(*words, status=2))
+
+    def test_commands_that_people_try(self):
+        self.assertIn("hermesctl call motorcontrol motor.stop", self.fails("stop", status=2))
+        self.assertEqual(ctl("help").stdout, ctl("--help").stdout)
+        self.assertIn("is 99999, expected 1 to 65535", self.fails("call", "127.0.0.1:99999", "daemon.info", status=2))
+        self.assertIn("without a port", self.fails("list", "--host", "127.0.0.1:7490", status=2))
+        self.assertIn("option --role is missing", self.fails("keys", "issue", "ben", status=2))
+        self.assertIn("drives no robot", self.fails("drive", self.daemon.address, "vx=0.1", "--for", "1"))
+
+    def test_a_topic_that_is_silent(self):
+        silent = MadeUpDaemon({"daemon.info": {}})
+        self.addCleanup(silent.stop)
+        self.assertIn("made.up: no message within 0.5 s", self.fails("watch", silent.address, "made.up", "--timeout", "0.5"))
+        with subprocess.Popen([PROGRAM, "watch", silent.address, "made.up"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as watch:
+            self.assertIn("no message of made.up yet", watch.stderr.readline())
+            watch.terminate()
+
     def test_wrong_values(self):
         text = self.fails("call", self.daemon.address, "thermometer.calibrate", "offset_k=warm")
         self.assertIn("offset_k: a number from -5 to 5 in K; Shift", text)
@@ -106,6 +127,12 @@ class Advice(unittest.TestCase):
         shown = ctl("set", address, "sensor.theta_rad=-180", "--json")
         self.assertEqual((shown.returncode, json.loads(shown.stderr)),
                          (0, {"note": "sensor.theta_rad: -180 rad is 28.6 turns; did you mean -3.142 rad (-180 degrees)?"}))
+
+    def test_a_hint_that_cannot_be_had_is_no_error(self):
+        daemon = MadeUpDaemon({"trigger.define": {"id": "x"}})
+        shown = ctl("call", daemon.address, "trigger.define", "when.angle=90")
+        daemon.stop()
+        self.assertEqual((shown.returncode, json.loads(shown.stdout), shown.stderr), (0, {"id": "x"}, ""))
 
     def test_relative_paths(self):
         address = self.made_up(trigger__define=MadeUpDaemon.Error(code=-32008, message="/x: No such file"))
@@ -151,19 +178,16 @@ class Patience(unittest.TestCase):
         self.assertLess(time.monotonic() - begun, 8)
 
     def test_progress_at_a_terminal(self):
-        terminal, far = pty.openpty()
-        with subprocess.Popen([PROGRAM, *self.calibrate(4500)], stdout=subprocess.DEVNULL, stderr=far) as process:
-            os.close(far)
-            shown = b""
-            try:
-                while block := os.read(terminal, 4096):
-                    shown += block
-            except OSError:  # it has ended
-                pass
-            self.assertEqual(process.wait(60), 0)
-        os.close(terminal)
-        self.assertIn(b"waiting, second 3", shown)
-        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown)
+        shown = at_terminal(*self.calibrate(4500))
+        self.assertIn("waiting, second 3", shown)
+        self.assertTrue(shown.endswith("\r\x1b[K"), shown)
+
+    def test_a_robot_that_tells_no_odometry(self):
+        daemon = MadeUpDaemon({name: {} for name in ("daemon.info", "motor.state", "control.acquire", "motor.stop", "control.release")})
+        shown = ctl("drive", daemon.address, "vx=0.1", "--for", "1", "--timeout", "1")
+        daemon.stop()
+        self.assertEqual((shown.returncode, shown.stderr.splitlines()[0]), (1, "hermesctl: no odometry came within 1 s (-32010)"))
+        self.assertNotIn("takes longer", shown.stderr)
 
     def test_a_daemon_that_hangs(self):
         with socket.create_server(("127.0.0.1", 0)) as silent:

@@ -140,6 +140,18 @@ class Drive(unittest.TestCase):
         self.tearDownClass()
         self.setUpClass()
 
+    def test_who_stopped_the_robot(self):
+        for takes in (("motor.stop", {}), ("control.acquire", {"client": "ben", "timeout_s": 1, "take_over": True})):
+            process = self.begun("vx=0.3")
+            self.motors.call(takes[0], **takes[1])
+            _, said = process.communicate(timeout=60)
+            halted = self.motors.call("motor.state")["halted"]
+            self.assertEqual(process.returncode, 1)
+            self.assertRegex(said, "the robot had stopped: .*" + ("stop" if takes[0] == "motor.stop" else "ben took the control over from hermesctl"))
+            self.assertNotIn("control.acquire first", said)
+            self.assertTrue(halted)
+            wait_for("standing", self.stands, 10)
+
     def test_keys(self):
         keys = Keys(self.address)
         for key, moves in ((b"w", lambda: self.speeds()[0] > 0.1), (b"\x1b[D", lambda: self.speeds()[1] > 0.2),

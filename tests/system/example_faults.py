@@ -13,6 +13,8 @@ import unittest
 from support import SOURCE, Daemon, free_port
 
 EXAMPLES = os.path.join(SOURCE, "docs", "examples")
+sys.path.insert(0, EXAMPLES)
+from drive import PathFollower  # noqa: E402
 
 
 def begin(name, *arguments):
@@ -34,6 +36,21 @@ class ExampleFaultsTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, complaint)
 
+    def file(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def begun(self, name, *arguments):
+        """The port of a daemon that runs until the test ends."""
+        port = free_port(0)
+        process = begin(name, *arguments, "--port", port)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        process.stdout.readline()
+        return port
+
     def test_a_daemon_ends_in_order_at_ctrl_c(self):
         for name in ("daemon.py", "scan2d.py"):
             for number in (signal.SIGINT, signal.SIGTERM):
@@ -53,26 +70,31 @@ class ExampleFaultsTest(unittest.TestCase):
             self.expect(begin("daemon.py", "--port", port), 1, f"fan: cannot listen on 127.0.0.1:{port}: Address already in use", "--port")
 
     def test_a_daemon_says_what_is_wrong_with_its_settings(self):
-        path = os.path.join(self.folder, "fan.json")
-        for text, word in (("{", "expected an object of JSON"), ("[1]", "expected an object of JSON"), ('{"speed": 2}', "speed: expected"),
-                           ('{"sped": 1}', "sped: expected")):
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(text)
-            self.expect(begin("daemon.py", "--config", path, "--port", free_port(0)), 1, word)
+        for text, word in (("{", "expected an object of JSON"), ("[1]", "expected an object of JSON"), ('{"speed": 2}', "speed is 2, expected number"),
+                           ('{"sped": 1}', "sped is unknown, there is ")):
+            self.expect(begin("daemon.py", "--config", self.file("fan.json", text), "--port", free_port(0)), 1, word)
         self.expect(begin("daemon.py", "--config", self.folder), 1, "Is a directory")
-        self.expect(begin("daemon.py", "--set", "speed=2"), 1, "speed: expected number 0 to 1")
+        self.expect(begin("daemon.py", "--set", "speed=2"), 1, "speed is 2, expected number from 0 to 1")
 
     def test_settings_of_the_command_line_win(self):
-        path, port = os.path.join(self.folder, "fan.json"), free_port(0)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write('{"speed": 0.1, "alarm_c": 20}')
-        process = begin("daemon.py", "--config", path, "--set", "speed=0.7", "--port", port)
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        process.stdout.readline()
-        with Daemon(port=port) as fan:
+        path = self.file("fan.json", '{"speed": 0.1, "alarm_c": 20}')
+        with Daemon(port=self.begun("daemon.py", "--config", path, "--set", "speed=0.7")) as fan:
             settings = fan.call("settings.get")
         self.assertEqual((settings["speed"], settings["alarm_c"]), (0.7, 20))
+
+    def test_numbers_that_are_not_finite(self):
+        with socket.create_connection(("127.0.0.1", self.begun("daemon.py")), 10) as client, client.makefile("rb") as replies:
+            for number in (b"NaN", b"-Infinity", b"1e999"):
+                for request in (b'{"id": 1, "method": "settings.set", "params": {"values": {"alarm_c": %s}}}', b'{"id": %s}'):
+                    client.sendall(request % number + b"\n")
+                    self.assertIn("not a finite number", replies.readline().decode())
+            client.sendall(b'{"id": 2, "method": "daemon.info"}\n')
+            self.assertIn(b'"result"', replies.readline())
+
+    def test_a_drive_that_would_never_arrive(self):
+        for option in (("--speed", "-0.5"), ("--speed", "nan"), ("--turn-rate", "0")):
+            with self.assertRaisesRegex(ValueError, "above 0"):
+                PathFollower([(0, 0), (1, 0)], **{option[0][2:].replace("-", "_"): float(option[1])})
 
     def test_a_client_says_where_nobody_answers(self):
         port = free_port(0)
@@ -114,6 +136,10 @@ class ExampleFaultsTest(unittest.TestCase):
         link, port = os.path.join(self.folder, "laser"), free_port(0)
         self.expect(begin("simulated_ld06.py", world, link, "--port", port), 1, f"the simulator: no daemon answers at 127.0.0.1:{port}")
         self.expect(begin("simulated_ld06.py", world + "x", link), 1, world + "x")
+        for text in ("{", "[1]", '{"edges": [1]}', '{"edges": [[1, 2]]}'):
+            self.expect(begin("simulated_ld06.py", self.file("world.json", text), link), 1, "world.json: expected a world")
+        fan = self.begun("daemon.py")
+        self.expect(begin("simulated_ld06.py", world, link, "--port", fan), 1, "the simulator: no topic truth")
 
 
 if __name__ == "__main__":

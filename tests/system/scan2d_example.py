@@ -85,6 +85,14 @@ class PacketTest(unittest.TestCase):
     def test_a_turn_with_a_gap_is_left_out(self):
         self.assertEqual(len(self.turns(self.spin(150, missing=range(50, 60)))), len(self.turns(self.spin(150))) - 1)
 
+    def test_a_head_that_is_held_makes_no_turn(self):
+        moments = [1000 * 12 / 4500 * i for i in range(2300)]
+        angles = [9.6 * min(i, max(100, i - 2000)) % 360 for i in range(2300)]  # held for 5.3 s
+        sent = [packet(angle, round(moment)) for angle, moment in zip(angles, moments)]
+        turns = [len(points) for _, points in self.turns(sent)]
+        self.assertGreater(len(turns), 4)
+        self.assertLess(max(turns), 500)
+
     def test_late_readings_do_not_change_the_stamps(self):
         sent = self.spin(1000)
         due = [1000 + 12 / 4500 * i for i in range(len(sent))]
