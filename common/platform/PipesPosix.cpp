@@ -9,9 +9,14 @@ void outliveClosedPipes() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-bool isReaderGone(std::FILE *stream) {
+bool isOtherEndGone(std::FILE *stream) {
     pollfd end{::fileno(stream), 0, 0};
-    return ::poll(&end, 1, 0) > 0 && (end.revents & POLLERR) != 0;
+    return ::poll(&end, 1, 0) > 0 && (end.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+bool takesMore(std::FILE *stream) {
+    pollfd end{::fileno(stream), POLLOUT, 0};
+    return ::poll(&end, 1, 0) > 0;
 }
 
 std::FILE *streamInto(int descriptor) {

@@ -1,6 +1,7 @@
 #include "common/progress/Progress.h"
 
 #include "common/platform/Console.h"
+#include "common/platform/Pipes.h"
 
 #include <cmath>
 #include <cstdio>
@@ -37,7 +38,9 @@ double seconds(std::chrono::steady_clock::duration time) {
 }
 
 void write(const std::string &text) {
-    std::fputs(text.c_str(), stderr); // where nobody reads it the work goes on
+    if (!takesMore(stderr)) // where nobody reads it the work goes on
+        return;
+    std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
 }
 

@@ -96,6 +96,14 @@ class PathFollower:
         return speed, speed * curvature
 
 
+def numbers(message, *names):
+    """These members of a message; ValueError where one is no finite number."""
+    found = {name: message[name] for name in names}
+    if not all(isinstance(value, (int, float)) and math.isfinite(value) for value in found.values()):
+        raise ValueError(f"expected numbers, found {found}")
+    return found
+
+
 def connect(program, host, port):
     """A connection to the daemon that this program is; DriveError says what to start where it is not there."""
     try:
@@ -122,9 +130,12 @@ class PoseTopic(threading.Thread):
             for message in self.stream:
                 data = message["data"]
                 if data.get("outcome", "matched") == "matched":  # a lost matcher only guesses
-                    self.newest = message["stamp"], data.get("pose", data), data["twist"]
-        except (OSError, ValueError, KeyError, TypeError) as error:
+                    pose, twist = numbers(data.get("pose", data), "x", "y", "theta"), numbers(data["twist"], "vx", "vy", "omega")
+                    self.newest = numbers(message, "stamp")["stamp"], pose, twist
+        except OSError as error:
             self.failure = error
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            self.failure = f"cannot be read: {error!r}"
 
     def now(self):
         """(x, y, theta) at this moment, the last pose moved on by its twist; None when there is none or it is too old."""

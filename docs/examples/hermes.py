@@ -15,6 +15,8 @@ import pwd
 import socket
 import struct
 
+MOST_CHARACTERS = 1 << 25  # of a message
+
 
 class DaemonError(Exception):
     """The daemon refused a call: code, message, and data that name the reason."""
@@ -92,9 +94,11 @@ class Daemon:
         while True:
             message = self._receive()
             if message.get("id") == request["id"]:
-                if "error" in message:
-                    raise DaemonError(message["error"])
-                return message["result"]
+                if "result" in message:
+                    return message["result"]
+                error = message.get("error")
+                known = isinstance(error, dict) and {"code", "message"} <= error.keys()
+                raise DaemonError(error if known else {"code": -32603, "message": f"{method}: the reply has no result: {message}"[:500]})
 
     def subscribe(self, topic, **options):
         """Yields the topic's messages as they come, without end: dictionaries with seq, stamp (seconds since the epoch), dropped
@@ -113,10 +117,14 @@ class Daemon:
             yield queue.popleft()
 
     def _receive(self):
-        line = self.lines.readline()
+        line = self.lines.readline(MOST_CHARACTERS)
+        if len(line) == MOST_CHARACTERS:
+            raise ConnectionError(f"the daemon sent a line of over {MOST_CHARACTERS} characters")
         if not line.endswith("\n"):  # nothing, or a message that was on its way
             raise ConnectionError("the daemon closed the connection")
         message = json.loads(line)
+        if not isinstance(message, dict):
+            raise ValueError(f"expected an object of JSON, found {line[:100]}")
         if message.get("method") == "topic":
             self.topics[message["params"]["subscription"]].append(message["params"])
         return message

@@ -139,6 +139,8 @@ class Daemon:
             _, schemas, function = self.methods[request["method"]]
             values = {**{n: s["default"] for n, s in schemas.items() if "default" in s}, **request.get("params", {})}
             check(schemas, values, -32602)
+            if missing := [n for n in schemas if n not in values]:
+                raise Refusal(-32602, f"missing: {', '.join(missing)}")
             reply = {"result": function(**values)}
         except Refusal as error:
             reply = {"error": dict(zip(("code", "message", "data"), error.args))}
@@ -171,6 +173,8 @@ class Daemon:
         return {"type": "object", "properties": self.schemas}
 
     def settings_get(self, path):
+        if path and path not in self.settings:
+            raise Refusal(-32602, f"path: {path} is unknown, there is {', '.join(self.settings)}")
         return self.settings[path] if path else self.settings
 
     def settings_set(self, values):
@@ -184,10 +188,15 @@ class Daemon:
         return self.settings_set({name: self.schemas[name]["default"] for name in paths or self.schemas})
 
     def settings_save(self):
+        if not self.options.config:
+            raise Refusal(-32008, "no file to save to: start the daemon with --config FILE")
         kept = {name: value for name, value in self.settings.items() if value != self.schemas[name]["default"]}
         try:
-            with open(self.options.config, "w", encoding="utf-8") as file:
+            with open(self.options.config + ".new", "w", encoding="utf-8") as file:
                 json.dump(kept, file)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(file.name, self.options.config)  # a full disk leaves the old one
         except OSError as error:
             raise Refusal(-32008, str(error), {"path": self.options.config}) from error
         return {"path": self.options.config}

@@ -5,6 +5,7 @@
 """
 import math
 import os
+import select
 import struct
 import termios
 import time
@@ -12,6 +13,8 @@ import time
 from hermes_serial import open_port
 
 BAUD, PACKET_BYTES, POINTS = 230400, 47, 12
+SILENT_S = 2
+MOST_POINTS = 4500 // 2  # of a turn: two turns a second at least
 HEAD = bytes([0x54, 0x2C])
 # A packet is complete so long after its first beam: its beams at 4,500 a second, then 10 bits a byte on the line.
 DELAY_S = POINTS / 4500 + PACKET_BYTES * 10 / BAUD
@@ -63,6 +66,8 @@ def read_packets(device):
         except termios.error as error:
             raise OSError(f"{device}: {error.args[-1]}") from error
         while True:
+            if not select.select([port], [], [], SILENT_S)[0]:
+                raise OSError(f"{device}: it is silent")
             more = os.read(port, 4096)
             if not more:
                 raise OSError(f"{device}: the line has gone")
@@ -85,14 +90,12 @@ def read_scans(device):
         degrees_per_s, first = struct.unpack_from("<HH", packet, 2)
         last, milliseconds = struct.unpack_from("<HH", packet, 42)
         first, last, came = first / 100, last / 100, host_time(milliseconds)
-        if host_time.passed > 0.02:  # packets are missing; they come every 2.7 ms
-            is_whole = False
+        if host_time.passed > 0.02 or len(points) > MOST_POINTS:  # packets are missing (they come every 2.7 ms); the head is held
+            points, is_whole = [], False
         elif first < before:  # past 0 degrees
             if is_whole:
                 yield begin, points
             points, is_whole = [], True
-        elif points and came - begin > 1:  # its head does not turn
-            points, is_whole = [], False
         if not points:
             begin, start = came - DELAY_S, first
         before = first

@@ -73,7 +73,7 @@ def main():
     line, near = os.openpty()
     tty.setraw(near)
     os.set_blocking(line, False)
-    if os.path.islink(arguments.link):
+    if os.path.islink(arguments.link) and os.readlink(arguments.link).startswith("/dev/pts/"):  # of the last run
         os.remove(arguments.link)
     os.symlink(os.ttyname(near), arguments.link)
     threading.Thread(target=follow, args=(arguments.port,), daemon=True).start()

@@ -12,8 +12,9 @@ Result<double> positive(const QString &option, const QString &text) {
     bool ok = false;
     const double value = text.toDouble(&ok);
     if (!ok || !std::isfinite(value) || value <= 0 || value > 1e9)
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option %1 is \"%2\", expected a number above 0").arg(option, text));
+        return Error(
+            ErrorCode::InvalidParams,
+            QStringLiteral("option %1 is \"%2\", expected a number above 0, at most 1e9").arg(option, text));
     return value;
 }
 

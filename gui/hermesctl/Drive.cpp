@@ -2,6 +2,7 @@
 #include "common/Time.h"
 #include "common/daemon/SignalWatcher.h"
 #include "common/platform/Console.h"
+#include "common/platform/Pipes.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/DriveKeys.h"
 #include "gui/hermesctl/DriveLine.h"
@@ -19,6 +20,8 @@ namespace hermes::ctl {
 namespace {
 
 constexpr double degree = 0.017453292519943295;
+constexpr std::chrono::milliseconds beat{50};
+constexpr qint64 frozen_ms = 200; ///< between two beats: this program stood still
 
 Result<Pose2D> poseOf(Client &client, const Arguments &arguments) {
     const auto state = ask(client, arguments, QStringLiteral("motor.state"));
@@ -63,8 +66,12 @@ Result<void> driveOn(Driver &driver, double seconds) {
 Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
     note(QLatin1String(DriveKeys::help));
     Result<void> result;
+    QElapsedTimer last;
+    const auto stoodStill = [&last] { return last.restart() > frozen_ms; };
     {
         KeyTerminal terminal([&](const QByteArray &bytes) {
+            if (stoodStill() && !bytes.isEmpty()) // when the keys were pressed nobody knows
+                return terminal.forget();
             const auto action = bytes.isEmpty() ? DriveKeys::Action::Quit : keys.take(bytes, monotonicNow());
             if (action == DriveKeys::Action::Stop)
                 driver.brake();
@@ -73,6 +80,13 @@ Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
             terminal.end();
             driver.end();
         });
+        last.start();
+        QTimer timer;
+        QObject::connect(&timer, &QTimer::timeout, &timer, [&] {
+            if (stoodStill())
+                terminal.forget();
+        });
+        timer.start(beat);
         result = driver.run();
     }
     if (isTerminal(StandardStream::Errors))
@@ -82,9 +96,20 @@ Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
 
 /// On stderr, over itself.
 void show(const Twist2D &wish) {
-    if (isTerminal(StandardStream::Errors))
+    if (isTerminal(StandardStream::Errors) && takesMore(stderr))
         std::fprintf(stderr, "\rvx %5.2f m/s, omega %5.2f rad/s ", wish.vx, wish.omega);
 }
+
+/// Whoever began this has gone: the program that reads what it prints, the connection by ssh, the terminal.
+class Company {
+public:
+    bool isGone() const {
+        return readerIsGone() || isOtherEndGone(stderr) || (hadInput_ && isOtherEndGone(stdin));
+    }
+
+private:
+    const bool hadInput_ = !isOtherEndGone(stdin);
+};
 
 } // namespace
 
@@ -113,6 +138,12 @@ Result<void> drive(Client &client, const Arguments &arguments) {
     driver.endAfter(arguments.for_s);
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &client, [&driver] { driver.end(); });
+    QTimer look;
+    QObject::connect(&look, &QTimer::timeout, &client, [&driver, company = Company()] {
+        if (company.isGone())
+            driver.end();
+    });
+    look.start(beat);
     const auto driven = velocity ? driveOn(driver, arguments.for_s) : driveByKeys(keys, driver);
     if (!driven)
         return driven;

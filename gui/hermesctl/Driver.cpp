@@ -15,6 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds period{50}; // of the commands
 constexpr double lease_s = 1;                   // of the control, without a command
 constexpr double standing_s = 5;                // after a stop
+constexpr double unheard_s = 0.5;               // in a shorter drive no answer need have come
 
 double secondsOf(const QElapsedTimer &timer) {
     return double(timer.elapsed()) / 1000;
@@ -92,12 +93,15 @@ void Driver::tick() {
 }
 
 void Driver::send() {
+    ++sent_;
     QJsonObject command = wish_();
     command["stamp"] = stampNow() + clock_.seconds();
     client_.call(
         method_, command,
         [this, guard = QPointer<QEventLoop>(&loop_)](const Result<QJsonValue> &result) {
-            if (guard && !result)
+            if (guard && result)
+                ++obeyed_;
+            else if (guard)
                 onRefused(result.error());
         },
         arguments_.timeout, Client::Repeats::None); // a late one would move the robot
@@ -138,6 +142,12 @@ Result<void> Driver::stop() {
     }
     if (!stopped)
         return stopped.error();
+    if (obeyed_ == 0 && seconds_ > unheard_s)
+        return Error(
+            ErrorCode::NotReady,
+            QString("the robot obeyed none of %1 commands: they came too late, or no answer came. The clocks "
+                    "may disagree, or the connection is slower than safety.command_timeout_s")
+                .arg(sent_));
     if (!(*stopped)["confirmed"].toBool())
         return Error(ErrorCode::DeviceFault,
                      "the robot was told to stop, but does not confirm that it stands: " +

@@ -58,6 +58,7 @@ private:
     bool isDriving_ = false, hasEnded_ = false;
     double seconds_ = 0;
     Result<void> failure_;
+    quint64 sent_ = 0, obeyed_ = 0;
     QString halted_; ///< why the robot had stopped before that
 };
 

@@ -16,6 +16,8 @@ public:
     KeyTerminal(const KeyTerminal &) = delete;
     KeyTerminal &operator=(const KeyTerminal &) = delete;
 
+    /// What was typed and not taken yet is as if it had not been; so is all that was typed before this began.
+    void forget();
     /// Keys are taken no more.
     void end();
 

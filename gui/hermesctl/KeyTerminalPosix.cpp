@@ -33,12 +33,16 @@ KeyTerminal::KeyTerminal(const std::function<void(const QByteArray &)> &take)
     keys.c_cc[VSUSP] = keys.c_cc[VQUIT] = _POSIX_VDISABLE;
     keys.c_cc[VMIN] = 1;
     keys.c_cc[VTIME] = 0;
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &keys);
+    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &keys);
 }
 
 KeyTerminal::~KeyTerminal() {
     if (state_->isTerminal)
         ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &state_->settings);
+}
+
+void KeyTerminal::forget() {
+    ::tcflush(STDIN_FILENO, TCIFLUSH);
 }
 
 void KeyTerminal::end() {

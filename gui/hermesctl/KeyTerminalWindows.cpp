@@ -46,6 +46,7 @@ KeyTerminal::KeyTerminal(const std::function<void(const QByteArray &)> &take)
     state_->isTerminal = ::GetConsoleMode(input(), &state_->mode) != 0;
     if (state_->isTerminal)
         ::SetConsoleMode(input(), ENABLE_PROCESSED_INPUT | ENABLE_VIRTUAL_TERMINAL_INPUT);
+    forget();
     QObject::connect(&state_->notifier, &QWinEventNotifier::activated, [this, take] {
         if (!state_->isTerminal || hasKey())
             take(typed());
@@ -55,6 +56,10 @@ KeyTerminal::KeyTerminal(const std::function<void(const QByteArray &)> &take)
 KeyTerminal::~KeyTerminal() {
     if (state_->isTerminal)
         ::SetConsoleMode(input(), state_->mode);
+}
+
+void KeyTerminal::forget() {
+    ::FlushConsoleInputBuffer(input());
 }
 
 void KeyTerminal::end() {

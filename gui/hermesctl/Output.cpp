@@ -89,7 +89,7 @@ void printJson(const QJsonValue &value) {
 bool readerIsGone() {
     if (!destination.file)
         return false;
-    if (isReaderGone(destination.file))
+    if (isOtherEndGone(destination.file))
         destination.isGone = true;
     return destination.isGone;
 }

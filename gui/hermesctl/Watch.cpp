@@ -123,6 +123,10 @@ private:
         if (interruptions_ > 0)
             note(QStringLiteral("the connection was lost %1 times: what was published meanwhile is missing")
                      .arg(interruptions_));
+        if (const auto &rejected = client_.rejected(); rejected.unreadable > 0)
+            note(QStringLiteral("%1 messages could not be read; the last: %2")
+                     .arg(rejected.unreadable)
+                     .arg(rejected.last));
         const auto &missing = table_.withoutColumn();
         for (auto one = missing.begin(); one != missing.end(); ++one)
             note(QStringLiteral("%1 came in %2 messages after the header: it has no column")

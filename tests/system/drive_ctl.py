@@ -5,9 +5,12 @@ import math
 import os
 import pty
 import signal
+import socket
 import subprocess
 import tempfile
 import termios
+import threading
+import time
 import unittest
 
 from support import BINARIES, Process, free_port, simulated_hall, wait_for
@@ -19,8 +22,9 @@ TOO_LATE = -32004  # on a busy machine the simulated controllers may answer too 
 class Keys:
     """hermesctl drive at a terminal of its own."""
 
-    def __init__(self, address):
+    def __init__(self, address, before=b""):
         self.terminal, far = pty.openpty()
+        os.write(self.terminal, before)
         self.before = termios.tcgetattr(far)
         self.far = far
         self.process = subprocess.Popen([HERMESCTL, "drive", address], stdin=far, stdout=subprocess.PIPE,
@@ -151,6 +155,83 @@ class Drive(unittest.TestCase):
             self.assertNotIn("control.acquire first", said)
             self.assertTrue(halted)
             wait_for("standing", self.stands, 10)
+
+    def test_whose_company_has_gone(self):
+        for streams in ("stdin", "stdout", "stderr"):
+            ends = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, streams: subprocess.PIPE}
+            process = subprocess.Popen([HERMESCTL, "drive", self.address, "vx=0.3"], **ends)
+            self.addCleanup(process.kill)
+            wait_for("motion", lambda: self.speeds()[0] > 0.1)
+            getattr(process, streams).close()
+            wait_for("standing", self.stands, 10)
+            self.assertIsNotNone(process.wait(20), streams)
+
+    def test_a_reader_who_does_not_read(self):
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        try:
+            while os.write(writer, b"x" * 4096):
+                pass
+        except BlockingIOError:
+            os.set_blocking(writer, True)
+        process = subprocess.Popen([HERMESCTL, "drive", self.address, "vx=0.3", "--json"], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=writer)
+        self.addCleanup(process.kill)
+        os.close(writer)
+        wait_for("motion", lambda: self.speeds()[0] > 0.1)
+        time.sleep(1.5)  # so long nothing is told
+        self.assertGreater(self.speeds()[0], 0.1)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(20), 0)
+        process.stdout.close()
+        os.close(reader)
+        self.assertTrue(self.stands())
+
+    def test_keys_of_before(self):
+        begun = time.monotonic()
+        keys = Keys(self.address, before=b"wwww")
+        wait_for("the control", lambda: self.motors.call("control.state")["held"])
+        while time.monotonic() < begun + 2:
+            self.assertTrue(self.stands())
+        wait_for("motion", lambda: keys.press(b"w") or self.speeds()[0] > 0.1)
+        keys.process.send_signal(signal.SIGSTOP)
+        time.sleep(0.5)
+        keys.press(b"wwww")
+        wait_for("standing", self.stands)
+        keys.process.send_signal(signal.SIGCONT)
+        begun = time.monotonic()
+        while time.monotonic() < begun + 1:
+            self.assertTrue(self.stands())
+        keys.press(b"q")
+        keys.end()
+
+    def test_commands_that_all_come_too_late(self):
+        with socket.create_server(("127.0.0.1", 0)) as slow:
+            threading.Thread(target=self.delay, args=(slow, 0.4), daemon=True).start()
+            done = subprocess.run([HERMESCTL, "drive", f"127.0.0.1:{slow.getsockname()[1]}", "vx=0.2", "--for", "2"],
+                                  stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("the robot obeyed none of", done.stderr)
+
+    def delay(self, slow, seconds):
+        """Passes on to the motor control and back what one client sends, so much later."""
+        near, _ = slow.accept()
+        far = socket.create_connection(("127.0.0.1", self.motorcontrol.port))
+
+        def carry(source, target):
+            try:
+                while data := source.recv(65536):
+                    timer = threading.Timer(seconds, target.sendall, (data,))
+                    timer.daemon = True
+                    timer.start()
+            except OSError:
+                pass
+        back = threading.Thread(target=carry, args=(far, near), daemon=True)
+        back.start()
+        carry(near, far)
+        time.sleep(2 * seconds)
+        near.close()
+        far.close()
 
     def test_keys(self):
         keys = Keys(self.address)
