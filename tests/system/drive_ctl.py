@@ -12,11 +12,15 @@ import termios
 import threading
 import time
 import unittest
+from unittest import mock
 
 from support import BINARIES, Process, free_port, simulated_hall, wait_for
 
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 TOO_LATE = -32004  # on a busy machine the simulated controllers may answer too late; the robot has halted
+
+
+os.environ.pop("SSH_CONNECTION", None)  # of who runs this
 
 
 class Keys:
@@ -263,6 +267,9 @@ class Drive(unittest.TestCase):
         self.assertIn('vx is "fast", expected a number of m/s', self.run_ctl("vx=fast", status=2))
         self.assertIn("vx is there twice", self.run_ctl("vx=1", "vx=0", status=2))
         self.assertIn("terminal for keys", self.run_ctl(status=2))
+        with mock.patch.dict(os.environ, SSH_CONNECTION="192.168.7.2 50000 192.168.7.1 22"):
+            self.assertIn("over ssh a drive with a velocity needs --for S", self.run_ctl("vx=0.1", status=2))
+            self.run_ctl("vx=0.1", "--for", "0.5")
         self.motors.call("control.acquire", client="another", timeout_s=10)
         self.assertIn("another holds the control", self.run_ctl("vx=0.1", status=1))
         self.motors.call("control.release")
