@@ -182,9 +182,21 @@ class FailingRuns(unittest.TestCase):
     def test_a_program_that_is_not_built_is_named_with_what_builds_it(self):
         self.assert_fails(self.run_with(env={"HERMES_BIN": self.folder}), "hermes-supervisor", "cmake --build --preset release --target")
 
+    def unfinished(self):
+        """Where a run makes the new site."""
+        return os.path.join(os.path.dirname(self.site), f".{os.path.basename(self.site)}.hermes-site")
+
+    def test_what_lies_beside_the_site_stays(self):
+        beside = os.path.join(self.site + ".new", "thesis.txt")
+        os.mkdir(self.site + ".new")
+        with open(beside, "w", encoding="utf-8") as file:
+            file.write("precious")
+        self.assert_fails(self.run_with(doxygen="exit 1"), "is as it was")
+        self.assertTrue(os.path.exists(beside))
+
     def test_a_tool_that_fails(self):
         self.assert_fails(self.run_with(doxygen="echo no memory >&2; exit 1"), "no memory", f"failed; {self.site} is as it was")
-        self.assertFalse(os.path.exists(self.site + ".new"))
+        self.assertFalse(os.path.exists(self.unfinished()))
 
     def test_a_disk_that_is_full(self):
         limit = 100_000  # bytes of a file: pictures have more
@@ -204,9 +216,9 @@ class FailingRuns(unittest.TestCase):
             os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
         self.assert_whole()
-        self.assertTrue(os.path.exists(self.site + ".new"))
+        self.assertTrue(os.path.exists(self.unfinished()))
         self.assert_fails(self.run_with(doxygen="exit 1"), "is as it was")
-        self.assertFalse(os.path.exists(self.site + ".new"), "what the killed run left stays")
+        self.assertFalse(os.path.exists(self.unfinished()), "what the killed run left stays")
 
     def test_a_folder_that_is_no_site_is_left_alone(self):
         os.remove(os.path.join(self.site, "search", "search_index.json"))
