@@ -107,7 +107,7 @@ class Caller:
                 message = json.loads(answer)
                 assert "result" in message, message
                 return before
-            seen = len(self.buffer)
+            seen = len(self.buffer) if at < 0 else at + len(mark)  # its line may not have ended yet
             part = self.connection.recv(1 << 16)
             assert part, "closed"
             self.buffer += part
