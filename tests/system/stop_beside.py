@@ -82,7 +82,7 @@ class Caller:
     """A connection that sees bytes as they come, at the pace that is asked for."""
 
     def __init__(self, connection):
-        self.connection, self.buffer, self.number = connection, b"", 0
+        self.connection, self.buffer, self.number = connection, bytearray(), 0
 
     def close(self):
         self.connection.close()
@@ -122,7 +122,7 @@ class Caller:
             assert part, "closed"
             self.buffer += part
         assert self.buffer[-1:] in (b"", b"\n") and self.buffer.count(b"\n") == replies, self.buffer[-200:]
-        read, self.buffer = len(self.buffer), b""
+        read, self.buffer = len(self.buffer), bytearray()
         return read
 
 
