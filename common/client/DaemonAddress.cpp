@@ -3,21 +3,13 @@
 #include "common/Project.h"
 #include "common/interface/InterfaceRegistry.h"
 
-#include <QRegularExpression>
 #include <QStringList>
 
 namespace hermes {
 
 Result<QString> daemonAddress(const QString &word, const QString &host) {
-    if (word.contains(QLatin1Char(':'))) {
-        static const QRegularExpression hostAndNumber(QStringLiteral("^[^:/]+:([0-9]+)$"));
-        const QString port = hostAndNumber.match(word).captured(1);
-        if (!port.isEmpty() && (port.toULongLong() < 1 || port.toULongLong() > 65535))
-            return Error(
-                ErrorCode::InvalidParams,
-                QStringLiteral("address \"%1\": the port is %2, expected 1 to 65535").arg(word, port));
+    if (word.contains(QLatin1Char(':')))
         return word;
-    }
     const quint16 port = defaultPort(word);
     if (port == 0) {
         return Error(ErrorCode::InvalidParams,

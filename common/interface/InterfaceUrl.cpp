@@ -20,6 +20,9 @@ Result<InterfaceUrl> InterfaceUrl::parse(const QString &text) {
     static const QRegularExpression number(QStringLiteral("^([a-z]+://)?\\d+([/?]|$)"));
     if (number.match(text).hasMatch()) // QUrl takes it for an address: 7490 for 0.0.29.66
         return wrongAddress(text, QStringLiteral("a number alone tells no host"));
+    static const QRegularExpression host(QStringLiteral("^([a-z]+://)?[^/?]*:(\\d+)([/?]|$)"));
+    if (const QString port = host.match(text).captured(2); port.size() > 5 || port.toInt() > 65535)
+        return wrongAddress(text, QStringLiteral("the port is %1, at most 65535").arg(port));
     const QUrl url(text.contains(QStringLiteral("://")) ? text : QStringLiteral("tcp://") + text,
                    QUrl::StrictMode);
     if (!url.isValid() || url.scheme().isEmpty())

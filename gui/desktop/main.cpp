@@ -42,10 +42,10 @@ int main(int argc, char **argv) {
     if (onlyPrints(argc, argv))
         qputenv("QT_QPA_PLATFORM", "offscreen"); // needs no display
     if (lacksDisplay(argc, argv)) {
-        std::fputs("hermes-gui: this computer has no display (DISPLAY, WAYLAND_DISPLAY). Start the window on "
-                   "your own "
-                   "computer and connect it to the robot: docs/remote.md. In a terminal use hermesctl.\n",
-                   stderr);
+        std::fputs(
+            "hermes-gui: this computer has no display (DISPLAY, WAYLAND_DISPLAY). Start the window on "
+            "your own computer, and connect it to the robot: docs/remote.md. In a terminal use hermesctl.\n",
+            stderr);
         return 1;
     }
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);

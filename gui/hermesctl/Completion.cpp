@@ -73,8 +73,7 @@ private:
     }
 
     Candidates options() const {
-        QStringList names{QStringLiteral("--help"), QStringLiteral("--host"), QStringLiteral("--timeout"),
-                          QStringLiteral("--json"), QStringLiteral("--out"),  QStringLiteral("--force")};
+        QStringList names = commonOptions();
         if (const Subcommand *command = findSubcommand(line_.arguments.command))
             names += QString::fromLatin1(command->options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
         else

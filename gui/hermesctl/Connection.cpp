@@ -9,6 +9,8 @@
 namespace hermes::ctl {
 
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout) {
+    if (const auto url = InterfaceUrl::parse(address); !url)
+        return url.error();
     const Waiting waiting(timeout);
     QEventLoop loop;
     QTimer limit;

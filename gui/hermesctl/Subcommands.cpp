@@ -277,11 +277,14 @@ const Subcommand *findSubcommand(const QString &name) {
     return nullptr;
 }
 
+QStringList commonOptions() {
+    return {"--help", "--host", "--timeout", "--json", "--out", "--force"};
+}
+
 QString foreignOption(const Subcommand &command, const QStringList &given) {
-    const QStringList ofAll{"--host", "--timeout", "--json", "--out", "--force", "--help", "-h", "--version"};
     const QStringList own = QString::fromLatin1(command.options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
     for (const QString &option : given)
-        if (!ofAll.contains(option) && !own.contains(option))
+        if (!commonOptions().contains(option) && !own.contains(option))
             return QStringLiteral("%1 is no option of \"%2\"%3")
                 .arg(option, QLatin1String(command.name),
                      own.isEmpty() ? QString()

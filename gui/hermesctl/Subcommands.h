@@ -44,7 +44,10 @@ QStringList subcommandNames();
 /// nullptr where there is none.
 const Subcommand *findSubcommand(const QString &name);
 
-/// What is wrong with an option that none of its kind has; empty: nothing.
+/// The options of all commands.
+QStringList commonOptions();
+
+/// What is wrong with options that are those of other commands; empty: nothing.
 QString foreignOption(const Subcommand &command, const QStringList &given);
 
 /// What --help prints.

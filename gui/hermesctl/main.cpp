@@ -22,14 +22,10 @@ namespace {
 
 constexpr int usageStatus = 2;
 
-/// What the data of an error say, for people: "motion.vx: a number from -1 to 1 m/s", "needed: engineer".
+/// What the data of an error say, for people, as "needed: engineer". Of `errors` the message tells.
 QStringList linesOf(const Error &error) {
     QStringList lines;
     const QJsonObject data = error.data.toObject();
-    for (const QJsonValue &wrong : data[QStringLiteral("errors")].toArray())
-        lines.append(
-            QStringLiteral("%1: expected %2")
-                .arg(wrong[QStringLiteral("path")].toString(), wrong[QStringLiteral("expected")].toString()));
     for (auto one = data.begin(); one != data.end(); ++one)
         if (one.key() != QStringLiteral("errors"))
             lines.append(

@@ -77,7 +77,9 @@ class Advice(unittest.TestCase):
     def test_commands_that_people_try(self):
         self.assertIn("hermesctl call motorcontrol motor.stop", self.fails("stop", status=2))
         self.assertEqual(ctl("help").stdout, ctl("--help").stdout)
-        self.assertIn("is 99999, expected 1 to 65535", self.fails("call", "127.0.0.1:99999", "daemon.info", status=2))
+        text = self.fails("call", "127.0.0.1:99999", "daemon.info", status=2)
+        self.assertIn("the port is 99999, at most 65535", text)
+        self.assertNotIn("own=1", text)
         self.assertIn("without a port", self.fails("list", "--host", "127.0.0.1:7490", status=2))
         self.assertIn("option --role is missing", self.fails("keys", "issue", "ben", status=2))
         self.assertIn("drives no robot", self.fails("drive", self.daemon.address, "vx=0.1", "--for", "1"))
