@@ -76,6 +76,10 @@ class Drive(unittest.TestCase):
         twist = self.sim.call("sim.state")["twist"]
         return math.hypot(twist["vx"], twist["vy"]), twist["omega"]
 
+    def way_since(self, before):
+        pose = self.motors.call("motor.state")["pose"]
+        return math.hypot(pose["x"] - before["x"], pose["y"] - before["y"])
+
     def stands(self):
         return self.speeds() == (0, 0)
 
@@ -183,8 +187,8 @@ class Drive(unittest.TestCase):
         self.addCleanup(process.kill)
         os.close(writer)
         wait_for("motion", lambda: self.speeds()[0] > 0.1)
-        time.sleep(1.5)  # so long nothing is told
-        self.assertGreater(self.speeds()[0], 0.1)
+        begun = self.motors.call("motor.state")["pose"]
+        wait_for("a way on which progress is told, which begins after a second", lambda: self.way_since(begun) > 0.5)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(20), 0)
         process.stdout.close()
@@ -199,9 +203,8 @@ class Drive(unittest.TestCase):
             self.assertTrue(self.stands())
         wait_for("motion", lambda: keys.press(b"w") or self.speeds()[0] > 0.1)
         keys.process.send_signal(signal.SIGSTOP)
-        time.sleep(0.5)
         keys.press(b"wwww")
-        wait_for("standing", self.stands)
+        wait_for("standing", self.stands)  # so long is the process frozen
         keys.process.send_signal(signal.SIGCONT)
         begun = time.monotonic()
         while time.monotonic() < begun + 1:
@@ -222,18 +225,19 @@ class Drive(unittest.TestCase):
         near, _ = slow.accept()
         far = socket.create_connection(("127.0.0.1", self.motorcontrol.port))
 
+        timers = []
+
         def carry(source, target):
-            try:
-                while data := source.recv(65536):
-                    timer = threading.Timer(seconds, target.sendall, (data,))
-                    timer.daemon = True
-                    timer.start()
-            except OSError:
-                pass
-        back = threading.Thread(target=carry, args=(far, near), daemon=True)
+            while data := source.recv(65536):
+                timers.append(threading.Timer(seconds, target.sendall, (data,)))
+                timers[-1].start()
+        back = threading.Thread(target=carry, args=(far, near))
         back.start()
         carry(near, far)
-        time.sleep(2 * seconds)
+        for timer in timers:
+            timer.join()
+        far.shutdown(socket.SHUT_RDWR)
+        back.join()
         near.close()
         far.close()
 
