@@ -36,8 +36,9 @@ class DriveError(Exception):
 
 class PathFollower:
     """Velocities that lead along way points: pure pursuit of a point ahead, slower in bends, braking at the end. Points are (x, y) in
-    metres; ValueError where they are fewer than two, or another number is not above 0. speed is the largest one (m/s), turn_rate that of turning (rad/s), braking
-    the deceleration at the end (m/s^2). look_ahead is the way to the point ahead, tolerance ends the drive (both metres)."""
+    metres; ValueError where they are fewer than two, or another number is not above 0. speed is the largest one (m/s), turn_rate that
+    of turning (rad/s), braking the deceleration at the end (m/s^2). look_ahead is the way to the point ahead, tolerance ends the
+    drive (both metres)."""
 
     WINDOW_M = 1.0  # where the robot may have got to since the last time; a path may cross itself
 
@@ -45,8 +46,9 @@ class PathFollower:
         points = [tuple(map(float, point[:2])) for point in points]
         if len(points) < 2 or not all(map(math.isfinite, sum(points, ()))):
             raise ValueError("two or more way points of finite numbers expected")
-        if not all(0 < value < math.inf for value in (speed, turn_rate, braking, look_ahead, tolerance)):
-            raise ValueError(f"speed {speed} m/s, turn rate {turn_rate} rad/s: both must be above 0")
+        for name, value in (("speed", speed), ("turn_rate", turn_rate), ("braking", braking), ("look_ahead", look_ahead), ("tolerance", tolerance)):
+            if not 0 < value < math.inf:
+                raise ValueError(f"{name} is {value}, expected a number above 0")
         self.speed, self.turn_rate, self.braking = speed, turn_rate, braking
         self.look_ahead, self.tolerance = look_ahead, tolerance
         self.legs = []  # where each begins along the path, its length, first point and direction
@@ -222,7 +224,8 @@ def way_point(text):
 def main():
     parser = argparse.ArgumentParser(prog="drive.py", description="Drives a robot along way points through hermes-motorcontrol; "
                                      "Ctrl-C stops it.")
-    parser.add_argument("points", nargs="+", type=way_point, metavar="X,Y", help="way points; metres, in the frame of the odometry, or of the map with --matcher. Put -- before them when the first begins with a minus")
+    parser.add_argument("points", nargs="+", type=way_point, metavar="X,Y", help="way points; metres, in the frame of the odometry, or of the "
+                        "map with --matcher. Put -- before them when the first begins with a minus")
     parser.add_argument("--motors", type=address, default=("127.0.0.1", 7410), metavar="HOST:PORT",
                         help="the motor control (127.0.0.1:7410)")
     parser.add_argument("--matcher", type=address, metavar="HOST:PORT",

@@ -13,7 +13,7 @@ import time
 from hermes_serial import open_port
 
 BAUD, PACKET_BYTES, POINTS = 230400, 47, 12
-SILENT_S = 2
+SILENT_S = 2  # without a byte the line is opened anew
 MOST_POINTS = 4500 // 2  # of a turn: two turns a second at least
 HEAD = bytes([0x54, 0x2C])
 # A packet is complete so long after its first beam: its beams at 4,500 a second, then 10 bits a byte on the line.

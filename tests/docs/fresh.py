@@ -22,7 +22,7 @@ import fresh_debian  # noqa: E402
 
 PAGE = "docs/getting-started.md"
 HOME = "home/student"
-LIMITS_S = {1: 120, 2: 180, 3: 180, 4: 600, 5: 300}  # what the page promises, after the build
+LIMITS_S = {1: 120, 2: 180, 3: 180, 4: 600, 5: 300}  # at most, after the build
 
 
 def sections():
