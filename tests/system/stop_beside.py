@@ -3,14 +3,11 @@
 repeat the dearest command and clients that flood, on a full disk, over TCP, the Unix socket and TLS. HERMES_TRIALS stops (8) of each
 kind. Two times are taken, both from before the stop is sent: until its reply has come, and until both controllers were told to stand,
 as seen on their line."""
-import binascii
 import contextlib
 import ctypes
-import json
 import math
 import os
 import random
-import select
 import socket
 import subprocess
 import sys
@@ -19,8 +16,9 @@ import threading
 import time
 
 from lateness import Lateness
+from stop_ends import Caller, Tap
 from stop_traffic import LIMIT_S, batch, hold, line, pump, request, set_niceness
-from support import BINARIES, BUILD, Daemon, DaemonError, Process, SerialPort, free_port, simulated_hall, wait_for
+from support import BINARIES, BUILD, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for
 from tls import context_of, issued, keys
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "8"))
@@ -30,100 +28,8 @@ LARGE_BYTES = 900000
 SPEED, SLOW_BYTES_S = 0.05, 4e6
 CLONE_NEWNS = 0x20000
 INPUT_OUTPUT = -32008
-SET_SPEEDS, SET_SPEEDS_BYTES = 40, 16  # address, command, acceleration, two speeds, CRC
 CANDIDATES = {"rpc.discover": {}, "settings.schema": {}, "settings.get": {}, "topics.list": {}, "daemon.status": {}, "motor.state": {},
               "log.tail": {"count": 1000}}
-
-
-class Tap:
-    """A serial server between the motor control and the simulated controllers, which notes what speeds they are told."""
-
-    def __init__(self, link):
-        self.port = SerialPort(link)
-        self.server = socket.create_server(("127.0.0.1", 0))
-        self.url = f"tcp://127.0.0.1:{self.server.getsockname()[1]}"
-        self.rest, self.moves, self.zero_since = b"", {0x80: False, 0x81: False}, 0.0
-        threading.Thread(target=self.run, daemon=True).start()
-
-    def run(self):
-        line_in, _ = self.server.accept()
-        line_in.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        while True:
-            readable, _, _ = select.select([line_in, self.port.port], [], [])
-            try:
-                if line_in in readable:
-                    told = line_in.recv(4096)
-                    if not told:
-                        return
-                    self.note(told, time.monotonic())
-                    os.write(self.port.port, told)
-                if self.port.port in readable:
-                    line_in.sendall(os.read(self.port.port, 4096))
-            except OSError:
-                return
-
-    def note(self, told, now):
-        self.rest += told
-        begin = 0
-        while begin + SET_SPEEDS_BYTES <= len(self.rest):
-            packet = self.rest[begin:begin + SET_SPEEDS_BYTES]
-            if packet[0] in self.moves and packet[1] == SET_SPEEDS and binascii.crc_hqx(packet, 0) == 0:
-                moved = any(self.moves.values())
-                self.moves[packet[0]] = any(packet[6:14])
-                if moved and not any(self.moves.values()):
-                    self.zero_since = now
-                begin += SET_SPEEDS_BYTES
-            else:
-                begin += 1
-        self.rest = self.rest[begin:]
-
-
-class Caller:
-    """A connection that sees bytes as they come, at the pace that is asked for."""
-
-    def __init__(self, connection):
-        self.connection, self.buffer, self.number = connection, bytearray(), 0
-
-    def close(self):
-        self.connection.close()
-
-    def send(self, *messages):
-        self.connection.sendall(b"".join(line(message) for message in messages))
-
-    def wait(self, limit_s=10):
-        """Until bytes have come; they are left where they are."""
-        pending = getattr(self.connection, "pending", lambda: 0)()
-        assert pending or select.select([self.connection], [], [], limit_s)[0], "nothing has come"
-
-    def read_until(self, mark, bytes_a_second=math.inf):
-        """Reads until the mark and the end of its line have come; gives how many bytes came before that line."""
-        read, begun, seen = 0, time.monotonic(), 0
-        while True:
-            at = self.buffer.find(mark, max(0, seen - len(mark)))
-            if at >= 0 and b"\n" in self.buffer[at:]:
-                before = self.buffer.rfind(b"\n", 0, at) + 1
-                end = self.buffer.index(b"\n", at) + 1
-                answer, self.buffer = self.buffer[before:end], self.buffer[:before] + self.buffer[end:]
-                message = json.loads(answer)
-                assert "result" in message, message
-                return before
-            seen = len(self.buffer) if at < 0 else at + len(mark)  # its line may not have ended yet
-            part = self.connection.recv(1 << 16)
-            assert part, "closed"
-            self.buffer += part
-            read += len(part)
-            if (pause := read / bytes_a_second - (time.monotonic() - begun)) > 0:
-                time.sleep(pause)
-
-    def read_rest(self, replies):
-        """Until so many whole lines have come; nothing is left then. Gives their bytes."""
-        while self.buffer.count(b"\n") < replies:
-            part = self.connection.recv(1 << 18)
-            assert part, "closed"
-            self.buffer += part
-        assert self.buffer[-1:] in (b"", b"\n") and self.buffer.count(b"\n") == replies, self.buffer[-200:]
-        read, self.buffer = len(self.buffer), bytearray()
-        return read
 
 
 class Stand:
@@ -354,17 +260,22 @@ class FullDisk:
         self.stand.driver.call("settings.set", values={"motion": {"vx": 1.0}, "log": {"level": "debug"}})
         with open(self.stand.config, encoding="utf-8") as file:
             self.before = file.read()
-        try:
-            with open(os.path.join(self.disk, "filler"), "wb", buffering=0) as filler:
-                while filler.write(b"x" * 4096):
-                    pass
-        except OSError:
-            pass
-        assert os.statvfs(self.disk).f_bavail == 0, "there is room"
+        wait_for("a full disk", self.fill)
         for method, port, params in (("settings.save", self.stand.port, {}), ("record.start", self.logger.port, {"name": "next"})):
             self.threads.append(threading.Thread(target=self.try_again, args=(method, port, params)))
             self.threads[-1].start()
         return self
+
+    def fill(self):
+        """True when no room was left: a recording that fails gives back, a moment later, what it had reserved."""
+        room = os.statvfs(self.disk).f_bavail
+        try:
+            with open(os.path.join(self.disk, "filler"), "ab", buffering=0) as filler:
+                while filler.write(b"x" * 4096):
+                    pass
+        except OSError:
+            pass
+        return room == 0
 
     def try_again(self, method, port, params):
         with Daemon(port=port, timeout=30) as daemon:
@@ -393,9 +304,17 @@ class FullDisk:
         print(f"full disk: refused with {INPUT_OUTPUT}: {self.refused}", flush=True)
 
 
+def keep_pages():
+    """Of this program, which reads 1 MB at a time: else the system gives and takes them for each reply, for longer than is measured."""
+    libc, most_trimmed, most_mapped = ctypes.CDLL(None), -1, -3  # as malloc.h has them
+    libc.mallopt(most_mapped, 4 << 20)
+    libc.mallopt(most_trimmed, 8 << 20)
+
+
 def main():
     if len(sys.argv) == 3:
         return play(sys.argv[1], int(sys.argv[2]))
+    keep_pages()
     late = []
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory())
