@@ -39,9 +39,10 @@ void Turns::add(QObject *owner, const Step &step, Owners &owners) {
     post();
 }
 
+// Of many who have just come each would go before those who were here.
 bool Turns::hasRested(QObject *owner) const {
     const auto last = lastSteps_.constFind(owner);
-    return last == lastSteps_.constEnd() || monotonicNow() - *last > rest_s;
+    return last != lastSteps_.constEnd() && monotonicNow() - *last > rest_s;
 }
 
 // In turn, so that a crowd of those who have rested does not keep the others waiting for good.
@@ -65,6 +66,12 @@ void Turns::run() {
         post();
 }
 
+void Turns::noteStep(QObject *owner) {
+    if (lastSteps_.size() > mostKnown)
+        lastSteps_.clear();
+    lastSteps_.insert(owner, monotonicNow());
+}
+
 void Turns::runNext() {
     Owners &owners = next();
     QObject *const key = owners.front();
@@ -81,10 +88,9 @@ void Turns::runNext() {
         post(); // a step may run an event loop of its own, which waits for the others
     if (!owner)
         return;
+    noteStep(key); // it may add its next one itself
     const bool again = step();
-    if (lastSteps_.size() > mostKnown)
-        lastSteps_.clear();
-    lastSteps_.insert(key, monotonicNow());
+    noteStep(key);
     if (again && owner)
         add(owner, step, busy_);
 }

@@ -11,8 +11,8 @@ namespace hermes {
 /// Work of a thread's event loop that may wait, in small steps: one step of each owner in turn, those of one
 /// owner in the order in which they were added, for a millisecond altogether, then sockets and timers are
 /// served. However much there is to do, what is urgent waits no longer than that and one step. Who has had
-/// nothing to do for a while goes first: whoever asks now and then does not wait for all of a crowd that asks
-/// without end.
+/// nothing to do for a while since its last step goes first: whoever asks now and then does not wait for all
+/// of a crowd that asks, or comes, without end.
 class Turns : public QObject {
     Q_OBJECT
 public:
@@ -39,6 +39,7 @@ private:
     bool isIdle() const { return rested_.empty() && busy_.empty(); }
     Owners &next();
     bool hasRested(QObject *owner) const;
+    void noteStep(QObject *owner);
 
     QHash<QObject *, Work> works_; // whoever has one is once in one of these:
     Owners rested_;

@@ -107,7 +107,7 @@ private:
     AsyncHandler run_;
     Role role_ = Role::Operator;
     bool isListed_ = true;
-    int mostValues_ = 10000;
+    int mostValues_ = 3000;
     mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };
 

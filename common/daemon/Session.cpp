@@ -53,7 +53,7 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     , gaps_(watch)
     , audit_(audit)
     , queue_(*channel_, limits_.topicBytes, this)
-    , lastSign_(monotonicNow())
+    , lastHeard_(monotonicNow())
     , who_(channel_->interface().peer())
     , user_(userText(who_)) {
     channel_->setParent(this);
@@ -70,8 +70,8 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     connect(channel_, &Channel::foreign, this, &Session::foreign);
     connect(channel_, &Channel::closed, this, &Session::end);
     connect(&channel_->interface(), &Interface::closed, this, &Session::updateReceiving);
-    connect(&channel_->interface(), &Interface::received, this, [this] { lastSign_ = monotonicNow(); });
-    connect(&channel_->interface(), &Interface::drained, this, [this] { lastSign_ = monotonicNow(); });
+    connect(&channel_->interface(), &Interface::received, this, [this] { lastHeard_ = monotonicNow(); });
+    connect(&channel_->interface(), &Interface::drained, this, [this] { lastWritten_ = monotonicNow(); });
 }
 
 QString Session::name() const {
@@ -82,7 +82,7 @@ void Session::checkIdle() {
     const bool waitsForTopics = !queue_.isEmpty() && channel_->bytesToWrite() == 0;
     // A line has nobody else to make place for; closed it would be deaf to a stop.
     if (limits_.idle_s > 0 && !waitsForTopics && !channel_->isLine() &&
-        monotonicNow() - lastSign_ > limits_.idle_s)
+        monotonicNow() - lastSignOfLife() > limits_.idle_s)
         expel(QStringLiteral("nothing came for %1 s").arg(limits_.idle_s));
 }
 

@@ -9,6 +9,7 @@
 #include "common/daemon/TopicQueue.h"
 
 #include <QObject>
+#include <algorithm>
 
 namespace hermes {
 
@@ -48,7 +49,9 @@ public:
     /// Closes it when it has been silent for too long.
     void checkIdle();
     /// When bytes came or went last; monotonic.
-    double lastSignOfLife() const { return lastSign_; }
+    double lastSignOfLife() const { return std::max(lastHeard_, lastWritten_); }
+    /// When bytes came last; monotonic.
+    double lastHeard() const { return lastHeard_; }
     void close(const QString &reason);
     /// The same, with the reason in the log.
     void expel(const QString &reason);
@@ -109,7 +112,8 @@ private:
     TopicQueue queue_;
     ReplyCache replies_; // where requests may be repeated
     SessionCounters counts_;
-    double lastSign_ = 0;            // monotonic: bytes came or went
+    double lastHeard_ = 0;           // monotonic: bytes came
+    double lastWritten_ = 0;         // the same: bytes went
     int pending_ = 0;                // requests not yet answered
     int pendingStops_ = 0;           // the same, of urgent commands
     std::optional<double> lastStop_; // the id of one that came over a line, the largest of late

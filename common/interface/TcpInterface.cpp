@@ -12,6 +12,8 @@ namespace hermes {
 namespace {
 
 constexpr int receiveBufferBytes = 64 << 10; // what is not read stays with the sender
+constexpr int handOverBytes = 128 << 10;     // to copy or encrypt so much takes a fraction of a millisecond
+constexpr int joinedBytes = 16 << 10;        // many small messages would need much memory beside their bytes
 constexpr int readAtOnceBytes = 4 << 10;     // some dozens of requests; then others get their turn
 
 } // namespace
@@ -64,7 +66,11 @@ int TcpInterface::connectToOwn() const {
 void TcpInterface::prepare() {
     socket_->setReadBufferSize(receiveBufferBytes);
     connect(socket_, &QTcpSocket::readyRead, this, &TcpInterface::readSome);
-    connect(socket_, &QTcpSocket::bytesWritten, this, &Interface::drained);
+    connect(socket_, &QTcpSocket::bytesWritten, this, &TcpInterface::noteWritten);
+    connect(this, &Interface::closed, this, [this] {
+        waiting_.clear();
+        waitingBytes_ = begunBytes_ = 0;
+    });
     connect(socket_, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
         const bool peerClosed = error == QAbstractSocket::RemoteHostClosedError;
         const QPointer<TcpInterface> alive(this);
@@ -125,10 +131,6 @@ QString TcpInterface::name() const {
     return url_.toString();
 }
 
-qint64 TcpInterface::bytesToWrite() const {
-    return socket_->bytesToWrite();
-}
-
 void TcpInterface::doOpen() {
     receiving_ = true;
     hasLeft_ = false;
@@ -156,14 +158,47 @@ void TcpInterface::takeConnected(qintptr descriptor) {
 }
 
 void TcpInterface::doClose() {
-    socket_->flush();
+    flush();
     if (host_ && socket_->socketDescriptor() >= 0)
         sayFarewell(int(socket_->socketDescriptor()), host_);
     socket_->abort();
 }
 
 bool TcpInterface::doWrite(const QByteArray &bytes) {
-    return socket_->write(bytes) == bytes.size();
+    if (waiting_.empty() && bytes.size() <= handOverBytes && bytesInSocket() < handOverBytes)
+        return socket_->write(bytes) == bytes.size();
+    if (!waiting_.empty() && waiting_.back().size() + bytes.size() <= joinedBytes)
+        waiting_.back() += bytes;
+    else
+        waiting_.push_back(bytes);
+    waitingBytes_ += bytes.size();
+    handOver();
+    return true;
+}
+
+void TcpInterface::handOver() {
+    while (!waiting_.empty() && bytesInSocket() < handOverBytes) {
+        const QByteArray part = waiting_.front().mid(begunBytes_, handOverBytes);
+        begunBytes_ += part.size();
+        waitingBytes_ -= part.size();
+        if (begunBytes_ == waiting_.front().size()) {
+            waiting_.pop_front();
+            begunBytes_ = 0;
+        }
+        socket_->write(part);
+    }
+}
+
+void TcpInterface::noteWritten() {
+    handOver();
+    Q_EMIT drained();
+}
+
+void TcpInterface::flush() {
+    do {
+        handOver();
+        socket_->flush();
+    } while (!waiting_.empty() && bytesInSocket() < handOverBytes);
 }
 
 } // namespace hermes

@@ -6,6 +6,7 @@
 #include <QHostAddress>
 #include <QPointer>
 #include <QTcpSocket>
+#include <deque>
 
 namespace hermes {
 
@@ -21,8 +22,8 @@ public:
     QString name() const override;
     bool isConnection() const override { return true; }
     Peer peer() const override;
-    void flush() override { socket_->flush(); }
-    qint64 bytesToWrite() const override;
+    void flush() override;
+    qint64 bytesToWrite() const override { return waitingBytes_ + bytesInSocket(); }
     bool setReceiving(bool on) override;
     bool hasUnread() const override;
     double unreadSince() const override { return unreadSince_; }
@@ -43,6 +44,9 @@ protected:
     virtual QString failure() const { return socket_->errorString(); }
     /// After a read: whether something is left.
     virtual void noteRead();
+    /// Given to the socket, and not yet to the system.
+    virtual qint64 bytesInSocket() const { return socket_->bytesToWrite(); }
+    void noteWritten();
 
 private:
     void prepare();
@@ -50,11 +54,16 @@ private:
     void readSome();
     void noteUnread();
     void readLater();
+    void handOver();
 
     InterfaceUrl url_;
     QTcpSocket *const socket_;
     QPointer<QObject> host_; // of a peer of a server
-    bool readsOn_ = false;   // the rest is read when others have had their turn
+    // Not yet given to the socket: that copies, or encrypts, all that it is given at once.
+    std::deque<QByteArray> waiting_;
+    int begunBytes_ = 0; // of the first of them, which have been given
+    qint64 waitingBytes_ = 0;
+    bool readsOn_ = false; // the rest is read when others have had their turn
     bool receiving_ = true;
     bool hasLeft_ = false; // something was unread at the last look
     double unreadSince_ = 0;

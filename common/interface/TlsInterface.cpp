@@ -40,13 +40,13 @@ TlsInterface::TlsInterface(const InterfaceUrl &address, QSslSocket *socket, QObj
     : TcpInterface(address, socket, parent)
     , url_(address)
     , socket_(socket) {
-    connect(socket_, &QSslSocket::encryptedBytesWritten, this, &Interface::drained);
+    connect(socket_, &QSslSocket::encryptedBytesWritten, this, &TlsInterface::noteWritten);
 }
 
 TlsInterface::TlsInterface(QSslSocket *encrypted, QObject *theHost)
     : TcpInterface(encrypted, theHost)
     , socket_(encrypted) {
-    connect(socket_, &QSslSocket::encryptedBytesWritten, this, &Interface::drained);
+    connect(socket_, &QSslSocket::encryptedBytesWritten, this, &TlsInterface::noteWritten);
 }
 
 QString TlsInterface::folder() const {

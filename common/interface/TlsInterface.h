@@ -17,11 +17,6 @@ public:
 
     QString name() const override;
     Peer peer() const override;
-    /// With what waits encrypted.
-    qint64 bytesToWrite() const override {
-        return socket_->bytesToWrite() + socket_->encryptedBytesToWrite();
-    }
-
     /// Also when it is not decrypted as yet.
     bool hasUnread() const override {
         return TcpInterface::hasUnread() || socket_->encryptedBytesAvailable() > 0;
@@ -31,6 +26,10 @@ protected:
     void doOpen() override;
     /// OpenSSL may have more that nobody can ask it for: it is decrypted in the next turn of the event loop.
     void noteRead() override;
+    /// With what waits encrypted.
+    qint64 bytesInSocket() const override {
+        return socket_->bytesToWrite() + socket_->encryptedBytesToWrite();
+    }
     QString failure() const override { return refused_.isEmpty() ? TcpInterface::failure() : refused_; }
 
 private:

@@ -125,8 +125,8 @@ void TestDaemonRequests::valuesOfARequestAreBounded_data() {
     QTest::addColumn<int>("code"); // 0: none
     const int overLimit = int(ErrorCode::OverLimit), invalid = int(ErrorCode::InvalidParams);
     // The object and the list are values, too.
-    QTest::newRow("at most, of any command") << "subtract" << 9998 << invalid;
-    QTest::newRow("one more") << "subtract" << 9999 << overLimit;
+    QTest::newRow("at most, of any command") << "subtract" << 2998 << invalid;
+    QTest::newRow("one more") << "subtract" << 2999 << overLimit;
     QTest::newRow("at most, of a command that takes many") << "many" << 19998 << 0;
     QTest::newRow("one more than many") << "many" << 19999 << overLimit;
 }

@@ -68,7 +68,7 @@ def kind_of(name, dice):
                                               False, False),
         "comes and goes": lambda: (line(request("daemon.info")), False, True),
         "batches": lambda: (batch(dice.choice(("rpc.discover", "daemon.info", "settings.schema")), 1000), True, True),
-        "many parameters": lambda: (line(request("settings.set", values={f"n{i}": {} for i in range(dice.choice((998, 9998, 60000)))})), True, True),
+        "many parameters": lambda: (line(request("settings.set", values={f"n{i}": {} for i in range(dice.choice((998, 2998, 60000)))})), True, True),
     }[name]()
 
 
