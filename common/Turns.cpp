@@ -6,6 +6,7 @@
 #include <QCoreApplication>
 #include <QThreadPool>
 #include <QThreadStorage>
+#include <limits>
 
 namespace hermes {
 namespace {
@@ -42,7 +43,7 @@ void Turns::add(QObject *owner, const Step &step, Owners &owners) {
 // Of many who have just come each would go before those who were here.
 bool Turns::hasRested(QObject *owner) const {
     const auto last = lastSteps_.constFind(owner);
-    return last != lastSteps_.constEnd() && monotonicNow() - *last > rest_s;
+    return last != lastSteps_.constEnd() && last->owner == owner && monotonicNow() - last->end > rest_s;
 }
 
 // In turn, so that a crowd of those who have rested does not keep the others waiting for good.
@@ -66,10 +67,10 @@ void Turns::run() {
         post();
 }
 
-void Turns::noteStep(QObject *owner) {
+void Turns::noteStep(QObject *owner, double end) {
     if (lastSteps_.size() > mostKnown)
         lastSteps_.clear();
-    lastSteps_.insert(owner, monotonicNow());
+    lastSteps_.insert(owner, {owner, end});
 }
 
 void Turns::runNext() {
@@ -88,10 +89,12 @@ void Turns::runNext() {
         post(); // a step may run an event loop of its own, which waits for the others
     if (!owner)
         return;
-    noteStep(key); // it may add its next one itself
+    noteStep(key, std::numeric_limits<double>::infinity()); // it may add its next one itself
     const bool again = step();
-    noteStep(key);
-    if (again && owner)
+    if (!owner)
+        return;
+    noteStep(key, monotonicNow());
+    if (again)
         add(owner, step, busy_);
 }
 

@@ -30,6 +30,10 @@ private:
         QPointer<QObject> owner;
         std::deque<Step> steps;
     };
+    struct LastStep {
+        QPointer<QObject> owner;
+        double end; // monotonic; infinity while it runs
+    };
     using Owners = std::deque<QObject *>;
 
     void add(QObject *owner, const Step &step, Owners &owners);
@@ -39,14 +43,14 @@ private:
     bool isIdle() const { return rested_.empty() && busy_.empty(); }
     Owners &next();
     bool hasRested(QObject *owner) const;
-    void noteStep(QObject *owner);
+    void noteStep(QObject *owner, double end);
 
     QHash<QObject *, Work> works_; // whoever has one is once in one of these:
     Owners rested_;
     Owners busy_;
-    bool wasRested_ = false;             // the step before was of one of those
-    QHash<QObject *, double> lastSteps_; // monotonic; of some who have gone, too
-    bool posted_ = false;                // a call is in the event queue
+    bool wasRested_ = false;               // the step before was of one of those
+    QHash<QObject *, LastStep> lastSteps_; // of some who have gone, too
+    bool posted_ = false;                  // a call is in the event queue
 };
 
 /// Does this in a thread of its own, one after the other, where it delays nothing that is urgent. To be

@@ -259,7 +259,8 @@ void Server::givePlaces() {
 }
 
 // What a crowd of clients needed lies free between what is in use, and stays with the process else. This
-// takes about 0.1 ms for a megabyte, in a virtual machine ten times as long: no robot is driven meanwhile.
+// takes about 0.1 ms for a megabyte, in a virtual machine ten times as long: it is done in a pause of whoever
+// drives.
 void Server::giveMemoryBack() {
     const double now = monotonicNow();
     const auto speaks = [now](const Session *session) { return now - session->lastHeard() < unheard_s; };

@@ -12,8 +12,9 @@ namespace hermes {
 namespace {
 
 constexpr int largestUrgentBytes = 4 << 10;
-constexpr int mostValuesBesideUrgent = 1000; // in the parameters of one request
-constexpr int largeFrameBytes = 16 << 10;    // takes half a millisecond to read
+constexpr int mostValuesBesideUrgent = 1000;     // in the parameters of one request
+constexpr qint64 largestAtOnceBytes = 128 << 10; // of a reply
+constexpr int largeFrameBytes = 16 << 10;        // takes half a millisecond to read
 // What a client has sent before a gap may lie on its side, or in a tunnel, and come afterwards.
 constexpr double settling_s = 0.25;
 constexpr double mostUnderWay =
@@ -421,8 +422,9 @@ void Session::send(const QJsonValue &reply, const QByteArray &key, Channel::Rank
     }
     if (!key.isEmpty() && sent)
         replies_.answer(key, *sent, rank, monotonicNow());
-    // Who waits for this one has it before the others' turns; many replies go out together.
-    if (isAlone)
+    // Who waits for this one has it before the others' turns; many replies go out together, a large one bit
+    // by bit.
+    if (isAlone && channel_->bytesToWrite() <= largestAtOnceBytes)
         channel_->flush();
 }
 

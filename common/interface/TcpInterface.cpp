@@ -67,10 +67,7 @@ void TcpInterface::prepare() {
     socket_->setReadBufferSize(receiveBufferBytes);
     connect(socket_, &QTcpSocket::readyRead, this, &TcpInterface::readSome);
     connect(socket_, &QTcpSocket::bytesWritten, this, &TcpInterface::noteWritten);
-    connect(this, &Interface::closed, this, [this] {
-        waiting_.clear();
-        waitingBytes_ = begunBytes_ = 0;
-    });
+    connect(this, &Interface::closed, this, &TcpInterface::forgetWaiting);
     connect(socket_, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
         const bool peerClosed = error == QAbstractSocket::RemoteHostClosedError;
         const QPointer<TcpInterface> alive(this);
@@ -81,6 +78,7 @@ void TcpInterface::prepare() {
             return;
         const QString reason = peerClosed ? QStringLiteral("closed by the peer") : failure();
         socket_->abort();
+        forgetWaiting();
         nowClosed(QStringLiteral("%1: %2").arg(name(), reason), !peerClosed);
     });
 }
@@ -187,6 +185,11 @@ void TcpInterface::handOver() {
         }
         socket_->write(part);
     }
+}
+
+void TcpInterface::forgetWaiting() {
+    waiting_.clear();
+    waitingBytes_ = begunBytes_ = 0;
 }
 
 void TcpInterface::noteWritten() {

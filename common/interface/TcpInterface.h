@@ -55,6 +55,7 @@ private:
     void noteUnread();
     void readLater();
     void handOver();
+    void forgetWaiting();
 
     InterfaceUrl url_;
     QTcpSocket *const socket_;

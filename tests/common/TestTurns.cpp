@@ -5,6 +5,7 @@
 #include <QTest>
 #include <QTimer>
 #include <algorithm>
+#include <list>
 #include <memory>
 #include <random>
 #include <vector>
@@ -71,25 +72,32 @@ void TestTurns::stepsOfAnOwnerKeepTheirOrder() {
 }
 
 void TestTurns::whoRestedWaitsForNoCrowd_data() {
-    QTest::addColumn<bool>("addsItself");
-    QTest::newRow("steps are wanted again") << false;
-    QTest::newRow("steps add the next ones") << true;
+    QTest::addColumn<QString>("crowd");
+    QTest::addColumn<int>("number");
+    QTest::addColumn<double>("duration_s");
+    QTest::newRow("steps are wanted again") << "again" << 200 << 50e-6;
+    QTest::newRow("steps add the next ones") << "adds" << 200 << 50e-6;
+    QTest::newRow("long steps add the next ones") << "adds" << 20 << 3e-3;
+    QTest::newRow("steps add newcomers") << "newcomers" << 200 << 50e-6;
 }
 
 void TestTurns::whoRestedWaitsForNoCrowd() {
-    QFETCH(bool, addsItself);
-    std::vector<QObject> crowd(200);
+    QFETCH(QString, crowd);
+    QFETCH(int, number);
+    QFETCH(double, duration_s);
+    std::list<QObject> owners(static_cast<std::size_t>(number));
     int stepsOfCrowd = 0;
     std::function<bool(QObject *)> step = [&](QObject *one) {
-        spend(50e-6);
-        const bool again = ++stepsOfCrowd < 10000;
-        if (again && addsItself)
-            Turns::ofThread().add(one, [&step, one] { return step(one); });
-        return again && !addsItself;
+        spend(duration_s);
+        ++stepsOfCrowd;
+        QObject *const next = crowd == "newcomers" ? &owners.emplace_back() : one;
+        if (crowd != "again")
+            Turns::ofThread().add(next, [&step, next] { return step(next); });
+        return crowd == "again";
     };
-    for (QObject &one : crowd)
+    for (QObject &one : owners)
         Turns::ofThread().add(&one, [&step, owner = &one] { return step(owner); });
-    QTRY_VERIFY(stepsOfCrowd > 400); // nobody of them has rested any more
+    QTRY_VERIFY(stepsOfCrowd > 2 * number); // nobody of them has rested any more
     QObject rested;
     bool isKnown = false;
     Turns::ofThread().add(&rested, [&isKnown] {
