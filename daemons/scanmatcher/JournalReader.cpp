@@ -2,6 +2,8 @@
 #include "daemons/scanmatcher/JournalTables.h"
 #include "protocol/serial/Crc32c.h"
 
+#include <Eigen/Cholesky>
+
 #include <QCborStreamReader>
 #include <QJsonObject>
 

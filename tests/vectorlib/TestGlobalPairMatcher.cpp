@@ -1,4 +1,5 @@
 #include <vectorlib/mapping/GlobalPairMatcher.h>
+#include <vectorlib/simd/LargestOfSixteen.h>
 
 #include "tests/support/AllocationCounter.h"
 #include "tests/support/Patience.h"

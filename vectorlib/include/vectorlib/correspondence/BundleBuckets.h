@@ -1,6 +1,10 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/CollinearBundles.h"
+#include "vectorlib/geometry/Vector2D.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -12,27 +16,7 @@ public:
     double reliability = 0.10; ///< sine of the largest angle between lines of one bucket
 
     /// `bundles` must stay as they are while the buckets are in use.
-    void operator()(const std::vector<Bundle> &bundles) {
-        order_.clear();
-        for (const Bundle &bundle : bundles)
-            order_.push_back({&bundle, 0});
-        std::sort(order_.begin(), order_.end()); // all in bucket 0 as yet: longest first
-        leaders_.clear();
-        for (Entry &entry : order_) {
-            while (entry.bucket < leaders_.size() &&
-                   std::abs(leaders_[entry.bucket]->normal.cross(entry.bundle->normal)) > reliability)
-                ++entry.bucket;
-            if (entry.bucket == leaders_.size())
-                leaders_.push_back(entry.bundle);
-        }
-        std::sort(order_.begin(), order_.end());
-        starts_.assign(leaders_.size() + 1, order_.size());
-        for (std::size_t i = order_.size(); i-- > 0;)
-            starts_[order_[i].bucket] = i;
-        remaining_.assign(leaders_.size() + 1, 0);
-        for (std::size_t b = leaders_.size(); b-- > 0;)
-            remaining_[b] = remaining_[b + 1] + leaders_[b]->length;
-    }
+    void operator()(const std::vector<Bundle> &bundles);
 
     std::size_t size() const { return leaders_.size(); }
     /// The bundles of a bucket are number begin(bucket) to begin(bucket + 1), longest first.
@@ -47,11 +31,7 @@ private:
         const Bundle *bundle;
         std::size_t bucket;
 
-        bool operator<(const Entry &o) const {
-            return bucket != o.bucket                   ? bucket < o.bucket
-                   : bundle->length != o.bundle->length ? bundle->length > o.bundle->length
-                                                        : bundle < o.bundle;
-        }
+        bool operator<(const Entry &o) const;
     };
     std::vector<Entry> order_;            // by bucket
     std::vector<const Bundle *> leaders_; // the longest of every bucket
@@ -60,3 +40,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/BundleBuckets.cpp"
+#endif

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/correspondence/Match.h"
 #include "vectorlib/correspondence/PotentialPair.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/registration/LineSegmentRegistration.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace vectorlib {
@@ -31,17 +34,7 @@ public:
     Stiffness stiffness;
 
     /// The bundles; reorders the pairs. Valid until the next call.
-    const std::vector<Bundle> &operator()(std::vector<PotentialPair> &pairs) {
-        std::sort(pairs.begin(), pairs.end(), [](const PotentialPair &a, const PotentialPair &b) {
-            return a.length != b.length ? a.length > b.length : before(a.numbers, b.numbers);
-        });
-        bundles_.clear();
-        next_.assign(pairs.size(), -1);
-        pairs_ = &pairs;
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            place(static_cast<int>(i));
-        return bundles_;
-    }
+    const std::vector<Bundle> &operator()(std::vector<PotentialPair> &pairs);
     /// The pair that follows in its bundle, or -1.
     int next(int pair) const { return next_[static_cast<std::size_t>(pair)]; }
 
@@ -51,46 +44,13 @@ private:
     }
     const PotentialPair &pair(int i) const { return (*pairs_)[static_cast<std::size_t>(i)]; }
 
-    void place(int number) {
-        const PotentialPair &p = pair(number);
-        Bundle *best = nullptr;
-        double least = ambiguity;
-        for (Bundle &bundle : bundles_) {
-            const double energy = energyOf(p, bundle);
-            if (energy <= least && std::abs(p.normal.cross(bundle.normal)) <= reliability) {
-                least = energy;
-                best = &bundle;
-            }
-        }
-        if (!best) {
-            bundles_.push_back({p.normal, p.shift, p.alpha, 0, {}, -1});
-            best = &bundles_.back();
-            best->sums.stiffness = stiffness;
-        }
-        join(*best, number);
-    }
-    double energyOf(const PotentialPair &p, const Bundle &bundle) const {
-        const double turn = wrapAngle(p.alpha - bundle.alpha);
-        const double apart = side(p, bundle) * p.shift - bundle.shift;
-        return stiffness.alpha * turn * turn + stiffness.xy * apart * apart;
-    }
+    void place(int number);
+    double energyOf(const PotentialPair &p, const Bundle &bundle) const;
     // Facing walls share a direction, not a normal.
     static double side(const PotentialPair &p, const Bundle &bundle) {
         return p.normal.dot(bundle.normal) < 0 ? -1 : 1;
     }
-    void join(Bundle &bundle, int number) {
-        const PotentialPair &p = pair(number);
-        const double share = p.length / (bundle.sums.weight() + p.length);
-        bundle.alpha += share * wrapAngle(p.alpha - bundle.alpha);
-        bundle.shift += share * (side(p, bundle) * p.shift - bundle.shift);
-        bool known = false;
-        for (int i = bundle.first; i >= 0 && !known; i = next(i))
-            known = pair(i).numbers.moving == p.numbers.moving;
-        bundle.length += known ? 0 : p.length;
-        bundle.sums.add(p.sums);
-        next_[static_cast<std::size_t>(number)] = bundle.first;
-        bundle.first = number;
-    }
+    void join(Bundle &bundle, int number);
 
     const std::vector<PotentialPair> *pairs_ = nullptr;
     std::vector<Bundle> bundles_;
@@ -98,3 +58,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/CollinearBundles.cpp"
+#endif

@@ -1,7 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/observation/Discrepancy.h"
 #include "vectorlib/observation/Frontier.h"
+#include "vectorlib/observation/Observer.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -13,23 +20,9 @@ public:
 
     /// The static set, all in one frame. Where it is one scan, seen from `seenFrom`, what that pose did not
     /// see hides what lies behind; a map that grew from many poses has no such place.
-    void setFixed(const Segments &fixed, const Transformation2D *seenFrom = nullptr) {
-        fixed_ = &fixed;
-        obstacles_.clear();
-        if (!seenFrom)
-            return;
-        for (const LineSegment2D<double> &border : frontier_(observe_(fixed, seenFrom->pose())))
-            obstacles_.push_back(*seenFrom * border);
-    }
+    void setFixed(const Segments &fixed, const Transformation2D *seenFrom = nullptr);
     /// The dynamic set, in the sensor's frame.
-    void setMoving(const Segments &moving) {
-        observed_ = observe_(moving, {});
-        observedAngle_ = 0;
-        for (const VisiblePart<double> &part : observed_) {
-            const Vector2D<double> begin = part.segment.begin(), end = part.segment.end();
-            observedAngle_ += std::atan2(begin.cross(end), begin.dot(end));
-        }
-    }
+    void setMoving(const Segments &moving);
     /// For a sensor that stands at `pose` among the static set.
     ViewComparison operator()(const Transformation2D &pose) {
         return compare_(observe_(*fixed_, pose.pose(), obstacles_), observed_);
@@ -50,3 +43,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/ExpectedViewTest.cpp"
+#endif

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/Match.h"
 #include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace vectorlib {
@@ -27,27 +27,7 @@ public:
     OverlapSettings settings;
 
     /// Both in the frame of the expected pose. Valid until the next call.
-    const std::vector<CorrespondencePair> &operator()(const Segments &fixed, const Segments &moving) {
-        pairs_.clear();
-        open_.clear();
-        alone_ = 0;
-        isTaken_.assign(fixed.size(), 0);
-        for (std::size_t m = 0; m < moving.size(); ++m) {
-            if (!isLong(moving[m]))
-                continue;
-            const int partners = partnersOf(fixed, moving[m]);
-            alone_ += partners == 0;
-            if (partners == 1)
-                take(nearest_, m);
-            else if (partners > 1)
-                open_.push_back(m);
-        }
-        sure_ = pairs_.size();
-        for (const std::size_t m : open_)
-            if (partnersOf(fixed, moving[m], true) > 0)
-                pairs_.push_back({static_cast<int>(nearest_), static_cast<int>(m)});
-        return pairs_;
-    }
+    const std::vector<CorrespondencePair> &operator()(const Segments &fixed, const Segments &moving);
 
     /// The three groups of the last call: long new edges without a partner, with one, and with several.
     std::size_t alone() const { return alone_; }
@@ -56,32 +36,9 @@ public:
 
 private:
     bool isLong(const LineSegment2D<double> &s) const { return s.length() >= settings.minLength; }
-    void take(std::size_t f, std::size_t m) {
-        pairs_.push_back({static_cast<int>(f), static_cast<int>(m)});
-        isTaken_[f] = 1;
-    }
+    void take(std::size_t f, std::size_t m);
     // How many partners an edge may have; the nearest one is left in nearest_.
-    int partnersOf(const Segments &fixed, const LineSegment2D<double> &moving, bool onlyFree = false) {
-        int partners = 0;
-        double least = settings.maxDistance;
-        for (std::size_t f = 0; f < fixed.size(); ++f) {
-            if (!isLong(fixed[f]) || (onlyFree && isTaken_[f]))
-                continue;
-            const double sine = std::abs(fixed[f].direction().cross(moving.direction()));
-            if (!(sine <= std::sin(std::min(settings.maxAngle, pi / 2))))
-                continue;
-            const double distance =
-                std::min(fixed[f].distance(moving.begin()), fixed[f].distance(moving.end()));
-            if (!(distance <= settings.maxDistance))
-                continue;
-            ++partners;
-            if (distance <= least) {
-                least = distance;
-                nearest_ = f;
-            }
-        }
-        return partners;
-    }
+    int partnersOf(const Segments &fixed, const LineSegment2D<double> &moving, bool onlyFree = false);
 
     std::vector<CorrespondencePair> pairs_;
     std::vector<std::size_t> open_; // moving edges of the third group
@@ -90,3 +47,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/OverlapSelection.cpp"
+#endif

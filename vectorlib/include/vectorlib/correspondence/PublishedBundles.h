@@ -1,8 +1,10 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/PotentialPair.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/registration/LineSegmentRegistration.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace vectorlib {
@@ -18,28 +20,12 @@ struct PublishedBundle {
     double turns = 0, turns2 = 0;   ///< weighted sums of rotations beside that, and of their squares
     double shifts = 0, shifts2 = 0; ///< the same of shifts along the normal
 
-    explicit PublishedBundle(const PotentialPair &first)
-        : normal(first.normal)
-        , alpha(first.alpha) {
-        sums.stiffness = first.sums.stiffness;
-    }
+    explicit PublishedBundle(const PotentialPair &first);
     /// Takes a pair into the sums, not into `pairs`.
-    void add(const PotentialPair &pair) {
-        const double turn = wrapAngle(pair.alpha - alpha);
-        const double shift = (pair.normal.dot(normal) < 0 ? -1 : 1) * pair.shift; // facing walls
-        sums.add(pair.sums);
-        turns += pair.length * turn;
-        turns2 += pair.length * turn * turn;
-        shifts += pair.length * shift;
-        shifts2 += pair.length * shift * shift;
-    }
+    void add(const PotentialPair &pair);
     double length() const { return sums.weight(); } ///< of the shorter segments of its pairs; metres
     /// The sum (7.44) over the pairs where the lines are parallel: of rotation and of shift across; m^2.
-    double ambiguity() const {
-        const double w = sums.weight();
-        return sums.stiffness.alpha * std::max(0.0, turns2 - turns * turns / w) +
-               sums.stiffness.xy * std::max(0.0, shifts2 - shifts * shifts / w);
-    }
+    double ambiguity() const;
 };
 
 /// Bundles and buckets by the rules as published, thesis 7.4.1; CollinearBundles and BundleBuckets, which
@@ -57,54 +43,22 @@ public:
 
     /// Sorts pairs into bundles, and the bundles into buckets(). The bundles are in the order in which they
     /// were founded; valid until the next call.
-    const std::vector<PublishedBundle> &operator()(const std::vector<PotentialPair> &pairs) {
-        bundles_.clear();
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            place(pairs[i], static_cast<int>(i));
-        buckets_.clear();
-        for (std::size_t i = 0; i < bundles_.size(); ++i)
-            putIntoBucket(i);
-        return bundles_;
-    }
+    const std::vector<PublishedBundle> &operator()(const std::vector<PotentialPair> &pairs);
     const std::vector<PublishedBundle> &bundles() const { return bundles_; }
     /// The numbers of the bundles of each bucket.
     const std::vector<std::vector<std::size_t>> &buckets() const { return buckets_; }
 
 private:
-    void place(const PotentialPair &pair, int number) {
-        for (PublishedBundle &bundle : bundles_) {
-            PublishedBundle with = bundle;
-            with.add(pair);
-            if (with.sums.reliability() <= reliability && with.ambiguity() <= ambiguity) {
-                bundle = std::move(with);
-                bundle.pairs.push_back(number);
-                return;
-            }
-        }
-        bundles_.emplace_back(pair);
-        bundles_.back().add(pair);
-        bundles_.back().pairs.push_back(number);
-    }
-    bool collide(std::size_t a, std::size_t b) const {
-        LineSegmentRegistration joint = bundles_[a].sums;
-        joint.add(bundles_[b].sums);
-        return joint.reliability() <= reliability;
-    }
-    void putIntoBucket(std::size_t bundle) {
-        const auto fits = [&](const std::vector<std::size_t> &bucket) {
-            return std::all_of(bucket.begin(), bucket.end(),
-                               [&](std::size_t other) { return collide(bundle, other); });
-        };
-        const auto found = std::find_if(buckets_.begin(), buckets_.end(), fits);
-        bundles_[bundle].bucket = static_cast<std::size_t>(found - buckets_.begin());
-        if (found == buckets_.end())
-            buckets_.push_back({bundle});
-        else
-            found->push_back(bundle);
-    }
+    void place(const PotentialPair &pair, int number);
+    bool collide(std::size_t a, std::size_t b) const;
+    void putIntoBucket(std::size_t bundle);
 
     std::vector<PublishedBundle> bundles_;
     std::vector<std::vector<std::size_t>> buckets_;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/PublishedBundles.cpp"
+#endif

@@ -1,8 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/PublishedBundles.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/registration/LineSegmentRegistration.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace vectorlib {
 
@@ -25,18 +29,7 @@ public:
     std::uint64_t most = 1000000; ///< bundles tried; then the search ends with what it has
 
     /// Longest first; valid until the next call.
-    const std::vector<PublishedCombination> &operator()(const PublishedBundles &sorted) {
-        sorted_ = &sorted;
-        kept_.clear();
-        found_ = parts_ = tried_ = 0;
-        cut_ = false;
-        chosen_.clear();
-        LineSegmentRegistration none;
-        if (!sorted.bundles().empty())
-            none.stiffness = bundle(0).sums.stiffness;
-        extend(0, none);
-        return kept_;
-    }
+    const std::vector<PublishedCombination> &operator()(const PublishedBundles &sorted);
     std::uint64_t found() const { return found_; }                           ///< all of them
     std::uint64_t parts() const { return parts_; }                           ///< parts of larger ones
     std::uint64_t leftOut() const { return found_ - parts_ - kept_.size(); } ///< beyond `keep`
@@ -47,59 +40,10 @@ private:
     const PublishedBundle &bundle(std::size_t number) const { return sorted_->bundles()[number]; }
 
     // Whether a bundle may join; false, too, where the bound is reached.
-    bool joins(std::size_t number, const LineSegmentRegistration &sums, LineSegmentRegistration &joint) {
-        cut_ = cut_ || tried_ >= most;
-        if (cut_)
-            return false;
-        ++tried_;
-        joint = sums;
-        joint.add(bundle(number).sums);
-        return joint.ambiguity().total() <= ambiguity;
-    }
-    void extend(std::size_t bucket, const LineSegmentRegistration &sums) {
-        if (bucket == sorted_->buckets().size()) {
-            if (chosen_.size() > 1 && sums.reliability() >= reliability)
-                conclude(sums);
-            return;
-        }
-        LineSegmentRegistration joint;
-        for (const std::size_t number : sorted_->buckets()[bucket])
-            if (joins(number, sums, joint)) {
-                chosen_.push_back(number);
-                extend(bucket + 1, joint);
-                chosen_.pop_back();
-            }
-        if (!cut_)
-            extend(bucket + 1, sums);
-    }
-    void conclude(const LineSegmentRegistration &sums) {
-        ++found_;
-        if (isPart(sums)) {
-            ++parts_;
-            return;
-        }
-        const PublishedCombination found{sums, chosen_};
-        kept_.insert(std::upper_bound(kept_.begin(), kept_.end(), found,
-                                      [](const PublishedCombination &a, const PublishedCombination &b) {
-                                          return a.length() > b.length();
-                                      }),
-                     found);
-        if (kept_.size() > keep)
-            kept_.pop_back();
-    }
-    bool isPart(const LineSegmentRegistration &sums) {
-        LineSegmentRegistration joint;
-        for (std::size_t bucket = 0; bucket < sorted_->buckets().size(); ++bucket) {
-            const std::vector<std::size_t> &numbers = sorted_->buckets()[bucket];
-            if (std::any_of(chosen_.begin(), chosen_.end(),
-                            [&](std::size_t number) { return bundle(number).bucket == bucket; }))
-                continue;
-            for (const std::size_t number : numbers)
-                if (joins(number, sums, joint) && joint.reliability() >= reliability)
-                    return true;
-        }
-        return false;
-    }
+    bool joins(std::size_t number, const LineSegmentRegistration &sums, LineSegmentRegistration &joint);
+    void extend(std::size_t bucket, const LineSegmentRegistration &sums);
+    void conclude(const LineSegmentRegistration &sums);
+    bool isPart(const LineSegmentRegistration &sums);
 
     const PublishedBundles *sorted_ = nullptr;
     std::vector<std::size_t> chosen_;
@@ -109,3 +53,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/PublishedCombinations.cpp"
+#endif

@@ -1,8 +1,15 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/correspondence/Match.h"
 #include "vectorlib/correspondence/OverlapSelection.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/similarity/NelderMeadFitter.h"
 #include "vectorlib/similarity/QuadrangleCriterion.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -29,37 +36,14 @@ public:
     /// Valid until the next call.
     const QuadrangleMatch &operator()(const OverlapSelection::Segments &fixed,
                                       const OverlapSelection::Segments &moving,
-                                      const Transformation2D &expected) {
-        // In the expected sensor frame, as elsewhere (erratum 13).
-        const Transformation2D toLocal = expected.inverse();
-        fixed_.clear();
-        for (const LineSegment2D<double> &segment : fixed)
-            fixed_.push_back(toLocal * segment);
-        match_.pairs = select(fixed_, moving);
-        match_.accepted = areSkew();
-        criterion_.clear();
-        for (const CorrespondencePair &pair : match_.pairs)
-            criterion_.add({fixedOf(pair), moving[static_cast<std::size_t>(pair.moving)], 1});
-        const Transformation2D found =
-            match_.accepted ? fit(criterion_, Transformation2D()) : Transformation2D();
-        match_.criterion = criterion_(found);
-        match_.pose = expected * found;
-        return match_;
-    }
+                                      const Transformation2D &expected);
 
 private:
     const LineSegment2D<double> &fixedOf(const CorrespondencePair &pair) const {
         return fixed_[static_cast<std::size_t>(pair.fixed)];
     }
     Vector2D<double> directionOf(std::size_t pair) const { return fixedOf(match_.pairs[pair]).direction(); }
-    bool areSkew() const {
-        const double sine = std::sin(skew);
-        for (std::size_t i = 0; i < match_.pairs.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                if (std::abs(directionOf(i).cross(directionOf(j))) >= sine)
-                    return true;
-        return false;
-    }
+    bool areSkew() const;
 
     OverlapSelection::Segments fixed_;
     QuadrangleCriterion criterion_;
@@ -67,3 +51,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/QuadrangleMatcher.cpp"
+#endif

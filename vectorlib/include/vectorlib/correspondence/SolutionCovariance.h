@@ -1,12 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/SearchResult.h"
-#include "vectorlib/geometry/SmallMatrix.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/tls/LineCovariance.h"
 
-#include <Eigen/LU>
-
 #include <optional>
+#include <vector>
 
 namespace vectorlib {
 
@@ -25,34 +27,7 @@ public:
     /// Rows and columns x, y (metres), alpha (radians), in the static frame. Nothing where all lines are
     /// parallel, where a covariance is not valid, and for pairs that are not among the segments.
     std::optional<Eigen::Matrix3d> operator()(const Solution &solution, const MeasuredSegments &fixed,
-                                              const MeasuredSegments &moving) const {
-        if (!(solution.reliability > 0))
-            return std::nullopt;
-        std::vector<Effect> effects;
-        Eigen::Matrix3d sums = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
-        for (const CorrespondencePair &p : solution.pairs) {
-            if (!isKnown(p.fixed, fixed) || !isKnown(p.moving, moving))
-                return std::nullopt;
-            effects.push_back(
-                effectOf(at(fixed.segments, p.fixed), at(moving.segments, p.moving), solution.pose, sums));
-        }
-        // A line in two pairs errs in both alike.
-        for (std::size_t a = 0; a < effects.size(); ++a)
-            for (std::size_t b = 0; b < effects.size(); ++b) {
-                const CorrespondencePair &p = solution.pairs[a], &q = solution.pairs[b];
-                if (p.fixed == q.fixed)
-                    spread += product(effects[a].byFixed,
-                                      at(fixed.lines, p.fixed).ofSegment(at(fixed.segments, p.fixed)),
-                                      effects[b].byFixed);
-                if (p.moving == q.moving)
-                    spread += product(effects[a].byMoving,
-                                      at(moving.lines, p.moving).ofSegment(at(moving.segments, p.moving)),
-                                      effects[b].byMoving);
-            }
-        const Eigen::Matrix3d inverse = sums.inverse(); // symmetric
-        const Eigen::Matrix3d covariance = product(inverse, spread, inverse);
-        return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
-    }
+                                              const MeasuredSegments &moving) const;
 
 private:
     /// What the angle and the offset p of the lines of a pair add to the right side of the normal equations.
@@ -61,35 +36,18 @@ private:
     };
 
     template <typename T>
-    static const T &at(const std::vector<T> &list, int i) {
-        return list[static_cast<std::size_t>(i)];
-    }
-    static bool isKnown(int i, const MeasuredSegments &set) {
-        return i >= 0 && static_cast<std::size_t>(i) < std::min(set.segments.size(), set.lines.size()) &&
-               at(set.lines, i).valid;
-    }
+    static const T &at(const std::vector<T> &list, int i);
+    static bool isKnown(int i, const MeasuredSegments &set);
 
     // Over the points of the dynamic segment, s metres from its middle, the residual across the static line
     // changes with the pose by j + s k, and with a line's angle and offset by u + s and 1, where u is the
     // place of the middle along the line. The integrals of 1, s, s^2 are L, 0, L^3 / 12.
     static Effect effectOf(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving,
-                           const Transformation2D &pose, Eigen::Matrix3d &sums) {
-        const double length = moving.length(), moment = length * length * length / 12;
-        const Vector2D<double> n = fixed.normal(), v = fixed.direction(), middle = pose * moving.middle();
-        const Eigen::Vector3d j(n.x, n.y, v.dot(middle - pose.translation()));
-        sums += square(length, j);
-        sums(2, 2) += moment;
-        const auto effect = [&](double u) {
-            Eigen::Matrix<double, 3, 2> by;
-            for (int i = 0; i < 3; ++i) {
-                by(i, 0) = u * length * j(i);
-                by(i, 1) = length * j(i);
-            }
-            by(2, 0) += moment;
-            return by;
-        };
-        return {effect(v.dot(middle)), effect(moving.direction().dot(moving.middle()))};
-    }
+                           const Transformation2D &pose, Eigen::Matrix3d &sums);
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/SolutionCovariance.cpp"
+#endif

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/registration/ScanSurface.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -22,50 +23,15 @@ public:
     /// The strongest rotations of the moving scan, best first, at most `count`, none within three degrees of
     /// a better one.
     const std::vector<TurnVote> &operator()(const ScanSurface &fixed, const ScanSurface &moving,
-                                            std::size_t count) {
-        fill(fixed, fixed_);
-        fill(moving, moving_);
-        std::copy_n(fixed_.begin(), turn, fixed_.begin() + turn);
-        votes_.fill(0);
-        for (std::size_t i = 0; i < turn; ++i)
-            if (const float weight = moving_[i]; weight > 0)
-                for (std::size_t r = 0; r < turn; ++r)
-                    votes_[r] += weight * fixed_[i + r];
-        peaks_.clear();
-        for (std::size_t r = 0; r < turn; ++r)
-            if (isPeak(r))
-                peaks_.push_back({static_cast<int>(r), votes_[r]});
-        std::sort(peaks_.begin(), peaks_.end(), [](const TurnVote &a, const TurnVote &b) {
-            return a.votes != b.votes ? a.votes > b.votes : a.degrees < b.degrees;
-        });
-        if (peaks_.size() > count)
-            peaks_.resize(count);
-        return peaks_;
-    }
+                                            std::size_t count);
 
 private:
     static constexpr std::size_t turn = 360; // bins of one degree
 
     // Each piece is spread over five degrees: so uncertain are normals.
     template <typename Histogram>
-    static void fill(const ScanSurface &surface, Histogram &histogram) {
-        histogram.fill(0);
-        constexpr std::array<float, 5> spread{1, 2, 3, 2, 1};
-        for (const SurfacePiece &piece : surface.pieces())
-            for (std::size_t k = 0; k < spread.size(); ++k)
-                histogram[(static_cast<std::size_t>(piece.direction) + turn + k - 2) % turn] +=
-                    spread[k] * piece.length;
-    }
-    bool isPeak(std::size_t r) const {
-        if (!(votes_[r] > 0))
-            return false;
-        for (std::size_t d = 1; d <= 3; ++d) {
-            const float after = votes_[(r + d) % turn], before = votes_[(r + turn - d) % turn];
-            if (after > votes_[r] || before >= votes_[r])
-                return false;
-        }
-        return true;
-    }
+    static void fill(const ScanSurface &surface, Histogram &histogram);
+    bool isPeak(std::size_t r) const;
 
     std::array<float, 2 * turn> fixed_; // twice, one after the other
     std::array<float, turn> moving_, votes_;
@@ -73,3 +39,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/correspondence/TurnVotes.cpp"
+#endif

@@ -1,8 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/segmentation/ScanOrder.h"
+#include "vectorlib/segmentation/Segmentation.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"
 
 #include <vector>
@@ -20,25 +24,10 @@ public:
     double minLength = 0.10;   ///< shorter lines are no edges; metres
 
     /// The edges of a scan: sensor frame, points in the order of ScanOrder, free space on the left of edges.
-    const std::vector<EdgeRaw2D> &operator()(PointSpan<float> given) {
-        const PointSpan<float> scan = order(given);
-        return vectorizeClusters(segment(scan), scan);
-    }
+    const std::vector<EdgeRaw2D> &operator()(PointSpan<float> given);
 
     /// The last step of operator(), for callers that time the steps.
-    const std::vector<EdgeRaw2D> &vectorizeClusters(const Segmentation &clusters, PointSpan<float> scan) {
-        edges_.clear();
-        for (std::size_t c = 0; c < clusters.size(); ++c) {
-            cluster_.clear();
-            for (std::size_t i = clusters.starts[c]; i < clusters.starts[c + 1]; ++i)
-                cluster_.push_back(scan[static_cast<std::size_t>(clusters.order[i])]);
-            for (const VectorizedLine &line : vectorize(cluster_))
-                if (line.line.isValid() && line.last - line.first + 1 >= minPoints &&
-                    line.segment.length() >= minLength)
-                    edges_.emplace_back(line.sums, line.segment, line.sigma);
-        }
-        return edges_;
-    }
+    const std::vector<EdgeRaw2D> &vectorizeClusters(const Segmentation &clusters, PointSpan<float> scan);
 
 private:
     std::vector<Vector2D<float>> cluster_;
@@ -46,3 +35,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/edges/EdgeExtractor.cpp"
+#endif

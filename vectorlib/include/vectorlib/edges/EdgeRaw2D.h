@@ -1,9 +1,10 @@
 #pragma once
 
-#include "vectorlib/tls/TlsFit.h"
-
-#include <algorithm>
-#include <cmath>
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/tls/TlsSums.h"
 
 namespace vectorlib {
 
@@ -14,10 +15,7 @@ struct EdgeRaw2D {
     double sigma = 0;              ///< standard deviation of the points from the line; metres
 
     EdgeRaw2D() = default;
-    EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_, double sigma_)
-        : sums(sums_)
-        , segment(segment_)
-        , sigma(sigma_) {}
+    EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_, double sigma_);
 
     /// The edge in the frame into which t leads.
     friend EdgeRaw2D operator*(const Transformation2D &t, EdgeRaw2D e) {
@@ -30,25 +28,10 @@ struct EdgeRaw2D {
 /// The edge of the union of both point sets: exact total least squares by added sums, reaching from the
 /// outermost to the outermost end, directed as the first. Both in the same frame. Without a direction
 /// (isotropic points) the first edge's segment stays.
-inline EdgeRaw2D merged(const EdgeRaw2D &edge, const EdgeRaw2D &other) {
-    EdgeRaw2D result(edge.sums + other.sums, edge.segment, edge.sigma);
-    const TlsLine fit = fitLine(result.sums);
-    if (!fit.line.isValid())
-        return result;
-    Vector2D<double> direction = fit.line.direction();
-    if (direction.dot(edge.segment.direction()) < 0)
-        direction = -direction;
-    double from = 0, to = 0;
-    const Vector2D<double> &mean = result.sums.mean;
-    for (Vector2D<double> p :
-         {edge.segment.begin(), edge.segment.end(), other.segment.begin(), other.segment.end()}) {
-        const double t = (p - mean).dot(direction);
-        from = std::min(from, t);
-        to = std::max(to, t);
-    }
-    result.segment = {mean + direction * from, mean + direction * to, direction};
-    result.sigma = std::sqrt(fit.variance);
-    return result;
-}
+EdgeRaw2D merged(const EdgeRaw2D &edge, const EdgeRaw2D &other);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/edges/EdgeRaw2D.cpp"
+#endif

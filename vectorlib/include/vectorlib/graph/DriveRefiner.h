@@ -1,16 +1,19 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/PackedPoints.h"
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/SegmentGrid.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/graph/PoseConstraint.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/registration/PointCovariance.h"
 #include "vectorlib/registration/PointRefinement.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 namespace vectorlib {
@@ -44,44 +47,13 @@ public:
 
     /// The next scan of the drive: its points in the sensor's frame, in the order of ScanOrder, and the
     /// motion since the scan before as it was tracked (of no meaning for the first); metres, radians.
-    void add(PointSpan<float> points, const Transformation2D &tracked) {
-        if (!keys_.empty()) {
-            since_ = since_ * tracked;
-            way_ += tracked.translation().norm();
-            if (const auto c = measured({keys_.back().scan, keyPoints_}, {scans_, points}, since_))
-                nexts_.push_back(*c);
-        }
-        if (keys_.empty() || since_.translation().norm() >= settings.keyWay ||
-            std::abs(since_.alpha()) >= settings.keyTurn) {
-            keys_.push_back({scans_, way_, PackedPoints(points)});
-            keyPoints_.assign(points.begin(), points.end());
-            since_ = Transformation2D();
-        }
-        ++scans_;
-    }
+    void add(PointSpan<float> points, const Transformation2D &tracked);
     /// Moves the poses, one for each scan that was added (metres, radians). `loops` are motions between scans
     /// that were found before, with their weights. False, and the poses are as before, where there are not as
     /// many poses as scans or the equations cannot be solved. The first pose stays. progress counts key scans
     /// that are compared with earlier ones, which takes most of the time.
     bool operator()(std::vector<Pose2D> &poses, const std::vector<PoseConstraint> &loops,
-                    const std::function<void(std::size_t done, std::size_t all)> &progress = {}) {
-        if (poses.size() != scans_)
-            return false;
-        graph_.poses = poses;
-        graph_.constraints.clear();
-        keepWay();
-        for (const PoseConstraint &c : nexts_)
-            take(c);
-        for (PoseConstraint c : loops) {
-            c.information *= c.weight;
-            graph_.constraints.push_back(c);
-        }
-        comparePasses(progress);
-        if (!graph_.optimise())
-            return false;
-        poses = graph_.poses;
-        return true;
-    }
+                    const std::function<void(std::size_t done, std::size_t all)> &progress = {});
 
 private:
     struct Scan {
@@ -100,90 +72,16 @@ private:
 
     // Nothing where the points do not agree well.
     std::optional<PoseConstraint> measured(const Scan &from, const Scan &to,
-                                           const Transformation2D &expected) {
-        Expectation expectation;
-        expectation.pose = expected;
-        match.start(from.points, to.points);
-        const Transformation2D motion = match(expected, expectation);
-        const PointAgreement agreement = match.agreement(motion);
-        if (!(agreement.explained() >= settings.minExplained &&
-              agreement.contradicted() <= settings.maxContradicted))
-            return std::nullopt;
-        const double xy = settings.matchedXY, alpha = settings.matchedAlpha;
-        Eigen::Matrix3d covariance = tellCovariance(match, motion);
-        covariance.diagonal() += Eigen::Vector3d(xy * xy, xy * xy, alpha * alpha);
-        return PoseConstraint{from.number, to.number, motion, covariance.inverse(), true, 1};
-    }
-    void take(const PoseConstraint &c) {
-        const Eigen::Vector3d off = graph_.errorOf(c);
-        if (off.head<2>().norm() <= settings.mostXY && std::abs(off[2]) <= settings.mostAlpha)
-            graph_.constraints.push_back(c);
-    }
+                                           const Transformation2D &expected);
+    void take(const PoseConstraint &c);
     Transformation2D motionBetween(std::size_t from, std::size_t to) const {
         return Transformation2D(graph_.poses[from]).inverse() * Transformation2D(graph_.poses[to]);
     }
-    void keepWay() {
-        constexpr double least = 1e-3; // metres, radians; of standing, too
-        for (std::size_t to = 1; to < scans_; ++to) {
-            const Transformation2D motion = motionBetween(to - 1, to);
-            const double way = motion.translation().norm(), turn = std::abs(motion.alpha());
-            const double xy = std::hypot(least, settings.keptXY * std::sqrt(way));
-            const double alpha =
-                std::hypot(least, settings.keptAlpha * std::sqrt(way), settings.keptTurn * std::sqrt(turn));
-            graph_.constraints.push_back(
-                {to - 1, to, motion,
-                 Eigen::Vector3d(1 / (xy * xy), 1 / (xy * xy), 1 / (alpha * alpha)).asDiagonal(), false, 1});
-        }
-    }
-    void comparePasses(const std::function<void(std::size_t, std::size_t)> &progress) {
-        SegmentGrid grid(settings.reach);
-        for (std::size_t k = 0; k < keys_.size(); ++k) {
-            const Pose2D &here = graph_.poses[keys_[k].scan];
-            const Vector2D<double> place(here.x, here.y);
-            compareWithNearest(k, grid);
-            grid.insert(static_cast<int>(k), {place, place, {1, 0}});
-            if (progress)
-                progress(k + 1, keys_.size());
-        }
-    }
+    void keepWay();
+    void comparePasses(const std::function<void(std::size_t, std::size_t)> &progress);
     // The nearest key scans of earlier passes, one of each pass.
-    void compareWithNearest(std::size_t key, SegmentGrid &grid) {
-        findCandidates(key, grid);
-        passes_.clear();
-        keys_[key].points.unpack(keyPoints_);
-        for (const Candidate &c : candidates_) {
-            const Key &earlier = keys_[c.key], &later = keys_[key];
-            const auto isSamePass = [&](double way) {
-                return std::abs(way - earlier.way) < settings.passWay;
-            };
-            if (std::any_of(passes_.begin(), passes_.end(), isSamePass))
-                continue;
-            passes_.push_back(earlier.way);
-            earlier.points.unpack(earlier_);
-            if (const auto found = measured({earlier.scan, earlier_}, {later.scan, keyPoints_},
-                                            motionBetween(earlier.scan, later.scan)))
-                take(*found);
-            if (passes_.size() == settings.perScan)
-                break;
-        }
-    }
-    void findCandidates(std::size_t key, SegmentGrid &grid) {
-        const Pose2D &here = graph_.poses[keys_[key].scan];
-        const Vector2D<double> place(here.x, here.y), reach(settings.reach, settings.reach);
-        candidates_.clear();
-        grid.query(place - reach, place + reach, [&](int number) {
-            const auto k = static_cast<std::size_t>(number);
-            const Pose2D &there = graph_.poses[keys_[k].scan];
-            const double apart = std::hypot(here.x - there.x, here.y - there.y);
-            const double turn = std::abs(std::remainder(here.theta - there.theta, 2 * pi));
-            if (apart < settings.reach && turn < settings.mostTurn &&
-                keys_[key].way - keys_[k].way >= settings.leastWay)
-                candidates_.push_back({apart + 0.5 * turn, k});
-        });
-        std::sort(candidates_.begin(), candidates_.end(), [](const Candidate &a, const Candidate &b) {
-            return std::tie(a.apart, a.key) < std::tie(b.apart, b.key);
-        });
-    }
+    void compareWithNearest(std::size_t key, SegmentGrid &grid);
+    void findCandidates(std::size_t key, SegmentGrid &grid);
 
     std::size_t scans_ = 0;
     double way_ = 0;         // since the start of the drive; metres
@@ -197,3 +95,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/graph/DriveRefiner.cpp"
+#endif

@@ -1,11 +1,19 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
+#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/graph/LoopCloser.h"
+#include "vectorlib/graph/PoseConstraint.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MapReview.h"
+#include "vectorlib/mapping/TrackedBy.h"
+#include "vectorlib/mapping/VectorMap.h"
 
 #include <functional>
-#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -21,68 +29,26 @@ public:
     /// The next scan: its points and edges in the sensor's frame (no edges of one that is in doubt), the
     /// motion since the scan before (the pose, for the first) as it was tracked, and by what.
     void add(PointSpan<float> points, const std::vector<EdgeRaw2D> &edges, const Transformation2D &tracked,
-             TrackedBy by) {
-        loops.add(points, tracked, by);
-        edges_.push_back(edges);
-        edges_.back().shrink_to_fit();
-        edgeBytes_ += bytesOf(edges_.back());
-    }
+             TrackedBy by);
     /// Goes on with a drive that was remembered; edges: one list a scan.
-    void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges) {
-        loops.restore(std::move(memory));
-        edges_ = std::move(edges);
-        edgeBytes_ = 0;
-        for (const std::vector<EdgeRaw2D> &scan : edges_)
-            edgeBytes_ += bytesOf(scan);
-    }
+    void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges);
     /// Memory that it takes, about, but for what is in reserve.
     std::size_t bytes() const { return loops.bytes() + edgeBytes_ + known.size() * sizeof(MapEdge); }
     /// The builder's map becomes that of all scans so far, where they are now.
-    void rebuild(MapBuilder &builder) const {
-        startAnew(builder);
-        extend(builder, 0);
-    }
+    void rebuild(MapBuilder &builder) const;
     /// The same at other poses, one a scan; progress counts the scans.
     void rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses,
-                 const std::function<void(std::size_t done, std::size_t all)> &progress = {}) const {
-        startAnew(builder);
-        for (std::size_t i = 0; i < edges_.size(); ++i) {
-            extend(builder, poses, i, i + 1);
-            if (progress)
-                progress(i + 1, edges_.size());
-        }
-    }
+                 const std::function<void(std::size_t done, std::size_t all)> &progress = {}) const;
     /// The builder's map takes the scans from that number on.
-    void extend(MapBuilder &builder, std::size_t from) const {
-        for (std::size_t i = from; i < edges_.size(); ++i)
-            if (!edges_[i].empty())
-                builder.place(edges_[i], loops.pose(i));
-    }
+    void extend(MapBuilder &builder, std::size_t from) const;
     /// The same at other poses (one a scan of the drive), up to that number.
     void extend(MapBuilder &builder, const std::vector<Pose2D> &poses, std::size_t from,
-                std::size_t end) const {
-        for (std::size_t i = from; i < end; ++i)
-            if (!edges_[i].empty())
-                builder.place(edges_[i], poses[i]);
-    }
+                std::size_t end) const;
     /// The loops of the graph as motions between scans.
-    std::vector<PoseConstraint> loopsOfScans() const {
-        std::vector<PoseConstraint> result;
-        for (PoseConstraint c : loops.graph().constraints)
-            if (c.mayBeWrong) {
-                c.from = loops.scanOf(c.from);
-                c.to = loops.scanOf(c.to);
-                result.push_back(c);
-            }
-        return result;
-    }
+    std::vector<PoseConstraint> loopsOfScans() const;
 
     /// Walls that stand twice and those that scans saw through leave the map, which was made at these poses.
-    MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const {
-        MapReview review;
-        review.settings.known = static_cast<int>(known.size());
-        return review(map, {edges_, poses});
-    }
+    MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const;
     /// Of each scan, sensor frame.
     const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }
 
@@ -90,14 +56,14 @@ private:
     static std::size_t bytesOf(const std::vector<EdgeRaw2D> &edges) {
         return sizeof edges + edges.capacity() * sizeof(EdgeRaw2D);
     }
-    void startAnew(MapBuilder &builder) const {
-        builder.clear();
-        for (const MapEdge &edge : known)
-            builder.map.add(edge, edge.observations);
-    }
+    void startAnew(MapBuilder &builder) const;
 
     std::vector<std::vector<EdgeRaw2D>> edges_;
     std::size_t edgeBytes_ = 0;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/graph/MappedDrive.cpp"
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
 #include <Eigen/Core>
@@ -18,10 +19,11 @@ struct PoseConstraint {
     double weight = 1;       ///< in [0, 1], found with the poses
 
     /// Whether the other motions contradict it, so that it counts little.
-    bool isRefused() const {
-        constexpr double least = 0.25;
-        return mayBeWrong && weight < least;
-    }
+    bool isRefused() const;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/graph/PoseConstraint.cpp"
+#endif

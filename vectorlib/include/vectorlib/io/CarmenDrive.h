@@ -1,9 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/CarmenScan.h"
 #include "vectorlib/motion/OdometryTrack.h"
 
-#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace vectorlib {
 
@@ -23,28 +28,11 @@ public:
         , kind_(kind) {}
 
     /// Goes on to the next scan; there must be one.
-    void advance() {
-        const std::size_t i = steps_.size();
-        steps_.emplace_back();
-        isRepeated_ = false;
-        for (std::size_t back = 1; back <= std::min(repeated, i) && !isRepeated_; ++back)
-            if (isSame(log_.scans[i - back], log_.scans[i])) {
-                isRepeated_ = true;
-                ++repeated_;
-                steps_[i] = steps_[i - back];
-            }
-        if (!isRepeated_)
-            steps_[i] = i > 0 ? stepTo(i) : Step{{}, 0, i, log_.scans[i].hasOdometry};
-    }
+    void advance();
     /// Whether the last scan has the stamp and the ranges of one shortly before it.
     bool isRepeated() const { return isRepeated_; }
     /// The robot at the last scan; nothing where the log does not tell.
-    std::optional<OdometryTrack> odometry() const {
-        const Step &step = steps_.back();
-        if (!step.isKnown)
-            return std::nullopt;
-        return OdometryTrack(step.epoch, {{log_.scans[steps_.size() - 1].stamp, step.robot.pose(), {}, {}}});
-    }
+    std::optional<OdometryTrack> odometry() const;
 
     /// Repeated scans so far.
     std::size_t repetitions() const { return repeated_; }
@@ -63,29 +51,9 @@ private:
     static bool isSame(const CarmenScan &a, const CarmenScan &b) {
         return a.stamp == b.stamp && a.ranges == b.ranges;
     }
-    Step stepTo(std::size_t i) {
-        Step step = steps_[i - 1];
-        const bool isRaw = kind_ == CarmenOdometryKind::Raw;
-        step.isKnown = !isRaw || log_.scans[i].hasOdometry;
-        if (!step.isKnown)
-            return step;
-        const std::size_t from = isRaw ? step.known : i - 1;
-        const auto motion = log_.odometryMotion(from, i, kind_);
-        step.known = i;
-        const bool isLeap = motion && leaps(*motion, log_.scans[i].stamp - log_.scans[from].stamp);
-        leaps_ += isLeap;
-        if (motion && !isLeap)
-            step.robot = step.robot * *motion;
-        else
-            ++step.epoch;
-        return step;
-    }
+    Step stepTo(std::size_t i);
     // The clock of a log may stand, or be set back: then it was any pause.
-    static bool leaps(const Transformation2D &motion, double seconds) {
-        const double pause = seconds > 0 ? std::min(seconds, longestPause_s) : longestPause_s;
-        return motion.translation().norm() > leap_m + fastest_mps * pause ||
-               std::abs(wrapAngle(motion.alpha())) > leap_rad + fastest_radps * pause;
-    }
+    static bool leaps(const Transformation2D &motion, double seconds);
 
     const CarmenLog &log_;
     CarmenOdometryKind kind_;
@@ -95,3 +63,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/CarmenDrive.cpp"
+#endif

@@ -1,9 +1,16 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Angle.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/io/CarmenScan.h"
+#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/TextInput.h"
 
-#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace vectorlib {
 
@@ -33,19 +40,7 @@ struct CarmenLog {
     /// Motion of the robot from one scan to a later one as its odometry tells it, composed over the scans
     /// between. Nothing when a part of the way has no odometry.
     std::optional<Transformation2D> odometryMotion(std::size_t from, std::size_t to,
-                                                   CarmenOdometryKind kind) const {
-        if (kind == CarmenOdometryKind::Raw && scans[from].hasOdometry && scans[to].hasOdometry)
-            return Transformation2D(scans[from].robotPose).inverse() * Transformation2D(scans[to].robotPose);
-        if (kind == CarmenOdometryKind::Raw)
-            return std::nullopt;
-        Transformation2D motion;
-        for (std::size_t i = from + 1; i <= to; ++i) {
-            if (!scans[i].wheelMotion)
-                return std::nullopt;
-            motion = motion * *scans[i].wheelMotion;
-        }
-        return motion;
-    }
+                                                   CarmenOdometryKind kind) const;
     /// Motion between two scans by the laser poses: in a corrected log the reference to compare with.
     Transformation2D referenceMotion(std::size_t from, std::size_t to) const {
         return Transformation2D(scans[from].laserPose).inverse() * Transformation2D(scans[to].laserPose);
@@ -54,13 +49,7 @@ struct CarmenLog {
     /// Range from which FLASER readings mean no return: just below the largest of the log when that is one a
     /// scanner writes for it (30 m and more, a little apart by device: 81.91 and 81.83, 51.1
     /// and 51.05, 32.767); else none.
-    double guessMaxRange() const {
-        float largest = 0;
-        for (const CarmenScan &scan : scans)
-            for (const float range : scan.ranges)
-                largest = std::max(largest, range);
-        return largest >= 30 ? std::min(80.0, 0.998 * largest) : std::numeric_limits<double>::infinity();
-    }
+    double guessMaxRange() const;
 };
 
 namespace detail {
@@ -72,26 +61,7 @@ public:
         : lines_(in, std::move(name))
         , options_(options) {}
 
-    Expected<CarmenLog> read() {
-        while (const auto line = lines_.next()) {
-            if (const auto error = readLine(trimmed(*line))) {
-                if (!options_.skipDamaged)
-                    return *error;
-                if (log_.damaged++ == 0)
-                    log_.firstDamage = error;
-            }
-        }
-        if (lines_.error())
-            return *lines_.error();
-        if (log_.scans.empty())
-            return lines_.errorHere("the end of the log and no scan",
-                                    "at least one line FLASER or ROBOTLASER1");
-        const double maxRange = log_.guessMaxRange();
-        for (CarmenScan &scan : log_.scans)
-            if (std::isinf(scan.maxRange))
-                scan.maxRange = maxRange;
-        return std::move(log_);
-    }
+    Expected<CarmenLog> read();
 
 private:
     using Problem = std::optional<InputError>;
@@ -100,190 +70,31 @@ private:
     static constexpr double largestAngle = 2.001 * pi; // a turn, however it was rounded
     static constexpr double widest = 1e7;              // metres; nor does a robot drive as far
 
-    Problem readLine(std::string_view line) {
-        if (line.empty() || line.front() == '#')
-            return {};
-        splitBlanks(line, fields_);
-        const std::string_view keyword = fields_.front();
-        if (keyword == "ODOM")
-            return readOdometry();
-        if (keyword == "FLASER" || keyword == "ROBOTLASER1") {
-            Problem problem = keyword == "FLASER" ? readFrontLaser() : readRobotLaser();
-            if (problem)
-                interrupted();
-            return problem;
-        }
-        const bool isKeyword = std::all_of(keyword.begin(), keyword.end(), [](char c) {
-            return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-        });
-        if (!isKeyword || (!lines_.terminated() && fields_.size() == 1))
-            return lines_.errorHere(vectorlib::quoted(keyword),
-                                    "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
-        return {}; // PARAM, NEFF, SYNC, RLASER, TRUEPOS and others tell nothing of the front laser
-    }
+    Problem readLine(std::string_view line);
 
-    Problem readOdometry() {
-        CarmenOdometry odometry;
-        odometry.line = lines_.number();
-        if (fields_.size() < 10)
-            return tooShort("ODOM", 10);
-        if (const auto problem = readPose(1, odometry.pose))
-            return refuse(problem);
-        if (const auto problem = readField(7, "the time stamp", odometry.stamp))
-            return problem;
-        follow(odometry.pose);
-        log_.odometry.push_back(odometry);
-        return {};
-    }
+    Problem readOdometry();
 
-    Problem readFrontLaser() {
-        CarmenScan scan;
-        std::size_t at = 1;
-        if (const auto problem = readRanges("FLASER", at, 9, scan))
-            return problem;
-        if (fields_.size() != at + 9)
-            return lines_.errorHere(std::to_string(fields_.size()) + " fields",
-                                    std::to_string(at + 9) + " fields of FLASER with " +
-                                        std::to_string(scan.ranges.size()) + " ranges");
-        // 180 or 181 rays stand 1 degree apart, 360 or 361 half a degree: an even count lacks the last ray.
-        const std::size_t n = scan.ranges.size();
-        scan.startAngle = -pi / 2;
-        scan.angleStep = pi / static_cast<double>(n % 2 == 0 ? n : n - 1);
-        return finish(scan, at, at + 6);
-    }
+    Problem readFrontLaser();
 
-    Problem readRobotLaser() {
-        if (fields_.size() < 9)
-            return tooShort("ROBOTLASER1", 9);
-        CarmenScan scan;
-        double fieldOfView = 0;
-        for (const auto &[index, what, value] : {std::tuple(2, "the start angle", &scan.startAngle),
-                                                 std::tuple(3, "the field of view", &fieldOfView),
-                                                 std::tuple(4, "the angular resolution", &scan.angleStep),
-                                                 std::tuple(5, "the maximum range", &scan.maxRange)})
-            if (const auto problem = readField(index, what, *value))
-                return problem;
-        if (!(scan.angleStep > 0) || !(scan.maxRange > 0))
-            return lines_.errorHere(vectorlib::quoted(fields_[scan.angleStep > 0 ? 5 : 4]),
-                                    "a resolution and a maximum range above 0");
-        if (std::abs(scan.startAngle) > largestAngle || scan.angleStep > largestAngle)
-            return lines_.errorHere(vectorlib::quoted(fields_[scan.angleStep > largestAngle ? 4 : 2]),
-                                    "a start angle and a resolution within a turn, in radians");
-        scan.maxRange = std::min(scan.maxRange, farthest);
-        std::size_t at = 8;
-        if (const auto problem = readRanges("ROBOTLASER1", at, 15, scan))
-            return problem;
-        const auto remissions = parseCount(fields_[at], maxRays);
-        if (!remissions)
-            return lines_.errorHere(vectorlib::quoted(fields_[at]), "the number of remissions");
-        at += 1 + *remissions;
-        if (fields_.size() < at + 14)
-            return tooShort("ROBOTLASER1", at + 14);
-        return finish(scan, at, at + 11);
-    }
+    Problem readRobotLaser();
 
     /// The count at field `at` and so many ranges; moves `at` behind them. `rest` fields must follow.
-    Problem readRanges(const char *keyword, std::size_t &at, std::size_t rest, CarmenScan &scan) {
-        const auto count = fields_.size() > at ? parseCount(fields_[at], maxRays) : std::nullopt;
-        if (!count || *count < 2)
-            return lines_.errorHere(fields_.size() > at ? quoted(fields_[at]) : "the end of the line",
-                                    "the number of ranges, 2 to " + std::to_string(maxRays));
-        if (fields_.size() < at + 1 + *count + rest)
-            return tooShort(keyword, at + 1 + *count + rest);
-        scan.ranges.reserve(*count);
-        for (std::size_t i = 0; i < *count; ++i) {
-            const auto range = parseNumber(fields_[at + 1 + i]);
-            if (!range || *range < 0)
-                return lines_.errorHere(vectorlib::quoted(fields_[at + 1 + i]),
-                                        "range " + std::to_string(i + 1) + " of " + std::to_string(*count) +
-                                            ", a finite number of metres");
-            scan.ranges.push_back(static_cast<float>(std::min(*range, farthest)));
-        }
-        at += 1 + *count;
-        return {};
-    }
+    Problem readRanges(const char *keyword, std::size_t &at, std::size_t rest, CarmenScan &scan);
 
-    Problem finish(CarmenScan &scan, std::size_t poses, std::size_t stamp) {
-        scan.line = lines_.number();
-        if (const auto problem = readPosesOfScan(poses, scan))
-            return problem;
-        if (const auto problem = readField(stamp, "the time stamp", scan.stamp))
-            return problem;
-        // A single ODOM that repeats the pose of the scan before it tells nothing: the wheels were not asked
-        // again.
-        const bool told = last_ && (follows_ > 1 || last_->x != base_->x || last_->y != base_->y ||
-                                    last_->theta != base_->theta);
-        if (told && !log_.scans.empty())
-            scan.wheelMotion = moved_ * Transformation2D(*base_).inverse() * Transformation2D(*last_);
-        moved_ = {};
-        base_ = scan.laserPose;
-        last_.reset();
-        follows_ = 0;
-        log_.scans.push_back(std::move(scan));
-        return {};
-    }
+    Problem finish(CarmenScan &scan, std::size_t poses, std::size_t stamp);
 
-    Problem readPosesOfScan(std::size_t at, CarmenScan &scan) {
-        Problem problem = readPose(at, scan.laserPose);
-        if (problem && options_.refusesOdometry == CarmenOdometryKind::Corrected)
-            return problem; // the reference
-        if (!problem)
-            problem = readPose(at + 3, scan.robotPose);
-        if (!problem)
-            return {};
-        scan.hasOdometry = false;
-        scan.robotPose = {};
-        if (options_.refusesOdometry == CarmenOdometryKind::Raw)
-            scan.laserPose = {};
-        return refuse(problem);
-    }
+    Problem readPosesOfScan(std::size_t at, CarmenScan &scan);
     /// Nothing where it is counted only.
-    Problem refuse(const Problem &problem) {
-        if (!options_.refusesOdometry)
-            return problem;
-        ++log_.odometryRefused;
-        return {};
-    }
+    Problem refuse(const Problem &problem);
 
     /// A pose of the wheels between two scans.
-    void follow(const Pose2D &pose) {
-        if (!base_)
-            base_ = pose; // the first after a damaged scan: where the odometry restarted is not known but
-                          // from here
-        last_ = pose;
-        ++follows_;
-    }
+    void follow(const Pose2D &pose);
     /// A scan that cannot be read: the odometry restarts at its unknown pose.
-    void interrupted() {
-        if (last_)
-            moved_ = moved_ * Transformation2D(*base_).inverse() * Transformation2D(*last_);
-        base_.reset();
-        last_.reset();
-    }
+    void interrupted();
 
-    Problem readPose(std::size_t at, Pose2D &pose) {
-        for (const auto &[offset, what, value] :
-             {std::tuple(0u, "x of a pose", &pose.x), std::tuple(1u, "y of a pose", &pose.y),
-              std::tuple(2u, "theta of a pose", &pose.theta)}) {
-            if (const auto problem = readField(at + offset, what, *value))
-                return problem;
-            if (std::abs(*value) > widest)
-                return lines_.errorHere(vectorlib::quoted(fields_[at + offset]),
-                                        std::string(what) + " below 1e7");
-        }
-        return {};
-    }
-    Problem readField(std::size_t at, const char *what, double &value) {
-        const auto number = parseNumber(fields_[at]);
-        if (!number)
-            return lines_.errorHere(vectorlib::quoted(fields_[at]), std::string(what) + ", a finite number");
-        value = *number;
-        return {};
-    }
-    InputError tooShort(const char *keyword, std::size_t fields) const {
-        return lines_.errorHere("a line cut short after " + std::to_string(fields_.size()) + " fields",
-                                std::to_string(fields) + " fields of " + keyword);
-    }
+    Problem readPose(std::size_t at, Pose2D &pose);
+    Problem readField(std::size_t at, const char *what, double &value);
+    InputError tooShort(const char *keyword, std::size_t fields) const;
 
     LineReader lines_;
     CarmenOptions options_;
@@ -305,3 +116,7 @@ inline Expected<CarmenLog> readCarmenLog(std::istream &in, std::string name, Car
 }
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/CarmenLog.cpp"
+#endif

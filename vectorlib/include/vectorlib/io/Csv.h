@@ -1,9 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/TextInput.h"
 
-#include <algorithm>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace vectorlib {
 
@@ -19,29 +22,11 @@ struct CsvColumns {
 /// of no bytes.
 class CsvReader {
 public:
-    CsvReader(std::istream &in, std::string name, CsvColumns columns, bool furtherColumns = false)
-        : lines_(in, std::move(name))
-        , columns_(std::move(columns))
-        , furtherColumns_(furtherColumns) {}
+    CsvReader(std::istream &in, std::string name, CsvColumns columns, bool furtherColumns = false);
 
     /// The next row: the values of all required columns, then of the optional ones the file has. Nothing at
     /// the end of the file or on an error, see error().
-    const std::vector<double> *next() {
-        while (const auto line = lines_.next()) {
-            const std::string_view text = trimmed(*line);
-            if (text.empty() || text.front() == '#')
-                continue;
-            splitCommas(text, fields_);
-            if (width_ == 0 && takeHeader())
-                continue;
-            return !error_ && takeRow() ? &row_ : nullptr;
-        }
-        if (!error_)
-            error_ = lines_.error();
-        if (!error_ && lines_.number() == 0)
-            error_ = lines_.errorHere("an empty file", expectation());
-        return nullptr;
-    }
+    const std::vector<double> *next();
 
     const std::optional<InputError> &error() const { return error_; }
     std::size_t line() const { return lines_.number(); }
@@ -57,83 +42,16 @@ public:
     const std::vector<std::string> &furtherNames() const { return furtherNames_; }
 
 private:
-    static bool isNumberLike(std::string_view field) {
-        if (field.empty() || parseNumber(field))
-            return true;
-        const char c =
-            field[field[0] == '-' || field[0] == '+' ? std::min<std::size_t>(1, field.size() - 1) : 0];
-        std::string lower(field);
-        std::transform(lower.begin(), lower.end(), lower.begin(),
-                       [](unsigned char ch) { return ch >= 'A' && ch <= 'Z' ? ch + 32 : ch; });
-        return (c >= '0' && c <= '9') || c == '.' || lower.find("nan") != std::string::npos ||
-               lower.find("inf") != std::string::npos;
-    }
+    static bool isNumberLike(std::string_view field);
 
     /// Settles where the columns are from the first line; true when it is a header.
-    bool takeHeader() {
-        width_ = fields_.size();
-        const bool header = !isNumberLike(fields_.front());
-        for (std::size_t i = 0; i < columns_.required.size() + columns_.optional.size(); ++i) {
-            const bool required = i < columns_.required.size();
-            const std::string &column =
-                required ? columns_.required[i] : columns_.optional[i - columns_.required.size()];
-            const std::size_t at =
-                header ? static_cast<std::size_t>(std::find(fields_.begin(), fields_.end(), column) -
-                                                  fields_.begin())
-                       : i;
-            if (at < width_)
-                positions_.push_back(at);
-            else if (required && !error_)
-                error_ = lines_.errorHere("no column " + column, expectation());
-            else if (!required)
-                break; // optional columns count from the first on
-        }
-        for (std::size_t at = 0; at < width_; ++at)
-            if (std::find(positions_.begin(), positions_.end(), at) == positions_.end()) {
-                furtherPositions_.push_back(at);
-                furtherNames_.emplace_back(header ? fields_[at] : std::string_view());
-            }
-        if (!header && !furtherColumns_ && !furtherPositions_.empty() && !error_)
-            error_ = lines_.errorHere(std::to_string(width_) + " fields and no header", expectation());
-        return header && !error_;
-    }
+    bool takeHeader();
 
-    bool takeRow() {
-        if (fields_.size() != width_) {
-            error_ = lines_.errorHere(
-                std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields"),
-                std::to_string(width_) + " fields as in the first line: " + expectation());
-            return false;
-        }
-        row_.clear();
-        for (const std::size_t at : positions_) {
-            const auto number = parseNumber(fields_[at]);
-            if (!number) {
-                error_ = lines_.errorHere(vectorlib::quoted(fields_[at]),
-                                          "a finite number as " + columnName(row_.size()));
-                return false;
-            }
-            row_.push_back(*number);
-        }
-        further_.clear();
-        for (const std::size_t at : furtherPositions_)
-            further_.push_back(fields_[at]);
-        return true;
-    }
+    bool takeRow();
 
-    const std::string &columnName(std::size_t i) const {
-        return i < columns_.required.size() ? columns_.required[i]
-                                            : columns_.optional[i - columns_.required.size()];
-    }
+    const std::string &columnName(std::size_t i) const;
     /// `columns x,y` or `columns a,b[,weight]`
-    std::string expectation() const {
-        std::string text = "columns ";
-        for (std::size_t i = 0; i < columns_.required.size(); ++i)
-            text += (i ? "," : "") + columns_.required[i];
-        for (const std::string &column : columns_.optional)
-            text += "[," + column + "]";
-        return text;
-    }
+    std::string expectation() const;
 
     LineReader lines_;
     CsvColumns columns_;
@@ -149,3 +67,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/Csv.cpp"
+#endif

@@ -1,8 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/io/Csv.h"
+#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/Number.h"
+
+#include <iosfwd>
+#include <string>
+#include <vector>
 
 namespace vectorlib {
 
@@ -15,21 +21,7 @@ struct SegmentTable {
 
 /// Segments from CSV: columns `x1,y1,x2,y2`, by name where there is a header, else the first four. A segment
 /// too long for its length to be told is an error.
-inline Expected<SegmentTable> readCsvSegments(std::istream &in, std::string name) {
-    CsvReader csv(in, std::move(name), {{"x1", "y1", "x2", "y2"}, {}}, true);
-    SegmentTable table;
-    while (const auto *row = csv.next()) {
-        table.segments.emplace_back(Vector2D<double>((*row)[0], (*row)[1]),
-                                    Vector2D<double>((*row)[2], (*row)[3]));
-        if (!std::isfinite((table.segments.back().end() - table.segments.back().begin()).squaredNorm()))
-            return csv.errorHere("a segment beyond all measure", "end points in metres");
-        table.further.emplace_back(csv.further().begin(), csv.further().end());
-    }
-    if (csv.error())
-        return *csv.error();
-    table.furtherNames = csv.furtherNames();
-    return table;
-}
+Expected<SegmentTable> readCsvSegments(std::istream &in, std::string name);
 
 /// Segments as CSV with the header `x1,y1,x2,y2`.
 template <typename Scalar>
@@ -41,3 +33,7 @@ void writeCsvSegments(std::ostream &out, const std::vector<LineSegment2D<Scalar>
 }
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/CsvSegments.cpp"
+#endif

@@ -1,25 +1,19 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/edges/MapEdge.h"
-#include "vectorlib/io/Number.h"
 
+#include <iosfwd>
 #include <vector>
 
 namespace vectorlib {
 
 /// A map as a DXF drawing (release 12, which every CAD program reads): one LINE a segment on layer MAP, one
 /// unit a metre.
-inline void writeDxf(std::ostream &out, const std::vector<MapEdge> &map) {
-    out << "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
-    for (const MapEdge &m : map) {
-        const auto a = m.segment.begin(), b = m.segment.end();
-        out << "0\nLINE\n8\nMAP\n10\n"
-            << Number(a.x) << "\n20\n"
-            << Number(a.y) << "\n30\n0\n11\n"
-            << Number(b.x) << "\n21\n"
-            << Number(b.y) << "\n31\n0\n";
-    }
-    out << "0\nENDSEC\n0\nEOF\n";
-}
+void writeDxf(std::ostream &out, const std::vector<MapEdge> &map);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/Dxf.cpp"
+#endif

@@ -1,26 +1,18 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/edges/MapEdge.h"
-#include "vectorlib/io/Number.h"
 
+#include <iosfwd>
 #include <vector>
 
 namespace vectorlib {
 
 /// A map as GeoJSON: one LineString a segment. Coordinates are metres in the map's own frame, not degrees.
-inline void writeGeoJson(std::ostream &out, const std::vector<MapEdge> &map) {
-    out << "{\"type\": \"FeatureCollection\", \"units\": \"metres in the frame of the map\", \"features\": [";
-    const char *separator = "\n";
-    for (const MapEdge &m : map) {
-        const auto a = m.segment.begin(), b = m.segment.end();
-        out << separator << R"({"type": "Feature", "id": )" << m.id
-            << R"(, "geometry": {"type": "LineString", "coordinates": [[)" << Number(a.x) << ", "
-            << Number(a.y) << "], [" << Number(b.x) << ", " << Number(b.y) << R"(]]}, "properties": {"n": )"
-            << Number(m.sums.n) << R"(, "sigma": )" << Number(m.sigma) << R"(, "observations": )"
-            << m.observations << "}}";
-        separator = ",\n";
-    }
-    out << "\n]}\n";
-}
+void writeGeoJson(std::ostream &out, const std::vector<MapEdge> &map);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/GeoJson.cpp"
+#endif

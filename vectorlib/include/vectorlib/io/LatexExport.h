@@ -1,6 +1,16 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/io/LatexPicture.h"
 #include "vectorlib/io/LatexPlot.h"
+#include "vectorlib/io/LatexText.h"
+#include "vectorlib/io/Picture.h"
+#include "vectorlib/io/Plot.h"
+
+#include <iosfwd>
+#include <string>
+#include <vector>
 
 namespace vectorlib {
 
@@ -12,46 +22,18 @@ public:
     /// A document of its own, or a fragment that another document includes.
     enum class As { Document, Fragment };
 
-    explicit LatexExport(std::ostream &out, const std::string &title = "", As as = As::Document)
-        : out_(out)
-        , as_(as) {
-        const char *prefix = as == As::Document ? "" : "% ";
-        if (as == As::Document)
-            out << "\\documentclass[a4paper,10pt]{article}\n";
-        else
-            out << "% For \\input in a document with:\n";
-        for (const char *line :
-             {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}", "\\usepackage{longtable}",
-              "\\usepackage{pgfplots}", "\\pgfplotsset{compat=1.16}"})
-            out << prefix << line << '\n';
-        if (as == As::Fragment)
-            return;
-        out << "\\usepackage[margin=2cm]{geometry}\n\\IfFileExists{lmodern.sty}{\\usepackage{lmodern}}{}\n"
-               "\\setlength{\\parindent}{0pt}\n\\setlength{\\emergencystretch}{3em}\n\\begin{document}\n";
-        if (!title.empty())
-            out << "\\section*{" << latexText(title) << "}\n";
-    }
+    explicit LatexExport(std::ostream &out, const std::string &title = "", As as = As::Document);
     LatexExport(const LatexExport &) = delete;
     LatexExport &operator=(const LatexExport &) = delete;
 
     /// A scene with its title (in a document; beside a fragment stands what includes it) and legend.
-    void picture(const Picture &picture, const LatexFrame &frame = {}) {
-        if (as_ == As::Document && !picture.title().empty())
-            out_ << "\\subsection*{" << latexText(picture.title()) << "}\n";
-        drawing(picture, frame);
-        out_ << "\n\n\\smallskip\n";
-        legend(picture.layers());
-    }
+    void picture(const Picture &picture, const LatexFrame &frame = {});
     /// The scene alone, where more stands beside it.
     void drawing(const Picture &picture, const LatexFrame &frame) {
         LatexPicture(picture, frame).write(out_);
     }
     /// What the layers with a label mean.
-    void legend(const std::vector<Picture::Layer> &layers) {
-        out_ << "{\\small\\raggedright\n";
-        LatexPicture::writeLegend(out_, layers);
-        out_ << "\\par}\n\\bigskip\n";
-    }
+    void legend(const std::vector<Picture::Layer> &layers);
     /// A plot; see writeLatex().
     void plot(const Plot &plot) { figure(plot); }
     /// A surface; see writeLatex().
@@ -59,40 +41,9 @@ public:
 
     /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
     /// header; others that are wider than the page are made smaller.
-    void table(const Table &table) {
-        std::size_t columns = table.header.size();
-        for (const auto &row : table.rows)
-            columns = std::max(columns, row.size());
-        if (columns == 0)
-            return;
-        if (!table.title.empty())
-            out_ << "\\subsection*{" << latexText(table.title) << "}\n";
-        const bool isLong = table.rows.size() > 40;
-        const char *kind = isLong ? "longtable" : "tabular";
-        out_ << (isLong ? "" : "\\sbox0{%\n") << "\\begin{" << kind << "}{l" << std::string(columns - 1, 'r')
-             << "}\n\\hline\n";
-        row(table.header, columns);
-        out_ << "\\hline\n" << (isLong ? "\\endhead\n" : "");
-        for (const auto &cells : table.rows)
-            row(cells, columns);
-        out_
-            << "\\hline\n\\end{" << kind << '}'
-            << (isLong
-                    ? ""
-                    : "}%\n\\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox0}\\else\\usebox0\\fi")
-            << "\n\n\\bigskip\n";
-    }
+    void table(const Table &table);
     /// Tables, plots, surfaces, lines in space.
-    void figures(const Figures &figures) {
-        for (const Table &t : figures.tables)
-            table(t);
-        for (const Plot &p : figures.plots)
-            plot(p);
-        for (const Surface &s : figures.surfaces)
-            surface(s);
-        for (const SpacePlot &s : figures.spaces)
-            figure(s);
-    }
+    void figures(const Figures &figures);
     /// A paragraph; any text.
     void text(const std::string &paragraph) { out_ << latexText(paragraph) << "\n\n"; }
     /// What is LaTeX already.
@@ -108,10 +59,7 @@ public:
     }
 
     /// The end of the document; nothing is written after it.
-    void finish() {
-        if (as_ == As::Document)
-            out_ << "\\end{document}\n";
-    }
+    void finish();
 
 private:
     template <typename Figure>
@@ -125,14 +73,14 @@ private:
         write();
         out_ << "\n\\end{minipage}";
     }
-    void row(const std::vector<std::string> &cells, std::size_t columns) {
-        for (std::size_t i = 0; i < columns; ++i)
-            out_ << (i ? " & " : "") << (i < cells.size() ? cells[i] : "");
-        out_ << " \\\\\n";
-    }
+    void row(const std::vector<std::string> &cells, std::size_t columns);
 
     std::ostream &out_;
     As as_;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/LatexExport.cpp"
+#endif

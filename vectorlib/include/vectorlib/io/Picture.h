@@ -1,8 +1,9 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -19,11 +20,7 @@ constexpr const char *reference = "#e69f00"; ///< what it is compared with
 constexpr const char *before = "#cc79a7";    ///< where the dynamic set was
 
 /// For parts that need only be told from their neighbours, such as clusters.
-inline const char *distinct(std::size_t i) {
-    constexpr const char *cycle[] = {"#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                     "#56b4e9", "#a0522d", "#7b5ea7", "#5f7a00"};
-    return cycle[i % 8];
-}
+const char *distinct(std::size_t i);
 } // namespace colour
 
 /// Things in the plane, in layers of one style each, metres, the y axis up: what SvgPicture and LatexExport
@@ -95,74 +92,27 @@ public:
             }
     }
     /// Adds a layer with one line through all points.
-    void path(Style style, const std::vector<Point> &path) {
-        Layer &layer = add(Kind::Path, std::move(style));
-        for (const Point &p : path)
-            take(layer, p);
-    }
+    void path(Style style, const std::vector<Point> &path);
     /// A polygon that is filled.
-    void area(Style style, const std::vector<Point> &corners) {
-        Layer &layer = add(Kind::Area, std::move(style));
-        for (const Point &p : corners)
-            take(layer, p);
-    }
+    void area(Style style, const std::vector<Point> &corners);
     /// A sensor or robot: a circle with a tick in its heading.
-    void pose(Style style, Point at, double heading) {
-        Layer &layer = add(Kind::Pose, std::move(style));
-        if (std::isfinite(heading))
-            take(layer, at);
-        layer.heading = heading;
-    }
+    void pose(Style style, Point at, double heading);
 
     const std::string &title() const { return title_; }
     const std::vector<Layer> &layers() const { return layers_; }
 
     /// Of all that is shown, with a margin: never empty.
-    Box box() const {
-        const Point size = box_.size();
-        double margin = std::max(0.03 * std::max(size.x, size.y), 0.2);
-        for (const double far : {box_.low.x, box_.low.y, box_.high.x, box_.high.y})
-            margin = std::max(margin, 1e-14 * std::abs(far)); // less would be lost by rounding
-        return {box_.low - Point(margin, margin), box_.high + Point(margin, margin)};
-    }
+    Box box() const;
     /// From one line of a grid to the next, metres: 1, 2 or 5 times a power of ten, so that at most about ten
     /// lines cross the longer side of the box.
-    double gridStep() const {
-        const Point size = box().size();
-        const double wanted = std::max(size.x, size.y) / mostLines;
-        const double power = std::pow(10, std::floor(std::log10(wanted)));
-        for (const double factor : {1.0, 2.0, 5.0})
-            if (factor * power >= wanted)
-                return factor * power;
-        return 10 * power;
-    }
+    double gridStep() const;
     /// Where the lines of a grid are from low to high, at most one more than `most`.
-    static std::vector<double> gridLines(double low, double high, double step, int most = mostLines) {
-        std::vector<double> lines;
-        // Counted: far from the origin a step more may be the same number.
-        for (int i = 0; i <= most; ++i) {
-            const double at = (std::ceil(low / step) + i) * step;
-            if (at > high)
-                break;
-            lines.push_back(std::abs(at) < step / 2 ? 0 : at);
-        }
-        return lines;
-    }
+    static std::vector<double> gridLines(double low, double high, double step, int most = mostLines);
 
 private:
     static bool isPlace(Point p) { return std::abs(p.x) <= 1e150 && std::abs(p.y) <= 1e150; }
-    Layer &add(Kind kind, Style style) {
-        layers_.push_back({kind, std::move(style), {}, 0});
-        return layers_.back();
-    }
-    void take(Layer &layer, Point p) {
-        if (!isPlace(p))
-            return;
-        layer.vertices.push_back(p);
-        box_.low = any_ ? Point(std::min(box_.low.x, p.x), std::min(box_.low.y, p.y)) : p;
-        box_.high = any_ ? Point(std::max(box_.high.x, p.x), std::max(box_.high.y, p.y)) : p;
-        any_ = true;
-    }
+    Layer &add(Kind kind, Style style);
+    void take(Layer &layer, Point p);
 
     std::string title_;
     std::vector<Layer> layers_;
@@ -171,3 +121,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/Picture.cpp"
+#endif

@@ -1,26 +1,16 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Picture.h"
 
 #include <ostream>
+#include <string>
 
 namespace vectorlib {
 
 /// Text as it must be written between the tags of XML.
-inline std::string xmlText(const std::string &text) {
-    std::string result;
-    for (const char c : text)
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else
-            result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    return result;
-}
+std::string xmlText(const std::string &text);
 
 /// A picture as SVG: layers over a grid in metres, with scale bar and legend.
 class SvgPicture : public Picture {
@@ -28,142 +18,27 @@ public:
     using Picture::Picture;
 
     /// Writes the whole file.
-    void write(std::ostream &out) {
-        layOut();
-        out << R"(<svg xmlns="http://www.w3.org/2000/svg" width=")" << Fixed{width_, 0} << R"(" height=")"
-            << Fixed{height_, 0} << R"(" viewBox="0 0 )" << Fixed{width_, 0} << ' ' << Fixed{height_, 0}
-            << R"(" font-family="sans-serif" font-size="13" fill="#333">)"
-            << "\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
-        writeGrid(out);
-        for (const Layer &layer : layers())
-            writeLayer(out, layer);
-        writeScaleBar(out);
-        writeLegend(out);
-        out << "</svg>\n";
-    }
+    void write(std::ostream &out);
 
 private:
     static constexpr double left = 56, right = 24, bottom = 62, rowHeight = 20, mostWide = 1200,
                             mostHigh = 1200, normalLength = 7;
 
-    void layOut() {
-        const Box whole = box();
-        const Point size = whole.size();
-        origin_ = whole.low;
-        scale_ = std::min(mostWide / size.x, mostHigh / size.y);
-        plot_ = size * scale_;
-        width_ = std::max(
-            {left + plot_.x + right, 480.0, left + 8.5 * static_cast<double>(title().size()) + right});
-        top_ = 34 + rowHeight * static_cast<double>(legendRows());
-        height_ = top_ + plot_.y + bottom;
-        step_ = gridStep();
-    }
+    void layOut();
     Point toPixel(Point p) const {
         return {left + (p.x - origin_.x) * scale_, top_ + plot_.y - (p.y - origin_.y) * scale_};
     }
     static void writePoint(std::ostream &out, Point p) { out << Fixed{p.x, 1} << ' ' << Fixed{p.y, 1}; }
 
-    void writeGrid(std::ostream &out) const {
-        const double low = top_ + plot_.y, high = top_;
-        const int decimals = step_ < 0.1 ? 2 : step_ < 1 ? 1 : 0;
-        out << "<g stroke=\"#e3e7ee\" stroke-width=\"1\" font-size=\"11\" fill=\"#6b7280\">\n";
-        for (const double x : gridLines(origin_.x, origin_.x + plot_.x / scale_, step_)) {
-            const double at = toPixel({x, 0}).x;
-            out << "<path d=\"M" << Fixed{at, 1} << ' ' << Fixed{low, 1} << 'V' << Fixed{high, 1}
-                << "\"/><text x=\"" << Fixed{at, 1} << "\" y=\"" << Fixed{low + 16, 1}
-                << "\" stroke=\"none\" text-anchor=\"middle\">" << Fixed{x, decimals} << "</text>\n";
-        }
-        for (const double y : gridLines(origin_.y, origin_.y + plot_.y / scale_, step_)) {
-            const double at = toPixel({0, y}).y;
-            out << "<path d=\"M" << Fixed{left, 1} << ' ' << Fixed{at, 1} << 'H' << Fixed{left + plot_.x, 1}
-                << "\"/><text x=\"" << Fixed{left - 6, 1} << "\" y=\"" << Fixed{at + 4, 1}
-                << "\" stroke=\"none\" text-anchor=\"end\">" << Fixed{y, decimals} << "</text>\n";
-        }
-        out << "</g>\n";
-    }
+    void writeGrid(std::ostream &out) const;
 
-    void writeLayer(std::ostream &out, const Layer &layer) const {
-        if (layer.vertices.empty())
-            return;
-        if (layer.kind == Kind::Pose) {
-            const Point at = toPixel(layer.vertices.front());
-            writePoseMark(out, at, layer.heading, layer.style);
-            return;
-        }
-        if (layer.kind == Kind::Area)
-            out << "<path fill=\"" << layer.style.colour << "\" d=\"";
-        else
-            out << "<path fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" stroke=\""
-                << layer.style.colour << "\" stroke-width=\"" << Fixed{layer.style.width, 1} << '"'
-                << (layer.style.dashed ? " stroke-dasharray=\"6 4\"" : "") << " d=\"";
-        for (std::size_t i = 0; i < layer.vertices.size(); ++i) {
-            const bool starts =
-                layer.kind == Kind::Points || (layer.kind == Kind::Segments ? i % 2 == 0 : i == 0);
-            out << (starts ? 'M' : 'L');
-            writePoint(out, toPixel(layer.vertices[i]));
-            if (layer.kind == Kind::Points)
-                out << "h0";
-        }
-        if (layer.style.normals && layer.kind == Kind::Segments)
-            writeNormals(out, layer);
-        out << "\"/>\n";
-    }
-    void writeNormals(std::ostream &out, const Layer &layer) const {
-        for (std::size_t i = 0; i + 1 < layer.vertices.size(); i += 2) {
-            const LineSegment2D<double> segment(layer.vertices[i], layer.vertices[i + 1]);
-            const Point foot = toPixel(segment.middle()), normal = segment.normal() * normalLength;
-            out << 'M';
-            writePoint(out, foot);
-            out << 'l';
-            writePoint(out, {normal.x, -normal.y});
-        }
-    }
-    static void writePoseMark(std::ostream &out, Point at, double heading, const Style &style) {
-        const Point tip = at + Point(std::cos(heading), -std::sin(heading)) * 14;
-        out << "<circle cx=\"" << Fixed{at.x, 1} << "\" cy=\"" << Fixed{at.y, 1} << "\" r=\"5\" fill=\""
-            << style.colour << "\"/><path stroke=\"" << style.colour << "\" stroke-width=\"2.5\" d=\"M";
-        writePoint(out, at);
-        out << 'L';
-        writePoint(out, tip);
-        out << "\"/>\n";
-    }
+    void writeLayer(std::ostream &out, const Layer &layer) const;
+    void writeNormals(std::ostream &out, const Layer &layer) const;
+    static void writePoseMark(std::ostream &out, Point at, double heading, const Style &style);
 
-    void writeScaleBar(std::ostream &out) const {
-        const double y = height_ - 20, x = left, length = step_ * scale_;
-        out << "<path stroke=\"#333\" stroke-width=\"2\" fill=\"none\" d=\"M" << Fixed{x, 1} << ' '
-            << Fixed{y - 5, 1} << "v10m0 -5h" << Fixed{length, 1} << "m0 -5v10\"/><text x=\""
-            << Fixed{x + length + 8, 1} << "\" y=\"" << Fixed{y + 4, 1} << "\">" << Number(step_)
-            << " m</text>\n";
-    }
-    std::size_t legendRows() const {
-        std::size_t rows = 0;
-        for (const Layer &layer : layers())
-            rows += !layer.style.label.empty();
-        return rows;
-    }
-    void writeLegend(std::ostream &out) const {
-        out << "<text x=\"" << left << "\" y=\"22\" font-size=\"15\" font-weight=\"bold\">"
-            << xmlText(title()) << "</text>\n";
-        double y = 40;
-        for (const Layer &layer : layers()) {
-            if (layer.style.label.empty())
-                continue;
-            if (layer.kind == Kind::Pose)
-                writePoseMark(out, {left + 12, y - 4}, 0, layer.style);
-            else if (layer.kind == Kind::Area)
-                out << "<rect x=\"" << left << "\" y=\"" << Fixed{y - 9, 1}
-                    << "\" width=\"26\" height=\"10\" fill=\"" << layer.style.colour << "\"/>";
-            else
-                out << "<path fill=\"none\" stroke-linecap=\"round\" stroke=\"" << layer.style.colour
-                    << "\" stroke-width=\"" << Fixed{std::max(layer.style.width, 2.5), 1} << '"'
-                    << (layer.style.dashed ? " stroke-dasharray=\"6 4\"" : "") << " d=\"M" << left << ' '
-                    << Fixed{y - 4, 1} << (layer.kind == Kind::Points ? "h0m8 0h0m8 0h0m8 0h0" : "h26")
-                    << "\"/>";
-            out << "<text x=\"" << left + 36 << "\" y=\"" << Fixed{y, 1} << "\">"
-                << xmlText(layer.style.label) << "</text>\n";
-            y += rowHeight;
-        }
-    }
+    void writeScaleBar(std::ostream &out) const;
+    std::size_t legendRows() const;
+    void writeLegend(std::ostream &out) const;
 
     Point origin_, plot_; ///< lower left corner in metres; size in pixels
     double scale_ = 1;    ///< pixels a metre
@@ -172,3 +47,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/Svg.cpp"
+#endif

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/Pose2D.h"
-#include "vectorlib/io/Number.h"
+#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/TextInput.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <iosfwd>
+#include <string>
 #include <vector>
 
 namespace vectorlib {
@@ -30,65 +30,14 @@ struct StampMend {
 /// metres. Readers take one pose a stamp and divide by the time between: the stamps are written strictly
 /// ascending. The poses keep their order; a stamp that is not later than the one before is moved to a
 /// microsecond behind it (the last decimal of the benchmark's files), all others stay as they are.
-inline StampMend writeTum(std::ostream &out, const std::vector<StampedPose> &trajectory) {
-    constexpr double step = 1e-6;
-    StampMend mend;
-    double kept = 0, given = 0, last = -std::numeric_limits<double>::infinity();
-    std::size_t behind = 0; // stamps moved since the one kept; counted, so that rounding does not add up
-    for (const StampedPose &p : trajectory) {
-        const bool isFirst = &p == &trajectory.front();
-        mend.ties += !isFirst && p.stamp == given;
-        mend.stepsBack += !isFirst && p.stamp < given;
-        given = p.stamp;
-        if (p.stamp > last) {
-            kept = last = p.stamp;
-            behind = 0;
-        } else {
-            const double next = std::nextafter(last, std::numeric_limits<double>::infinity());
-            last = std::max(kept + double(++behind) * step, next);
-            ++mend.moved;
-            mend.farthest = std::max(mend.farthest, last - p.stamp);
-        }
-        out << Number(last) << ' ' << Number(p.pose.x) << ' ' << Number(p.pose.y) << " 0 0 0 "
-            << Number(std::sin(p.pose.theta / 2)) << ' ' << Number(std::cos(p.pose.theta / 2)) << '\n';
-    }
-    return mend;
-}
+StampMend writeTum(std::ostream &out, const std::vector<StampedPose> &trajectory);
 
 /// A trajectory in that format, as other programs write it, too: lines that begin with # are comments, stamps
 /// may have any order. Of a pose in space x, y and the heading about z are taken.
-inline Expected<std::vector<StampedPose>> readTum(std::istream &in, std::string name) {
-    constexpr std::size_t columns = 8; // stamp x y z qx qy qz qw
-    constexpr double widest = 1e7;     // metres
-    LineReader lines(in, std::move(name));
-    std::vector<std::string_view> fields;
-    std::vector<StampedPose> trajectory;
-    while (const auto line = lines.next()) {
-        splitBlanks(*line, fields);
-        if (fields.empty() || fields[0][0] == '#')
-            continue;
-        if (fields.size() != columns)
-            return lines.errorHere(std::to_string(fields.size()) + " fields",
-                                   "eight: stamp x y z qx qy qz qw");
-        std::array<double, columns> v;
-        for (std::size_t i = 0; i < columns; ++i) {
-            const auto number = parseNumber(fields[i]);
-            if (!number)
-                return lines.errorHere(quoted(fields[i]), "a finite number");
-            v[i] = *number;
-        }
-        if (std::abs(v[1]) > widest || std::abs(v[2]) > widest)
-            return lines.errorHere("a place beyond all measure", "metres");
-        const double length = std::hypot(std::hypot(v[4], v[5]), std::hypot(v[6], v[7]));
-        if (!(std::abs(length - 1) < 0.01))
-            return lines.errorHere("a quaternion of length " + std::to_string(length), "one of length 1");
-        const double heading =
-            std::atan2(2 * (v[7] * v[6] + v[4] * v[5]), 1 - 2 * (v[5] * v[5] + v[6] * v[6]));
-        trajectory.push_back({v[0], {v[1], v[2], heading}});
-    }
-    if (lines.error())
-        return *lines.error();
-    return trajectory;
-}
+Expected<std::vector<StampedPose>> readTum(std::istream &in, std::string name);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/io/Tum.cpp"
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/registration/SurfaceAgreement.h"
 
@@ -26,23 +27,7 @@ enum class GlobalPairVerdict {
 };
 
 /// The verdict in words, for people.
-inline const char *describe(GlobalPairVerdict verdict) {
-    switch (verdict) {
-    case GlobalPairVerdict::Found:
-        return "found";
-    case GlobalPairVerdict::Ambiguous:
-        return "several motions fit alike";
-    case GlobalPairVerdict::OpenDirection:
-        return "the scans slide on each other, as along a corridor";
-    case GlobalPairVerdict::TooUnlike:
-        return "no motion explains enough of what the scans show";
-    case GlobalPairVerdict::NothingFixed:
-        return "the static scan shows too few surfaces";
-    case GlobalPairVerdict::NothingMoving:
-        return "the dynamic scan shows too few surfaces";
-    }
-    return "";
-}
+const char *describe(GlobalPairVerdict verdict);
 
 /// The motion between two scans of which nothing else is known.
 struct GlobalPairMatch {
@@ -56,3 +41,7 @@ struct GlobalPairMatch {
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/mapping/GlobalPairMatch.cpp"
+#endif

@@ -1,11 +1,20 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/CorrespondenceTracker.h"
+#include "vectorlib/correspondence/Match.h"
+#include "vectorlib/edges/EdgeExtractor.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <chrono>
-#include <utility>
+#include <vector>
 
 namespace vectorlib {
 
@@ -50,72 +59,17 @@ public:
 
     /// Takes a scan (sensor frame, in the order of ScanOrder) and where the sensor is expected to be (map
     /// frame), by odometry or by its motion so far.
-    const ScanReport &process(PointSpan<float> scan, const Pose2D &expected) {
-        find(scan, expected);
-        return conclude(scan, true);
-    }
+    const ScanReport &process(PointSpan<float> scan, const Pose2D &expected);
     /// The first half of it, which may be done again for the same scan, straightened otherwise or expected
     /// elsewhere: the pose. Leaves the map alone.
-    const ScanReport &find(PointSpan<float> given, const Pose2D &expected) {
-        if (std::exchange(concluded_, false))
-            report_ = ScanReport();
-        const auto t0 = Clock::now();
-        const PointSpan<float> scan = extract.order(given);
-        const Segmentation &clusters = extract.segment(scan);
-        const auto t1 = Clock::now();
-        const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);
-        const auto t2 = Clock::now();
-        edges_ = &edges;
-        byScan_ = false;
-        const TrackingSettings usual = track.settings;
-        expected_ = settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected);
-        locate(expected_);
-        track.settings = usual;
-        const auto t3 = Clock::now();
-        report_.segmentMs += milliseconds(t0, t1);
-        report_.vectorizeMs += milliseconds(t1, t2);
-        report_.matchMs += milliseconds(t2, t3);
-        return report_;
-    }
+    const ScanReport &find(PointSpan<float> given, const Pose2D &expected);
     /// The other half: the map takes the scan as it was found last. One that is not sure is left out, and the
     /// next one is not matched with it.
-    const ScanReport &conclude(PointSpan<float> scan, bool sure) {
-        const auto begin = Clock::now();
-        concluded_ = true;
-        lost_ = report_.outcome == ScanReport::Outcome::Lost ? lost_ + 1 : 0;
-        if (!settings.matchPrevious || !sure)
-            forgetPrevious();
-        else if (passesOver())
-            ++passedOver_;
-        else
-            remember(scan);
-        const bool isWelcome =
-            report_.outcome == ScanReport::Outcome::Matched ||
-            (report_.outcome == ScanReport::Outcome::Lost && lost_ >= settings.lostBeforeRestart);
-        if (sure && settings.grow && isWelcome)
-            updateMap();
-        report_.mapMs = milliseconds(begin, Clock::now());
-        return report_;
-    }
+    const ScanReport &conclude(PointSpan<float> scan, bool sure);
 
     /// The map takes edges (sensor frame) that were seen from a pose that is known otherwise; it stays as it
     /// is told, and so does what is known of the last scan but for match() and its candidates.
-    void place(const std::vector<EdgeRaw2D> &edges, const Pose2D &pose) {
-        constexpr double sure = 1e-3; // metres, radians
-        const TrackingSettings usual = track.settings;
-        track.settings.expectedDeviationXY = track.settings.expectedDeviationAlpha = sure;
-        const std::vector<EdgeRaw2D> *const last = std::exchange(edges_, &edges);
-        const Transformation2D lastPose = pose_;
-        const ScanReport lastReport = report_;
-        locate(Transformation2D(pose));
-        track.settings = usual;
-        pose_ = Transformation2D(pose);
-        if (report_.outcome != ScanReport::Outcome::Skipped)
-            updateMap();
-        edges_ = last;
-        pose_ = lastPose;
-        report_ = lastReport;
-    }
+    void place(const std::vector<EdgeRaw2D> &edges, const Pose2D &pose);
 
     /// False where the last scan could not be matched with the one before.
     bool isFollowed() const { return followed_; }
@@ -141,25 +95,11 @@ public:
     const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
 
     /// The sensor was put elsewhere: the next scan is matched with the map alone.
-    void forgetPrevious() {
-        previousPoints_.clear();
-        passedOver_ = 0;
-    }
+    void forgetPrevious();
     /// Takes a map that was made anew and gives the old one; `moved` tells where in it a pose of the old one
     /// lies.
-    void correct(VectorMap &other, const Transformation2D &moved) {
-        std::swap(map, other);
-        match_ = Match();
-        numbers_.clear();
-        previousPose_ = moved * previousPose_;
-    }
-    void clear() {
-        map.clear();
-        lost_ = 0;
-        match_ = Match();
-        numbers_.clear();
-        forgetPrevious();
-    }
+    void correct(VectorMap &other, const Transformation2D &moved);
+    void clear();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -169,81 +109,14 @@ private:
 
     // The expected pose by the motion since the scan before, found in the scans; else the given one. Tells
     // the tracker how good it is.
-    Transformation2D expectedByPrevious(PointSpan<float> scan, const Pose2D &given) {
-        const Transformation2D expected(given);
-        followed_ = true;
-        if (previousPoints_.empty())
-            return expected;
-        const ScanPairMatch &motion =
-            matchPair(previousPoints_, previousEdges_, scan, *edges_, previousPose_.inverse() * expected);
-        followed_ = motion.accepted;
-        if (!motion.accepted)
-            return expected;
-        track.settings = settings.tracking;
-        track.settings.expectedDeviationXY = settings.previousDeviationXY;
-        track.settings.expectedDeviationAlpha = settings.previousDeviationAlpha;
-        byScan_ = true;
-        return previousPose_ * motion.pose;
-    }
-    void remember(PointSpan<float> scan) {
-        previousPoints_.assign(scan.begin(), scan.end());
-        previousEdges_ = *edges_;
-        previousPose_ = pose_;
-        passedOver_ = 0;
-    }
+    Transformation2D expectedByPrevious(PointSpan<float> scan, const Pose2D &given);
+    void remember(PointSpan<float> scan);
     // Not where the next scan would be looked for anywhere, nor too many in a row.
-    bool passesOver() const {
-        return !followed_ && report_.outcome != ScanReport::Outcome::Matched &&
-               !matchPair.settings.searchAnywhere && passedOver_ + 1 < settings.lostBeforeRestart;
-    }
-    void locate(const Transformation2D &expected) {
-        pose_ = expected;
-        match_ = Match();
-        numbers_.clear();
-        static_.clear();
-        if (edges_->size() < settings.minEdges)
-            report_.outcome = ScanReport::Outcome::Skipped;
-        else if (map.isEmpty())
-            report_.outcome = settings.grow ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
-        else {
-            collectVisible(expected);
-            match_ = track(static_, *edges_, expected);
-            report_.outcome = match_.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
-            if (match_.accepted)
-                pose_ = match_.pose;
-        }
-        report_.pose = pose_.pose();
-    }
+    bool passesOver() const;
+    void locate(const Transformation2D &expected);
     // The part of the map that the scan can touch from any permitted pose.
-    void collectVisible(const Transformation2D &expected) {
-        double reach = 0;
-        for (const EdgeRaw2D &e : *edges_)
-            reach = std::max({reach, e.segment.begin().squaredNorm(), e.segment.end().squaredNorm()});
-        reach = std::sqrt(reach) + std::max(track.settings.permitted.dx, track.settings.permitted.dy);
-        const Vector2D<double> centre = expected.translation(), half(reach, reach);
-        for (int number : map.near(centre - half, centre + half)) {
-            numbers_.push_back(number);
-            static_.push_back(map.slots()[static_cast<std::size_t>(number)].segment);
-        }
-    }
-    void updateMap() {
-        partner_.assign(edges_->size(), -1);
-        if (report_.outcome == ScanReport::Outcome::Matched)
-            for (const CorrespondencePair &p : match_.pairs)
-                partner_[static_cast<std::size_t>(p.moving)] = numbers_[static_cast<std::size_t>(p.fixed)];
-        for (std::size_t i = 0; i < edges_->size(); ++i) {
-            const EdgeRaw2D seen = pose_ * (*edges_)[i];
-            int number = partner_[i];
-            if (number >= 0 &&
-                mergeable(map.slots()[static_cast<std::size_t>(number)].segment, seen.segment) &&
-                map.merge(number, seen))
-                map.consolidate(number);
-            else if (seen.segment.length() >= settings.newEdgeLength) {
-                number = map.add(seen);
-                map.consolidate(number);
-            }
-        }
-    }
+    void collectVisible(const Transformation2D &expected);
+    void updateMap();
     bool mergeable(const LineSegment2D<double> &known, const LineSegment2D<double> &seen) const {
         return known.meanSquareAcross(seen) <= settings.mergeDistance * settings.mergeDistance;
     }
@@ -266,3 +139,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/mapping/MapBuilder.cpp"
+#endif

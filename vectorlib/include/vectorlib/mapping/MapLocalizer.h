@@ -1,8 +1,19 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/ScanTracker.h"
+#include "vectorlib/mapping/TimedScan.h"
+#include "vectorlib/places/Relocalized.h"
 
+#include <cmath>
+#include <cstdint>
 #include <deque>
+#include <optional>
+#include <vector>
 
 namespace vectorlib {
 
@@ -33,37 +44,14 @@ public:
     MapLocalizerSettings settings;
     ScanTracker tracker; ///< takes scans only here
 
-    explicit MapLocalizer(const std::vector<MapEdge> &map) {
-        for (const MapEdge &edge : map)
-            tracker.builder.map.add(edge, edge.observations);
-        apply({});
-    }
+    explicit MapLocalizer(const std::vector<MapEdge> &map);
     /// The search takes the time that it needs.
-    void apply(ScanTrackerSettings of) {
-        of.relocalizeSeconds = 1e6;
-        tracker.apply(of);
-        tracker.builder.settings.grow = false;
-    }
+    void apply(ScanTrackerSettings of);
 
     /// The next scan of the drive.
-    void take(const TimedScan &scan) {
-        scans_.push_back({scan.stamp, std::nullopt, false});
-        kept_.push_back({scans_.size() - 1, scan});
-        if (state_ == State::Lost)
-            seek();
-        else
-            follow();
-        if (kept_.size() <= settings.mostKept)
-            return;
-        if (state_ == State::Proposed)
-            drop();
-        kept_.pop_front();
-    }
+    void take(const TimedScan &scan);
     /// After the last scan: a place that nothing confirmed does not count.
-    void finish() {
-        if (state_ == State::Proposed)
-            drop();
-    }
+    void finish();
 
     const std::vector<LocalizedScan> &scans() const { return scans_; }
     std::size_t searches() const { return searches_; }
@@ -83,136 +71,28 @@ private:
         TimedScan scan;
     };
 
-    void seek() {
-        const TimedScan &scan = kept_.back().scan;
-        if (!isFarFromSought(scan))
-            return;
-        sought_ = scan.odometry ? std::optional(Sought{scan.odometry->epoch(), scan.odometry->at(scan.stamp)})
-                                : std::nullopt;
-        sinceSought_ = 0;
-        tracker.place({});
-        TimedScan seen = scan;
-        tracker.process(seen);
-        const Relocalized found = search();
-        if (found.isFound())
-            propose(found.places.front().pose);
-    }
-    Relocalized search() {
-        ++searches_;
-        return tracker.relocalize(false);
-    }
-    bool isFarFromSought(const TimedScan &scan) {
-        ++sinceSought_;
-        if (searches_ == 0 || sinceSought_ >= settings.mostKept)
-            return true;
-        if (sought_ && scan.odometry && scan.odometry->epoch() == sought_->epoch)
-            return isKeyMotion(sought_->robot.inverse() * scan.odometry->at(scan.stamp));
-        return sinceSought_ >= settings.keyScans;
-    }
+    void seek();
+    Relocalized search();
+    bool isFarFromSought(const TimedScan &scan);
     bool isKeyMotion(const Transformation2D &way) const {
         return way.translation().norm() >= settings.keyWay || std::abs(way.alpha()) >= settings.keyTurn;
     }
 
     // The last scan was taken there, if it matches the map.
-    void propose(const Pose2D &pose) {
-        if (track(kept_.back(), pose) != ScanReport::Outcome::Matched) {
-            scans_.back().pose.reset();
-            return;
-        }
-        state_ = State::Proposed;
-        proposal_ = scans_.size() - 1;
-        keyPose_ = Transformation2D(*scans_.back().pose);
-        lostInARow_ = 0;
-    }
+    void propose(const Pose2D &pose);
     // Forgets what followed from it.
-    void drop() {
-        for (const Kept &kept : kept_)
-            forget(kept);
-        state_ = State::Lost;
-        ++dropped_;
-    }
+    void drop();
     void forget(const Kept &kept) { scans_[kept.number] = {scans_[kept.number].stamp, std::nullopt, false}; }
 
-    void follow() {
-        const bool isLost = track(kept_.back(), std::nullopt) == ScanReport::Outcome::Lost;
-        lostInARow_ = isLost ? lostInARow_ + 1 : 0;
-        if (state_ == State::Proposed)
-            return lostInARow_ >= settings.lostBeforeDropped ? drop() : confirm();
-        if (!isLost)
-            kept_.clear();
-        if (lostInARow_ < settings.lostBeforeSearch)
-            return;
-        for (const Kept &kept : kept_)
-            forget(kept);
-        state_ = State::Lost;
-        sought_.reset();
-    }
-    void confirm() {
-        const Transformation2D here(*scans_.back().pose);
-        if (!scans_.back().matched || !isKeyMotion(keyPose_.inverse() * here))
-            return;
-        keyPose_ = here;
-        const Relocalized found = search();
-        if (!found.isFound())
-            return;
-        const Pose2D &pose = found.places.front().pose;
-        const Transformation2D off = here.inverse() * Transformation2D(pose);
-        if (off.translation().norm() <= settings.sameXY && std::abs(off.alpha()) <= settings.sameAlpha) {
-            ++found_;
-            state_ = State::Confirmed;
-            traceBack();
-            kept_.clear();
-        } else {
-            drop();
-            propose(pose);
-        }
-    }
+    void follow();
+    void confirm();
     // The scans before the place that is confirmed now, the last first, until they are lost.
-    void traceBack() {
-        const auto first =
-            std::find_if(kept_.begin(), kept_.end(), [this](const Kept &k) { return k.number == proposal_; });
-        const Pose2D here = *scans_.back().pose;
-        followBack(std::make_reverse_iterator(first == kept_.end() ? first : first + 1), kept_.rend());
-        track(kept_.back(), here); // from where the drive goes on
-    }
+    void traceBack();
     template <typename Iterator>
-    void followBack(Iterator from, Iterator end) {
-        if (from == end)
-            return;
-        std::optional<Pose2D> start = scans_[from->number].pose;
-        lostInARow_ = 0;
-        auto lost = from;
-        for (; from != end && lostInARow_ < settings.lostBeforeSearch; ++from, start.reset()) {
-            const bool isLost =
-                track({from->number, backwards(from->scan)}, start) == ScanReport::Outcome::Lost;
-            scans_[from->number].stamp = -scans_[from->number].stamp;
-            lostInARow_ = isLost ? lostInARow_ + 1 : 0;
-            if (!isLost)
-                lost = std::next(from);
-        }
-        for (; lostInARow_ >= settings.lostBeforeSearch && lost != from; ++lost)
-            forget(*lost);
-        lostInARow_ = 0;
-    }
-    static TimedScan backwards(TimedScan scan) {
-        if (scan.odometry)
-            scan.odometry.emplace(
-                scan.odometry->epoch(),
-                std::vector<OdometrySample>{{-scan.stamp, scan.odometry->at(scan.stamp).pose(), {}, {}}});
-        scan.stamp = -scan.stamp;
-        for (float &seconds : scan.seconds)
-            seconds = -seconds;
-        return scan;
-    }
+    void followBack(Iterator from, Iterator end);
+    static TimedScan backwards(TimedScan scan);
     // Finds a scan from the scan before, or from a pose.
-    ScanReport::Outcome track(const Kept &kept, const std::optional<Pose2D> &pose) {
-        if (pose)
-            tracker.place(*pose);
-        TimedScan scan = kept.scan;
-        const ScanReport &report = tracker.process(scan);
-        scans_[kept.number] = {scan.stamp, report.pose, report.outcome == ScanReport::Outcome::Matched};
-        return report.outcome;
-    }
+    ScanReport::Outcome track(const Kept &kept, const std::optional<Pose2D> &pose);
 
     // Where the last search of the whole map was made, by odometry.
     struct Sought {
@@ -232,3 +112,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/mapping/MapLocalizer.cpp"
+#endif

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/GlobalPairMatch.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace vectorlib {
 
@@ -26,36 +26,19 @@ struct MatchProbability {
     /// What tells whether the right solution is among those of a match that has some: a constant 1, the part
     /// that the best contradicts of what it explains or contradicts, what it loses by sliding, the logarithm
     /// of how many metres of surface it explains, and its score.
-    static Features features(const GlobalPairMatch &match) {
-        const SurfaceAgreement &a = match.solutions[0].agreement;
-        const double judged = a.explained() + a.contradicted();
-        return {1, judged > 0 ? a.contradicted() / judged : 1, std::clamp(match.slideLoss, -0.1, 0.25),
-                std::log(std::max(0.3, a.explained() * a.length())), a.score()};
-    }
+    static Features features(const GlobalPairMatch &match);
     /// Half of it counts what is out of the other scan's sight, half of it hardly does.
     static double fit(const GlobalPairSolution &s) {
         return (s.agreement.score() + s.agreement.consistency()) / 2;
     }
     /// That the right solution is among those of a match with these features.
-    double ofAny(const Features &f) const {
-        double sum = 0;
-        for (std::size_t i = 0; i < f.size(); ++i)
-            sum += weights[i] * f[i];
-        return ceiling / (1 + std::exp(-sum));
-    }
+    double ofAny(const Features &f) const;
     /// Sets the probability of every solution of a match; they add up to at most `ceiling`.
-    void operator()(GlobalPairMatch &match) const {
-        if (match.solutions.empty())
-            return;
-        const double any = ofAny(features(match));
-        double total = 0, best = -1;
-        for (const GlobalPairSolution &s : match.solutions)
-            best = std::max(best, fit(s));
-        for (GlobalPairSolution &s : match.solutions)
-            total += s.probability = std::exp(sharpness * (fit(s) - best));
-        for (GlobalPairSolution &s : match.solutions)
-            s.probability *= any / total;
-    }
+    void operator()(GlobalPairMatch &match) const;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/mapping/MatchProbability.cpp"
+#endif

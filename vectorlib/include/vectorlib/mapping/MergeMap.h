@@ -1,31 +1,21 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/VectorMap.h"
+
+#include <vector>
 
 namespace vectorlib {
 
 /// Adds a map, moved, to another one: walls that both have become one by their sums, their observations are
 /// added, and the others are new. Walls farther apart than `distance` (root mean square, metres) stay two.
-inline void mergeMap(VectorMap &map, const std::vector<MapEdge> &added, const Transformation2D &motion,
-                     double distance = 0.10) {
-    for (const MapEdge &edge : added) {
-        const EdgeRaw2D moved = motion * static_cast<const EdgeRaw2D &>(edge);
-        const LineSegment2D<double> &wall = moved.segment;
-        int best = -1;
-        double longest = 0;
-        for (const int number : map.near(wall, distance)) {
-            const LineSegment2D<double> &known = map.slots()[std::size_t(number)].segment;
-            const double overlap = known.overlap(wall);
-            if (known.direction().dot(wall.direction()) > 0.95 && overlap > longest &&
-                known.meanSquareAcross(wall) <= distance * distance) {
-                best = number;
-                longest = overlap;
-            }
-        }
-        if (best < 0 || !map.merge(best, moved, edge.observations))
-            best = map.add(moved, edge.observations);
-        map.consolidate(best);
-    }
-}
+void mergeMap(VectorMap &map, const std::vector<MapEdge> &added, const Transformation2D &motion,
+              double distance = 0.10);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/mapping/MergeMap.cpp"
+#endif

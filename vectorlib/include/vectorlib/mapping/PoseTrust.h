@@ -1,10 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/Match.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace vectorlib {
 
@@ -21,27 +23,16 @@ struct PoseTrust {
     /// edges lie apart for the most that they may (`finalDistance`, metres), the logarithm of their number,
     /// that of how far the pose is from where it was `expected` (metres, a radian counts half of one), and
     /// the share of the seen length that is in pairs.
-    static Features features(const Match &match, const Transformation2D &expected, double finalDistance) {
-        const Transformation2D off = expected.inverse() * match.pose;
-        const double far = off.translation().norm() + 0.5 * std::abs(off.alpha());
-        return {1,
-                within(match.reliability),
-                within(match.rms / finalDistance),
-                std::log(double(std::max<std::size_t>(1, match.pairs.size()))),
-                std::log(0.01 + within(far)),
-                within(match.matchedLength / match.visibleLength)};
-    }
+    static Features features(const Match &match, const Transformation2D &expected, double finalDistance);
     /// The probability for these features, in [0, 1]; 0 where one of them is no number.
-    double operator()(const Features &f) const {
-        double sum = 0;
-        for (std::size_t i = 0; i < f.size(); ++i)
-            sum += weights[i] * f[i];
-        const double p = 1 / (1 + std::exp(-sum));
-        return p > 0 ? p : 0; // no number: nothing is known
-    }
+    double operator()(const Features &f) const;
 
 private:
     static double within(double share) { return std::clamp(share, 0.0, 1.0); }
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/mapping/PoseTrust.cpp"
+#endif

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/motion/OdometrySample.h"
 #include "vectorlib/motion/OdometryTrack.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <optional>
 
 namespace vectorlib {
 
@@ -24,65 +26,18 @@ public:
         Restarted   ///< does not follow from those before (reset, gap, clock set): a new epoch begins with it
     };
     /// Takes the next sample.
-    Outcome add(const OdometrySample &added) {
-        Outcome outcome = Outcome::Taken;
-        if (size_ > 0) {
-            const OdometrySample &last = sample(size_ - 1);
-            if (added.stamp <= last.stamp && added.stamp >= last.stamp - longestGap_s)
-                return Outcome::OutOfOrder;
-            if (!follows(last, added)) {
-                restart();
-                outcome = Outcome::Restarted;
-            }
-        }
-        if (size_ == capacity)
-            first_ = (first_ + 1) % capacity;
-        else
-            ++size_;
-        ring_[(first_ + size_ - 1) % capacity] = added;
-        return outcome;
-    }
+    Outcome add(const OdometrySample &added);
     /// What comes next does not follow from what was.
-    void restart() {
-        first_ = size_ = 0;
-        ++epoch_;
-    }
+    void restart();
 
     /// The way from begin to end (seconds since the Unix epoch), when it is known.
-    std::optional<OdometryTrack> over(double begin, double end) const {
-        if (size_ == 0 || !(begin <= end) || sample(0).stamp > begin ||
-            sample(size_ - 1).stamp < end - longestForesight_s)
-            return std::nullopt;
-        std::size_t from = size_ - 1;
-        while (from > 0 && sample(from).stamp > begin)
-            --from;
-        std::vector<OdometrySample> samples;
-        for (std::size_t i = from; i < size_; ++i) {
-            samples.push_back(sample(i));
-            if (sample(i).stamp >= end)
-                break;
-        }
-        return OdometryTrack(epoch_, std::move(samples));
-    }
+    std::optional<OdometryTrack> over(double begin, double end) const;
 
 private:
     const OdometrySample &sample(std::size_t i) const {
         return ring_[(first_ + i) % capacity];
     } // 0 is the oldest
-    static bool follows(const OdometrySample &before, const OdometrySample &after) {
-        const double seconds = after.stamp - before.stamp;
-        const double speed = std::max(std::hypot(before.twist.vx, before.twist.vy),
-                                      std::hypot(after.twist.vx, after.twist.vy));
-        const double rate = std::max(std::abs(before.twist.omega), std::abs(after.twist.omega));
-        const double way = std::hypot(after.pose.x - before.pose.x, after.pose.y - before.pose.y);
-        const double turn = std::abs(wrapAngle(after.pose.theta - before.pose.theta));
-        // Nothing but a reset makes the heading more certain.
-        const bool surer =
-            before.covariance && after.covariance && (*after.covariance)(2, 2) < (*before.covariance)(2, 2);
-        return std::abs(seconds) <= longestGap_s && way <= jump_m + 2 * speed * seconds &&
-               turn <= jump_rad + 2 * rate * seconds && !surer &&
-               before.covariance.has_value() == after.covariance.has_value();
-    }
+    static bool follows(const OdometrySample &before, const OdometrySample &after);
 
     std::array<OdometrySample, capacity> ring_;
     std::size_t first_ = 0, size_ = 0;
@@ -90,3 +45,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/motion/OdometryBuffer.cpp"
+#endif

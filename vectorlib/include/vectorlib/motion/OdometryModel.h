@@ -1,10 +1,15 @@
 #pragma once
 
-#include "vectorlib/geometry/SmallMatrix.h"
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Twist2D.h"
 #include "vectorlib/motion/OdometryTrack.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 namespace vectorlib {
 
@@ -35,40 +40,16 @@ public:
         last_ = Last{track.epoch(), Transformation2D(pose), track.at(stamp), track.covarianceAt(stamp)};
     }
     /// Nothing when the track does not follow from that of the last update.
-    std::optional<Expectation> expect(const OdometryTrack &track, double stamp) const {
-        if (!last_ || last_->epoch != track.epoch())
-            return std::nullopt;
-        const Transformation2D robot = track.at(stamp);
-        Expectation e{(last_->pose * ofSensor(last_->robot.inverse() * robot)).pose(), std::nullopt};
-        const auto covariance = track.covarianceAt(stamp);
-        if (covariance && last_->covariance) {
-            const Eigen::Matrix3d q = growth(last_->robot, *last_->covariance, robot, *covariance);
-            e.deviations = Deviations{deviation(leastDeviationXY, std::max(q(0, 0), q(1, 1))),
-                                      deviation(leastDeviationAlpha, q(2, 2))};
-        }
-        return e;
-    }
+    std::optional<Expectation> expect(const OdometryTrack &track, double stamp) const;
 
     /// The last pose lies elsewhere: the map was corrected.
-    void move(const Transformation2D &moved) {
-        if (last_)
-            last_->pose = moved * last_->pose;
-    }
+    void move(const Transformation2D &moved);
     /// The frame of the odometry in that of the map, as of the last update.
-    std::optional<Transformation2D> frame() const {
-        if (!last_)
-            return std::nullopt;
-        return last_->pose * mount_.inverse() * last_->robot.inverse();
-    }
+    std::optional<Transformation2D> frame() const;
 
     /// The sensor's mean velocity from begin to end. In a turn of 0.1 s a robot that brakes with 4 m/s^2 is
     /// never more than 5 mm from where this leads; the stamps of single samples are often worse.
-    Twist2D twist(const OdometryTrack &track, double begin, double end) const {
-        if (!(end > begin))
-            return {};
-        const Transformation2D motion = ofSensor(track.at(begin).inverse() * track.at(end));
-        return Twist2D::between(motion.pose(), end - begin);
-    }
+    Twist2D twist(const OdometryTrack &track, double begin, double end) const;
 
 private:
     struct Last {
@@ -83,12 +64,7 @@ private:
     // What the uncertainty grew by on the way from one pose to another, of which both hold the sum since the
     // start: Q = P2 - F P1 F', where F tells what a wrong heading at the first pose does to the second.
     static Eigen::Matrix3d growth(const Transformation2D &from, const Eigen::Matrix3d &before,
-                                  const Transformation2D &to, const Eigen::Matrix3d &after) {
-        Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
-        f(0, 2) = from.y() - to.y();
-        f(1, 2) = to.x() - from.x();
-        return after - product(f, before, f);
-    }
+                                  const Transformation2D &to, const Eigen::Matrix3d &after);
     static double deviation(double least, double variance) {
         return std::sqrt(least * least + std::max(0.0, variance)); // rounding may make a zero negative
     }
@@ -98,3 +74,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/motion/OdometryModel.cpp"
+#endif

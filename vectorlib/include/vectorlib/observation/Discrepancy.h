@@ -1,6 +1,11 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/observation/Observer.h"
+#include "vectorlib/observation/Sector.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -23,22 +28,7 @@ class Discrepancy {
 public:
     /// Both as an Observer gives them, in one sensor frame.
     ViewComparison operator()(const std::vector<VisiblePart<double>> &expected,
-                              const std::vector<VisiblePart<double>> &observed) {
-        result_ = ViewComparison();
-        shared_.clear();
-        read(expected, expected_);
-        read(observed, observed_);
-        std::size_t i = 0, j = 0;
-        while (i < expected_.sectors.size() && j < observed_.sectors.size()) {
-            const Sector &a = expected_.sectors[i], &b = observed_.sectors[j];
-            const Sector &later = a.right > b.right ? a : b, &sooner = a.left < b.left ? a : b;
-            if (later.right < sooner.left)
-                compare(expected_.lines[a.edge], observed_.lines[b.edge], later.towardsRight,
-                        sooner.towardsLeft);
-            a.left < b.left ? ++i : ++j;
-        }
-        return result_;
-    }
+                              const std::vector<VisiblePart<double>> &observed);
     /// The sectors of the last comparison, counter-clockwise; for pictures.
     const std::vector<SharedSector> &sectors() const { return shared_; }
 
@@ -48,38 +38,9 @@ private:
         std::vector<Sector> sectors;
     };
 
-    static void read(const std::vector<VisiblePart<double>> &parts, View &view) {
-        view.lines.clear();
-        view.sectors.clear();
-        for (const VisiblePart<double> &part : parts) {
-            const std::size_t edge = view.lines.size();
-            view.lines.emplace_back(part.segment.begin(), part.segment.end());
-            cutBehind(part.segment.begin(), part.segment.end(), edge,
-                      [&](const Sector &sector) { view.sectors.push_back(sector); });
-        }
-        // The part straight behind was cut in two: its right half belongs at the end.
-        if (view.sectors.size() > 1 && view.sectors[0].right > view.sectors[1].right)
-            std::rotate(view.sectors.begin(), view.sectors.begin() + 1, view.sectors.end());
-    }
-    void compare(const SightLine &a, const SightLine &b, Vector2D<double> right, Vector2D<double> left) {
-        result_.angle += std::atan2(right.cross(left), right.dot(left));
-        const double atRight = compareDistance(a, b, right), atLeft = compareDistance(a, b, left);
-        if ((atRight < 0 && atLeft > 0) || (atRight > 0 && atLeft < 0)) {
-            const Vector2D<double> crossing = right * std::abs(atLeft) + left * std::abs(atRight);
-            measure(a, b, right, crossing);
-            measure(a, b, crossing, left);
-        } else {
-            measure(a, b, right, left);
-        }
-    }
-    void measure(const SightLine &a, const SightLine &b, Vector2D<double> right, Vector2D<double> left) {
-        const SharedSector s{a.meet(right), a.meet(left), b.meet(right), b.meet(left)};
-        const double expected = s.expectedRight.cross(s.expectedLeft) / 2;
-        const double observed = s.observedRight.cross(s.observedLeft) / 2;
-        result_.discrepancy += std::abs(expected - observed);
-        result_.common += std::min(expected, observed);
-        shared_.push_back(s);
-    }
+    static void read(const std::vector<VisiblePart<double>> &parts, View &view);
+    void compare(const SightLine &a, const SightLine &b, Vector2D<double> right, Vector2D<double> left);
+    void measure(const SightLine &a, const SightLine &b, Vector2D<double> right, Vector2D<double> left);
 
     View expected_, observed_;
     std::vector<SharedSector> shared_;
@@ -87,3 +48,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/observation/Discrepancy.cpp"
+#endif

@@ -1,6 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Angle.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/observation/Observer.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -15,27 +21,16 @@ public:
     double widestGap = pi / 6; ///< radians
 
     /// The frontier of a view; valid until the next call.
-    const std::vector<LineSegment2D<double>> &operator()(const std::vector<VisiblePart<double>> &view) {
-        segments_.clear();
-        for (std::size_t i = 0; i < view.size(); ++i)
-            close(view[i].segment.end(), view[i + 1 < view.size() ? i + 1 : 0].segment.begin());
-        return segments_;
-    }
+    const std::vector<LineSegment2D<double>> &operator()(const std::vector<VisiblePart<double>> &view);
 
 private:
-    void close(Vector2D<double> end, Vector2D<double> begin) {
-        double gap = std::atan2(end.cross(begin), end.dot(begin));
-        if (gap < -1e-6) // more than half a turn: parts do not overlap
-            gap += 2 * pi;
-        if (gap > widestGap) {
-            segments_.emplace_back(end, Vector2D<double>());
-            segments_.emplace_back(Vector2D<double>(), begin);
-        } else if ((begin - end).norm() > 1e-9) {
-            segments_.emplace_back(end, begin);
-        }
-    }
+    void close(Vector2D<double> end, Vector2D<double> begin);
 
     std::vector<LineSegment2D<double>> segments_;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/observation/Frontier.cpp"
+#endif

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/observation/Sector.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace vectorlib {
@@ -13,133 +14,24 @@ namespace vectorlib {
 /// buffers.
 class NearestEdges {
 public:
-    void clear() {
-        lines_.clear();
-        facing_.clear();
-        sectors_.clear();
-        starts_.assign(1, 0);
-    }
+    void clear();
     /// Adds an edge that does not run through the origin, between two directions. Of two edges in the same
     /// place the one that faces the origin is seen.
-    void add(Vector2D<double> begin, Vector2D<double> end, bool facing, double lowest, double highest) {
-        const std::size_t edge = lines_.size();
-        lines_.emplace_back(begin, end);
-        facing_.push_back(facing);
-        const bool counterClockwise = begin.cross(end) > 0;
-        cutBehind(counterClockwise ? begin : end, counterClockwise ? end : begin, edge, [&](Sector sector) {
-            clip(sector, lowest, highest);
-            if (sector.right < sector.left) {
-                sectors_.push_back(sector);
-                starts_.push_back(sectors_.size());
-            }
-        });
-    }
+    void add(Vector2D<double> begin, Vector2D<double> end, bool facing, double lowest, double highest);
     /// The line of the edge that was added as number `edge`, from 0.
     const SightLine &line(std::size_t edge) const { return lines_[edge]; }
 
     /// What is seen, from right to left; valid until the next call.
-    const std::vector<Sector> &operator()() {
-        while (starts_.size() > 2)
-            mergeNeighbours();
-        return sectors_;
-    }
+    const std::vector<Sector> &operator()();
 
 private:
-    void clip(Sector &sector, double lowest, double highest) const {
-        const auto direction = [](double turn) {
-            // The inverse of turnOf, of any length.
-            const double up = turn < 0 ? -turn : turn, x = 1 - up, y = up <= 1 ? up : 2 - up;
-            return Vector2D<double>(x, turn < 0 ? -y : y);
-        };
-        if (sector.right < lowest) {
-            sector.right = lowest;
-            sector.towardsRight = direction(lowest);
-        }
-        if (sector.left > highest) {
-            sector.left = highest;
-            sector.towardsLeft = direction(highest);
-        }
-    }
+    void clip(Sector &sector, double lowest, double highest) const;
     // Views number 0 and 1, 2 and 3 ... become one each.
-    void mergeNeighbours() {
-        merged_.clear();
-        mergedStarts_.assign(1, 0);
-        for (std::size_t k = 0; k + 1 < starts_.size(); k += 2) {
-            if (k + 2 < starts_.size())
-                merge(starts_[k], starts_[k + 1], starts_[k + 2]);
-            else
-                merged_.insert(merged_.end(), sectors_.begin() + std::ptrdiff_t(starts_[k]), sectors_.end());
-            mergedStarts_.push_back(merged_.size());
-        }
-        sectors_.swap(merged_);
-        starts_.swap(mergedStarts_);
-    }
+    void mergeNeighbours();
     // The view of sectors [i, middle) and that of [middle, end).
-    void merge(std::size_t i, std::size_t middle, std::size_t end) {
-        first_ = merged_.size();
-        std::size_t j = middle;
-        const auto trim = [this](std::size_t k, const Sector &from) {
-            sectors_[k].right = from.left;
-            sectors_[k].towardsRight = from.towardsLeft;
-        };
-        while (i < middle && j < end) {
-            Sector &a = sectors_[i], &b = sectors_[j];
-            if (a.left <= b.right) {
-                emit(a);
-                ++i;
-            } else if (b.left <= a.right) {
-                emit(b);
-                ++j;
-            } else {
-                // First the part where one stands alone, then the part where both are.
-                if (a.right != b.right) {
-                    Sector alone = a.right < b.right ? a : b;
-                    const Sector &next = a.right < b.right ? b : a;
-                    alone.left = next.right;
-                    alone.towardsLeft = next.towardsRight;
-                    emit(alone);
-                }
-                Sector both = a.right < b.right ? b : a;
-                const Sector &shorter = a.left < b.left ? a : b;
-                both.left = shorter.left;
-                both.towardsLeft = shorter.towardsLeft;
-                emitNearest(both, a.edge, b.edge);
-                const bool aEnds = a.left == both.left, bEnds = b.left == both.left;
-                aEnds ? void(++i) : trim(i, both);
-                bEnds ? void(++j) : trim(j, both);
-            }
-        }
-        for (; i < middle; ++i)
-            emit(sectors_[i]);
-        for (; j < end; ++j)
-            emit(sectors_[j]);
-    }
-    void emitNearest(Sector both, std::size_t a, std::size_t b) {
-        const double right = compareDistance(lines_[a], lines_[b], both.towardsRight);
-        const double left = compareDistance(lines_[a], lines_[b], both.towardsLeft);
-        if ((right < 0 && left > 0) || (right > 0 && left < 0)) {
-            const Vector2D<double> crossing =
-                both.towardsRight * std::abs(left) + both.towardsLeft * std::abs(right);
-            const double turn = std::clamp(turnOf(crossing), both.right, both.left);
-            emit({both.right, turn, both.towardsRight, crossing, right < 0 ? a : b});
-            emit({turn, both.left, crossing, both.towardsLeft, right < 0 ? b : a});
-            return;
-        }
-        const double nearer = right + left;
-        both.edge = nearer < 0 || (nearer == 0 && facing_[a]) ? a : b;
-        emit(both);
-    }
-    void emit(const Sector &sector) {
-        if (sector.right >= sector.left)
-            return;
-        if (merged_.size() > first_ && merged_.back().edge == sector.edge &&
-            merged_.back().left == sector.right) {
-            merged_.back().left = sector.left;
-            merged_.back().towardsLeft = sector.towardsLeft;
-        } else {
-            merged_.push_back(sector);
-        }
-    }
+    void merge(std::size_t i, std::size_t middle, std::size_t end);
+    void emitNearest(Sector both, std::size_t a, std::size_t b);
+    void emit(const Sector &sector);
 
     std::vector<SightLine> lines_;
     std::vector<char> facing_;
@@ -149,3 +41,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/observation/NearestEdges.cpp"
+#endif

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 
 #include <cstddef>
 
@@ -8,11 +10,7 @@ namespace vectorlib {
 
 /// A direction as a number that grows counter-clockwise like its angle, without trigonometry: 0 ahead, 1 to
 /// the left, 2 (from above) and -2 (from below) behind.
-inline double turnOf(Vector2D<double> d) {
-    const double up = std::abs(d.y);
-    const double turn = d.x >= 0 ? up / (d.x + up) : 2 - up / (up - d.x);
-    return d.y < 0 ? -turn : turn;
-}
+double turnOf(Vector2D<double> d);
 
 /// The line of an edge as it is seen from the origin: normal.p = distance.
 struct SightLine {
@@ -20,14 +18,7 @@ struct SightLine {
     double distance = 0;     ///< metres, from 0 on
 
     SightLine() = default;
-    SightLine(Vector2D<double> begin, Vector2D<double> end) {
-        normal = -(end - begin).normalized().left();
-        distance = normal.dot(begin);
-        if (distance < 0) {
-            normal = -normal;
-            distance = -distance;
-        }
-    }
+    SightLine(Vector2D<double> begin, Vector2D<double> end);
     /// Where a direction (of any length) that does not run along the line meets it.
     Vector2D<double> meet(Vector2D<double> direction) const {
         return direction * (distance / normal.dot(direction));
@@ -36,11 +27,7 @@ struct SightLine {
 
 /// Below 0 where `a` is nearer than `b` in a direction that meets both, above 0 where it is farther, 0 where
 /// they cross; linear in the direction. Rounding counts as a crossing.
-inline double compareDistance(const SightLine &a, const SightLine &b, Vector2D<double> direction) {
-    const double left = a.distance * b.normal.dot(direction), right = b.distance * a.normal.dot(direction);
-    const double difference = left - right;
-    return std::abs(difference) > 1e-13 * (left + right) ? difference : 0;
-}
+double compareDistance(const SightLine &a, const SightLine &b, Vector2D<double> direction);
 
 /// An edge between two directions, under less than half a turn.
 struct Sector {
@@ -66,3 +53,7 @@ void cutBehind(Vector2D<double> right, Vector2D<double> left, std::size_t edge, 
 }
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/observation/Sector.cpp"
+#endif

@@ -1,14 +1,10 @@
 #pragma once
 
-#include "vectorlib/geometry/SmallMatrix.h"
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/places/ScanObjects.h"
 
-#include <Eigen/LU>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -37,31 +33,18 @@ struct PlaceFit {
     /// most for this one is not heard, and what walls hide little: an object that was moved onto one of the
     /// other place explains points, and can be looked through where it stood. Against a place that is not
     /// there when the other has no points.
-    double leadOver(const PlaceFit &other) const {
-        double sum = 0, strongest = 0;
-        for (std::size_t i = 0; i + 1 < said.size(); ++i) {
-            const double more = said[i] - other.said[i];
-            sum += more;
-            strongest = std::max(strongest, more);
-        }
-        const double byHidden = std::min(said.back() - other.said.back(), mostHiddenLead * points);
-        return points > 0 ? (sum - strongest + byHidden) / points : 0;
-    }
+    double leadOver(const PlaceFit &other) const;
     /// Mean squared distance of the explained points; m^2.
     double meanSquare() const { return explained > 0 ? distances / explained : 0; }
     /// In [0, 1], of the walls' directions as that of lines (paper (28)): small along a corridor.
-    double reliability() const {
-        const double xx = information(0, 0), yy = information(1, 1), xy = information(1, 0);
-        return xx + yy > 0 ? 2 * std::sqrt(std::max(0.0, xx * yy - xy * xy)) / (xx + yy) : 0;
-    }
+    double reliability() const;
     /// Of x, y (metres) and alpha (radians). Points beside each other err alike, so that four count as one,
     /// and the map's own walls are known to 2 cm at best. Nothing where the walls do not fix the pose.
-    std::optional<Eigen::Matrix3d> covariance() const {
-        if (!(reliability() > 1e-3))
-            return std::nullopt;
-        const Eigen::Matrix3d c = information.inverse() * (4 * std::max(meanSquare(), 0.02 * 0.02));
-        return c.allFinite() && c(2, 2) > 0 ? std::optional<Eigen::Matrix3d>(c) : std::nullopt;
-    }
+    std::optional<Eigen::Matrix3d> covariance() const;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/places/PlaceFit.cpp"
+#endif

@@ -1,8 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/places/PlaceFit.h"
 #include "vectorlib/places/PlaceScan.h"
+#include "vectorlib/places/ScanObjects.h"
 #include "vectorlib/places/WallTiles.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -20,46 +26,10 @@ public:
     /// `sample`-th point takes part.
     Transformation2D refine(const WallTiles &tiles, const std::vector<WallPoint> &points,
                             Transformation2D pose, std::size_t sample, int iterations,
-                            double firstGate) const {
-        double width = std::max(firstGate, gate);
-        for (int i = 0; i < iterations; ++i) {
-            const Transformation2D next = improved(tiles, points, pose, width, sample);
-            const Transformation2D step = pose.inverse() * next;
-            pose = next;
-            if (width <= gate && step.translation().norm() < smallStep && std::abs(step.sin()) < smallStep)
-                break;
-            width = std::max(gate, 0.6 * width);
-        }
-        return pose;
-    }
+                            double firstGate) const;
     /// How every `sample`-th point lies; what they look through only when asked for.
     PlaceFit judge(const WallTiles &tiles, const std::vector<WallPoint> &points, const Transformation2D &pose,
-                   std::size_t sample, bool looksThrough, double wallOfPoint) const {
-        PlaceFit fit;
-        fit.pose = pose;
-        const Vector sensor = pose.translation();
-        for (std::size_t i = 0; i < points.size(); i += sample) {
-            const Vector turned = pose.rotate(Vector(points[i].position)), p = sensor + turned;
-            const Beside beside = wallBeside(tiles, p, pose.rotate(Vector(points[i].direction)), gate);
-            const double behind = looksThrough ? seenBehind(tiles, sensor, p) : 0;
-            ++fit.points;
-            if (behind > 0)
-                fit.said.back() -= beside.wall >= 0 ? hiddenWeight : blockedWeight;
-            if (beside.wall >= 0) {
-                const double squared = beside.across * beside.across;
-                ++fit.explained;
-                fit.hidden += behind > 0;
-                fit.distances += squared;
-                fit.said[std::size_t(points[i].object)] += 1 - apartWeight * squared / (gate * gate);
-                const Vector n = tiles.wall(beside.wall).normal();
-                fit.information += square(1, Eigen::Vector3d(n.x, n.y, turned.cross(n)));
-            } else
-                fit.blocked += behind > 0;
-            if (behind > 0)
-                fit.discrepancy += areaBehind(points[i], behind, wallOfPoint * double(sample));
-        }
-        return fit;
-    }
+                   std::size_t sample, bool looksThrough, double wallOfPoint) const;
 
 private:
     using Vector = Vector2D<double>;
@@ -72,68 +42,17 @@ private:
         double across = 0;
     };
 
-    Beside wallBeside(const WallTiles &tiles, Vector p, Vector direction, double width) const {
-        Beside best;
-        double least = width;
-        tiles.forEachNear(p, [&](int number) {
-            const LineSegment2D<double> &wall = tiles.wall(number);
-            const double across = wall.across(p);
-            if (std::abs(across) >= least || wall.direction().dot(direction) < sameFacing)
-                return;
-            const double along = wall.along(p);
-            if (along < -beyondEnd || along > wall.length() + beyondEnd)
-                return;
-            least = std::abs(across);
-            best = {number, across};
-        });
-        return best;
-    }
+    Beside wallBeside(const WallTiles &tiles, Vector p, Vector direction, double width) const;
     Transformation2D improved(const WallTiles &tiles, const std::vector<WallPoint> &points,
-                              const Transformation2D &pose, double width, std::size_t sample) const {
-        // A little inertia, for what the walls leave open.
-        Eigen::Matrix3d h = Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal();
-        Eigen::Vector3d g = Eigen::Vector3d::Zero();
-        const double inverse = 1 / (scale * scale * width * width);
-        for (std::size_t i = 0; i < points.size(); i += sample) {
-            const Vector turned = pose.rotate(Vector(points[i].position));
-            const Beside beside = wallBeside(tiles, pose.translation() + turned,
-                                             pose.rotate(Vector(points[i].direction)), width);
-            if (beside.wall < 0)
-                continue;
-            const Vector n = tiles.wall(beside.wall).normal();
-            const double r = beside.across, q = 1 / (1 + r * r * inverse), w = q * q; // Geman and McClure
-            const Eigen::Vector3d j(n.x, n.y, turned.cross(n));
-            h += square(w, j);
-            g += (w * r) * j;
-        }
-        const std::optional<Eigen::Vector3d> back = solveSymmetric(h, g);
-        if (!back)
-            return pose;
-        return {pose.x() - (*back)(0), pose.y() - (*back)(1), pose.alpha() - (*back)(2)};
-    }
+                              const Transformation2D &pose, double width, std::size_t sample) const;
     // How much of the way to a point lies behind a wall, as a share; 0 where none stands clearly between.
-    double seenBehind(const WallTiles &tiles, Vector sensor, Vector p) const {
-        const Vector way = p - sensor;
-        const double length = std::min(way.norm(), farthestLook);
-        double behind = 0;
-        for (double t = 0; t < length && behind == 0; t += 0.5 * WallTiles::tile)
-            tiles.forEachNear(sensor + way * (t / way.norm()), [&](int number) {
-                const LineSegment2D<double> &wall = tiles.wall(number);
-                const double a = wall.across(sensor), b = wall.across(p);
-                if (a * b >= 0 || std::min(std::abs(a), std::abs(b)) < clearly)
-                    return;
-                const double at = a / (a - b), along = wall.along(sensor + way * at);
-                if (along > beyondEnd && along < wall.length() - beyondEnd)
-                    behind = std::max(behind, 1 - at);
-            });
-        return behind;
-    }
-    static double areaBehind(const WallPoint &point, double behind, double wallOfPoint) {
-        const Vector p(point.position);
-        const double turn = std::abs(p.cross(Vector(point.direction))) * wallOfPoint; // angle times r^2
-        return turn * (1 - (1 - behind) * (1 - behind)) / 2;
-    }
+    double seenBehind(const WallTiles &tiles, Vector sensor, Vector p) const;
+    static double areaBehind(const WallPoint &point, double behind, double wallOfPoint);
     static constexpr double farthestLook = 100; // metres
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/places/PlaceFitter.cpp"
+#endif

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/places/WallTiles.h"
 
+#include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -16,11 +18,7 @@ public:
     using Wall = LineSegment2D<double>;
 
     /// Forgets the walls and frees their memory.
-    void clear() {
-        PlaceIndex empty;
-        empty.tiles_.mostEntries = tiles_.mostEntries;
-        *this = std::move(empty);
-    }
+    void clear();
     /// Walls of the map.
     std::size_t size() const { return size_; }
     /// Walls that are too long, too far away or too many: they are not searched.
@@ -50,24 +48,7 @@ public:
         return follow(slots, [] { return false; });
     }
     /// The wall of a number is now this one; none when null. One that was refused is tried again.
-    void set(int number, const Wall *wall) {
-        const auto at = static_cast<std::size_t>(number);
-        if (wall && !(wall->isFinite() && wall->length() > 0))
-            wall = nullptr; // nobody can see it
-        if (at >= walls_.size() && wall)
-            walls_.resize(at + 1);
-        if (at >= walls_.size())
-            return;
-        const Known &known = walls_[at];
-        const bool isDone = known.isUsed || !isUsable(known.wall);
-        if (known.there && wall && isDone && known.wall.begin() == wall->begin() &&
-            known.wall.end() == wall->end())
-            return;
-        if (known.there)
-            remove(number);
-        if (wall)
-            add(number, *wall);
-    }
+    void set(int number, const Wall *wall);
     /// Calls take(wall) for the walls that are at least so long, while it returns true.
     template <typename Take>
     bool forEachWall(double length, Take take) const {
@@ -87,38 +68,15 @@ private:
         std::size_t place = 0; // among those of about its length
     };
 
-    static bool isUsable(const Wall &w) {
-        const double far = std::max(
-            {std::abs(w.begin().x), std::abs(w.begin().y), std::abs(w.end().x), std::abs(w.end().y)});
-        return w.length() <= longest && far < farthest;
-    }
+    static bool isUsable(const Wall &w);
     static int lengthBinOf(double length) {
         return length > 0.1 ? std::clamp(static_cast<int>(2 * std::log2(length * 10)), 0, lengthBins - 1) : 0;
     }
     std::vector<int> &alike(const Wall &wall) {
         return byLength_[static_cast<std::size_t>(lengthBinOf(wall.length()))];
     }
-    void add(int number, const Wall &wall) {
-        const bool isUsed = isUsable(wall) && tiles_.add(number, wall);
-        ++size_;
-        leftOut_ += !isUsed;
-        walls_[static_cast<std::size_t>(number)] = {true, isUsed, wall, isUsed ? alike(wall).size() : 0};
-        if (isUsed)
-            alike(wall).push_back(number);
-    }
-    void remove(int number) {
-        Known &known = walls_[static_cast<std::size_t>(number)];
-        known.there = false;
-        --size_;
-        leftOut_ -= !known.isUsed;
-        if (!known.isUsed)
-            return;
-        std::vector<int> &numbers = alike(known.wall);
-        walls_[static_cast<std::size_t>(numbers.back())].place = known.place;
-        numbers[known.place] = numbers.back();
-        numbers.pop_back();
-        tiles_.remove(number);
-    }
+    void add(int number, const Wall &wall);
+    void remove(int number);
 
     WallTiles tiles_;
     std::vector<Known> walls_; // by number
@@ -128,3 +86,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/places/PlaceIndex.cpp"
+#endif

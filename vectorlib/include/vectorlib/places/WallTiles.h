@@ -1,11 +1,15 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/geometry/LineSegment2D.h"
-#include "vectorlib/places/Facing.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/places/TileTable.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace vectorlib {
@@ -33,41 +37,9 @@ public:
     std::size_t tiles() const { return tiles_.size(); }
 
     /// Enters a wall; its number must be free. False, and nothing entered, when there is no room for it.
-    bool add(int number, const Wall &wall) {
-        std::size_t needed = 0;
-        forEachTile(wall, near, [&](std::int32_t, std::int32_t) { ++needed; });
-        if (entries_ + needed > mostEntries)
-            return false;
-        entries_ += needed;
-        if (static_cast<std::size_t>(number) >= walls_.size())
-            walls_.resize(static_cast<std::size_t>(number) + 1);
-        walls_[static_cast<std::size_t>(number)] = wall;
-        forEachTile(wall, near, [&](std::int32_t i, std::int32_t j) {
-            const auto at = static_cast<std::size_t>(table_.enter(i, j));
-            if (at == tiles_.size()) {
-                tiles_.push_back({i, j, -1, {}});
-                last_ = unknown;
-            }
-            Tile &t = tiles_[at];
-            t.walls.insert(std::lower_bound(t.walls.begin(), t.walls.end(), number), number);
-            if (t.raster >= 0)
-                draw(t, wall);
-        });
-        return true;
-    }
+    bool add(int number, const Wall &wall);
     /// Takes out a wall that was added.
-    void remove(int number) {
-        forEachTile(wall(number), near, [&](std::int32_t i, std::int32_t j) {
-            Tile &t = tiles_[static_cast<std::size_t>(table_.find(i, j))];
-            const auto at = std::lower_bound(t.walls.begin(), t.walls.end(), number);
-            if (at != t.walls.end() && *at == number) {
-                t.walls.erase(at);
-                --entries_;
-            }
-            if (t.raster >= 0)
-                redraw(t);
-        });
-    }
+    void remove(int number);
     /// Calls take(number) for the walls of the tile that holds a point: all that are within `near` of it, and
     /// some more.
     template <typename Take>
@@ -78,19 +50,7 @@ public:
                 take(number);
     }
     /// Whether a wall that faces in about the direction of `bit` is beside a point.
-    bool shows(Vector p, std::uint8_t bit) {
-        const std::int32_t i = table_.index(p.x), j = table_.index(p.y);
-        if (i != lastI_ || j != lastJ_ || last_ == unknown) {
-            const int at = table_.find(i, j);
-            last_ = at >= 0 ? rasterOf(tiles_[static_cast<std::size_t>(at)]) : none;
-            lastI_ = i;
-            lastJ_ = j;
-        }
-        if (last_ == none)
-            return false;
-        const int x = cellOf(p.x - i * tile), y = cellOf(p.y - j * tile);
-        return (rasters_[static_cast<std::size_t>(last_)][static_cast<std::size_t>(y * side + x)] & bit) != 0;
-    }
+    bool shows(Vector p, std::uint8_t bit);
     /// Calls take(i, j) for the tiles within `margin` of a wall, and perhaps for some at their corners.
     template <typename Take>
     void forEachTile(const Wall &wall, double margin, Take take) const {
@@ -126,48 +86,10 @@ private:
     static int cellOf(double offset) {
         return std::clamp(static_cast<int>(offset * (1 / cell)), 0, side - 1);
     }
-    int rasterOf(Tile &t) {
-        if (t.raster < 0) {
-            if (rasters_.size() >= mostRasters)
-                forgetRasters();
-            t.raster = static_cast<int>(rasters_.size());
-            rasters_.emplace_back();
-            redraw(t);
-        }
-        return t.raster;
-    }
-    void forgetRasters() {
-        rasters_.clear();
-        last_ = unknown;
-        for (Tile &t : tiles_)
-            t.raster = -1;
-    }
-    void redraw(Tile &t) {
-        rasters_[static_cast<std::size_t>(t.raster)].fill(0);
-        for (int number : t.walls)
-            draw(t, wall(number));
-    }
-    void draw(Tile &t, const Wall &wall) {
-        const Vector corner(t.i * tile, t.j * tile);
-        Raster &raster = rasters_[static_cast<std::size_t>(t.raster)];
-        const std::uint8_t bits = facingBits(wall.direction());
-        // The part of the wall near the tile.
-        const Vector middle = corner + Vector(tile / 2, tile / 2);
-        const double reach = tile * 0.7072 + beside, foot = wall.along(middle);
-        if (std::abs(wall.across(middle)) > reach || foot < -reach || foot > wall.length() + reach)
-            return;
-        const Vector a =
-            wall.begin() + wall.direction() * std::clamp(foot - reach, 0.0, wall.length()) - corner;
-        const Vector b =
-            wall.begin() + wall.direction() * std::clamp(foot + reach, 0.0, wall.length()) - corner;
-        const int left = cellOf(std::min(a.x, b.x) - beside), right = cellOf(std::max(a.x, b.x) + beside);
-        const int low = cellOf(std::min(a.y, b.y) - beside), high = cellOf(std::max(a.y, b.y) + beside);
-        const Wall part(a, b, wall.direction());
-        for (int y = low; y <= high; ++y)
-            for (int x = left; x <= right; ++x)
-                if (part.distance({(x + 0.5) * cell, (y + 0.5) * cell}) <= beside)
-                    raster[static_cast<std::size_t>(y * side + x)] |= bits;
-    }
+    int rasterOf(Tile &t);
+    void forgetRasters();
+    void redraw(Tile &t);
+    void draw(Tile &t, const Wall &wall);
 
     TileTable table_{tile};
     std::vector<Tile> tiles_;
@@ -179,3 +101,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/places/WallTiles.cpp"
+#endif

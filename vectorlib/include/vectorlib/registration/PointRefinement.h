@@ -1,11 +1,14 @@
 #pragma once
 
-#include "vectorlib/geometry/SmallMatrix.h"
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/registration/PointAgreement.h"
 #include "vectorlib/registration/PointPairs.h"
+#include "vectorlib/registration/ScanIndex.h"
 
-#include <Eigen/Core>
-#include <optional>
+#include <vector>
 
 namespace vectorlib {
 
@@ -38,96 +41,33 @@ public:
     PointRefinementSettings settings;
 
     /// Takes two scans, each in its sensor's frame and in the order of ScanOrder; metres.
-    void start(PointSpan<float> fixed, PointSpan<float> moving) {
-        fixed_.build(fixed, settings.mostPoints);
-        moving_.build(moving, settings.mostPoints);
-    }
+    void start(PointSpan<float> fixed, PointSpan<float> moving);
     /// The scans as they were taken.
     const ScanIndex &fixed() const { return fixed_; }
     const ScanIndex &moving() const { return moving_; }
     /// The transformation of the moving scan onto the fixed one, from one nearby. A first gate wider than
     /// that of the settings reaches farther, and costs more.
-    Transformation2D operator()(Transformation2D pose, const Expectation &expected, double firstGate = 0) {
-        int sample = std::max(1, settings.sample);
-        double gate = std::max(firstGate, settings.gate);
-        for (int i = 0; i < settings.iterations; ++i) {
-            const bool narrow = gate <= settings.gate;
-            pairUp(pose, gate, sample);
-            const Transformation2D next = improved(pose, gate, expected);
-            const Transformation2D step = pose.inverse() * next;
-            const double size = std::max(step.translation().norm(), std::abs(step.sin()));
-            pose = next;
-            if (narrow && sample == 1 && size < settings.lastStep)
-                break;
-            if (narrow && size < settings.smallStep)
-                sample = 1;
-            gate = std::max(settings.gate, gate * settings.gateFactor);
-        }
-        return pose;
-    }
+    Transformation2D operator()(Transformation2D pose, const Expectation &expected, double firstGate = 0);
     /// How well the scans agree when the moving one lies at the pose; by a sample of their points.
-    PointAgreement agreement(const Transformation2D &pose) const {
-        PointAgreement a;
-        const int sample = std::max(1, settings.sample);
-        a.add(moving_, pose, fixed_, settings.gate, sample);
-        a.add(fixed_, pose.inverse(), moving_, settings.gate, sample);
-        return a;
-    }
+    PointAgreement agreement(const Transformation2D &pose) const;
 
 private:
-    void pairUp(const Transformation2D &pose, double gate, int sample) {
-        const bool wide = gate > settings.gate;
-        const float squaredGate = float(gate * gate);
-        const auto partner = [&](const ScanIndex &scan, Vector2D<float> p) {
-            return wide ? scan.nearest(p, squaredGate) : scan.nearestAhead(p, squaredGate);
-        };
-        pairs_.clear();
-        forEachPair(fixed_, moving_, pose, sample, partner,
-                    [this](const PointPair &pair) { pairs_.push_back(pair); });
-    }
+    void pairUp(const Transformation2D &pose, double gate, int sample);
     // Sums over the pairs of weighted products of the derivatives with each other and with the residuals. The
     // unknowns are the translation and the rotation about the moving sensor, where both are least correlated.
     struct Sums {
         float xx = 0, xy = 0, xa = 0, yy = 0, ya = 0, aa = 0, x = 0, y = 0, a = 0;
     };
-    Sums sumsAt(const Transformation2D &pose, double gate) const {
-        const FloatMotion motion(pose);
-        const float inverse = float(1 / (settings.scale * settings.scale * gate * gate));
-        Sums s;
-        for (const PointPair &pair : pairs_) {
-            const Vector2D<float> n = pair.normal, turned = motion.rotate(pair.moving);
-            const float r = pair.residual(turned, motion), u = turned.cross(n);
-            const float q = 1 / (1 + r * r * inverse), w = q * q; // Geman and McClure
-            s.xx += w * n.x * n.x;
-            s.xy += w * n.x * n.y;
-            s.xa += w * n.x * u;
-            s.yy += w * n.y * n.y;
-            s.ya += w * n.y * u;
-            s.aa += w * u * u;
-            s.x += w * n.x * r;
-            s.y += w * n.y * r;
-            s.a += w * u * r;
-        }
-        return s;
-    }
+    Sums sumsAt(const Transformation2D &pose, double gate) const;
     // The pose after one step; the same pose when the equations are singular.
-    Transformation2D improved(const Transformation2D &pose, double gate, const Expectation &expected) const {
-        const Sums s = sumsAt(pose, gate);
-        const double kXY = std::pow(settings.deviation / expected.deviationXY, 2);
-        const double kAlpha = std::pow(settings.deviation / expected.deviationAlpha, 2);
-        const Vector2D<double> off = pose.translation() - expected.pose.translation();
-        const double turn = (expected.pose.inverse() * pose).alpha();
-        Eigen::Matrix3d h;
-        h << s.xx + kXY, s.xy, s.xa, s.xy, s.yy + kXY, s.ya, s.xa, s.ya, s.aa + kAlpha;
-        const Eigen::Vector3d g(s.x + kXY * off.x, s.y + kXY * off.y, s.a + kAlpha * turn);
-        const std::optional<Eigen::Vector3d> back = solveSymmetric(h, g);
-        if (!back)
-            return pose;
-        return {pose.x() - (*back)(0), pose.y() - (*back)(1), pose.alpha() - (*back)(2)};
-    }
+    Transformation2D improved(const Transformation2D &pose, double gate, const Expectation &expected) const;
 
     ScanIndex fixed_, moving_;
     std::vector<PointPair> pairs_;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/registration/PointRefinement.cpp"
+#endif

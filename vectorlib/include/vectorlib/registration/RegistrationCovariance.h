@@ -1,10 +1,10 @@
 #pragma once
 
-#include "vectorlib/geometry/SmallMatrix.h"
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/tls/LineCovariance.h"
-
-#include <Eigen/LU>
 
 #include <optional>
 
@@ -23,34 +23,11 @@ public:
         , solvable_(registration.isSolvable()) {}
 
     /// False (and from then on no covariance) when the pair is not usable or a covariance is not valid.
-    bool add(const SegmentPair &pair, const LineCovariance &fixed, const LineCovariance &moving) {
-        solvable_ = solvable_ && isUsable(pair) && fixed.valid && moving.valid;
-        if (!solvable_)
-            return false;
-        const Vector2D<double> n = pair.fixed.normal();
-        const double lever = pair.fixed.direction().dot(translation_);
-        // By the angle and the offset p of the line: what moves (x, y, alpha), before the sums are divided
-        // out.
-        Eigen::Matrix<double, 3, 2> byFixed, byMoving;
-        byFixed << n.x * lever, n.x, n.y * lever, n.y, 1, 0;
-        byMoving << 0, -n.x, 0, -n.y, -1, 0;
-        const double squared = pair.weight * pair.weight;
-        spread_ += squared * product(byFixed, fixed.ofSegment(pair.fixed), byFixed);
-        spread_ += squared * product(byMoving, moving.ofSegment(pair.moving), byMoving);
-        sums_ += square(pair.weight, Eigen::Vector3d(n.x, n.y, 0));
-        sums_(2, 2) += pair.weight;
-        return true;
-    }
+    bool add(const SegmentPair &pair, const LineCovariance &fixed, const LineCovariance &moving);
 
     /// Rows and columns x, y (metres), alpha (radians). Nothing without pairs, where all lines are parallel
     /// (the shift along them is not known at all), and where a covariance was missing.
-    std::optional<Eigen::Matrix3d> operator()() const {
-        if (!solvable_)
-            return std::nullopt;
-        const Eigen::Matrix3d inverse = sums_.inverse();
-        const Eigen::Matrix3d covariance = product(inverse, spread_, inverse); // the inverse is symmetric
-        return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
-    }
+    std::optional<Eigen::Matrix3d> operator()() const;
 
 private:
     Vector2D<double> translation_;
@@ -60,3 +37,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/registration/RegistrationCovariance.cpp"
+#endif

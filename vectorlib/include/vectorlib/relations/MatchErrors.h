@@ -1,7 +1,13 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/Match.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/observation/Discrepancy.h"
+#include "vectorlib/observation/Observer.h"
 #include "vectorlib/relations/TypedSegment.h"
 
 #include <cmath>
@@ -29,56 +35,22 @@ struct MatchedArea {
 class MatchErrors {
 public:
     /// Global rotational and translational error of a scan. 6.2.
-    static PoseError ofPose(const Pose2D &estimate, const Pose2D &truth) {
-        return {std::abs(wrapAngle(estimate.theta - truth.theta)),
-                std::hypot(estimate.x - truth.x, estimate.y - truth.y)};
-    }
+    static PoseError ofPose(const Pose2D &estimate, const Pose2D &truth);
     /// Rotational and translational error between two scans as published: differences of coordinates in the
     /// frame of the map, so that an old error of the heading counts again in every translation. 6.2.
     static PoseError ofStep(const Pose2D &estimatedReference, const Pose2D &estimatedCurrent,
-                            const Pose2D &trueReference, const Pose2D &trueCurrent) {
-        return {std::abs(wrapAngle((estimatedCurrent.theta - estimatedReference.theta) -
-                                   (trueCurrent.theta - trueReference.theta))),
-                std::hypot((estimatedCurrent.x - estimatedReference.x) - (trueCurrent.x - trueReference.x),
-                           (estimatedCurrent.y - estimatedReference.y) - (trueCurrent.y - trueReference.y))};
-    }
+                            const Pose2D &trueReference, const Pose2D &trueCurrent);
     /// The same in the frame of the reference scan: of this match alone, whatever was wrong before.
-    static PoseError ofMotion(const Transformation2D &estimate, const Transformation2D &truth) {
-        return {std::abs((estimate.inverse() * truth).alpha()),
-                (estimate.translation() - truth.translation()).norm()};
-    }
+    static PoseError ofMotion(const Transformation2D &estimate, const Transformation2D &truth);
 
     /// The areas of all pairs at a pose that moves the current scan onto the reference. Pairs of which a
     /// segment is seen from behind or not finite are left out, and those without segments.
     MatchedArea area(const std::vector<CorrespondencePair> &pairs, const std::vector<TypedSegment> &reference,
-                     const std::vector<TypedSegment> &current, const Transformation2D &pose) {
-        const Transformation2D back = pose.inverse();
-        MatchedArea sum;
-        for (const CorrespondencePair &p : pairs) {
-            const auto fixed = static_cast<std::size_t>(p.fixed), moving = static_cast<std::size_t>(p.moving);
-            if (p.fixed < 0 || p.moving < 0 || fixed >= reference.size() || moving >= current.size())
-                continue;
-            const Segment r = back * reference[fixed].segment, &c = current[moving].segment;
-            const double between = areaBetween(r, c);
-            if (!(r.begin().cross(r.end()) > 0) || !(c.begin().cross(c.end()) > 0) || !std::isfinite(between))
-                continue;
-            expected_.assign(1, {r, 0});
-            observed_.assign(1, {c, 0});
-            sum.error += between;
-            sum.common += compare_(expected_, observed_).common;
-        }
-        return sum;
-    }
+                     const std::vector<TypedSegment> &current, const Transformation2D &pose);
 
     /// Between two segments of one direction: of the quadrangle of their ends, or of both triangles where
     /// they cross; m^2.
-    static double areaBetween(const LineSegment2D<double> &a, const LineSegment2D<double> &b) {
-        const double begin = a.across(b.begin()), end = a.across(b.end());
-        if ((begin > 0) == (end > 0))
-            return std::abs((b.end() - a.begin()).cross(b.begin() - a.end())) / 2;
-        const Vector2D<double> cross = b.begin() + (b.end() - b.begin()) * (begin / (begin - end));
-        return triangle(a.begin(), b.begin(), cross) + triangle(a.end(), b.end(), cross);
-    }
+    static double areaBetween(const LineSegment2D<double> &a, const LineSegment2D<double> &b);
 
 private:
     using Segment = LineSegment2D<double>;
@@ -92,3 +64,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/MatchErrors.cpp"
+#endif

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <algorithm>
+#include "vectorlib/Body.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -21,14 +22,7 @@ public:
     };
 
     /// Begins anew with an empty table of this size.
-    void reset(std::size_t rows, std::size_t columns) {
-        rows_ = static_cast<int>(rows);
-        columns_ = static_cast<int>(columns);
-        scores_.clear();
-        heads_.assign(rows * columns, -1);
-        merged_.assign(rows * columns, 0);
-        taken_.assign(rows * columns, 0);
-    }
+    void reset(std::size_t rows, std::size_t columns);
     int rows() const { return rows_; }
     int columns() const { return columns_; }
     /// The number of a cell, as add() takes it.
@@ -39,67 +33,18 @@ public:
 
     /// Adds one score to the lists of up to four cells; the same cell twice counts once. Algorithm 4, lines
     /// 14 to 19.
-    void add(double score, const std::size_t *cells, int count) {
-        Score s;
-        s.value = static_cast<std::int64_t>(score * unit + 0.5);
-        const int number = static_cast<int>(scores_.size());
-        for (int i = 0; i < count; ++i) {
-            bool isNew = true;
-            for (int j = 0; j < s.count; ++j)
-                isNew = isNew && s.cells[static_cast<std::size_t>(j)] != cells[i];
-            if (!isNew)
-                continue;
-            const auto slot = static_cast<std::size_t>(s.count++);
-            s.cells[slot] = static_cast<std::uint32_t>(cells[i]);
-            s.next[slot] = heads_[cells[i]];
-            heads_[cells[i]] = 4 * number + static_cast<int>(slot);
-            merged_[cells[i]] += s.value;
-        }
-        scores_.push_back(s);
-    }
+    void add(double score, const std::size_t *cells, int count);
     /// The pair of the largest sum among those that are not taken; the first of equal ones. Algorithm 6.
-    Cell maximum() const {
-        std::int64_t most = 0;
-        std::size_t at = 0;
-        for (std::size_t i = 0; i < merged_.size(); ++i)
-            if (merged_[i] > most && !taken_[i]) {
-                most = merged_[i];
-                at = i;
-            }
-        if (most == 0)
-            return {};
-        return {static_cast<int>(at) / columns_, static_cast<int>(at) % columns_, double(most) / unit};
-    }
+    Cell maximum() const;
     /// Marks a pair as matched: maximum() does not give it again.
     void take(int row, int column) { taken_[cell(row, column)] = 1; }
     /// Makes all scores of a pair invalid, in all lists.
-    void invalidate(int row, int column) {
-        for (int at = heads_[cell(row, column)]; at >= 0;) {
-            Score &s = scores_[static_cast<std::size_t>(at / 4)];
-            for (int i = 0; i < s.count; ++i)
-                merged_[s.cells[static_cast<std::size_t>(i)]] -= s.value;
-            s.value = 0;
-            at = s.next[static_cast<std::size_t>(at % 4)];
-        }
-        heads_[cell(row, column)] = -1;
-    }
+    void invalidate(int row, int column);
     /// Makes all other pairs of a row and a column invalid. Algorithm 7.
-    void keepOnly(int row, int column) {
-        for (int i = 0; i < rows_; ++i)
-            if (i != row)
-                invalidate(i, column);
-        for (int j = 0; j < columns_; ++j)
-            if (j != column)
-                invalidate(row, j);
-    }
+    void keepOnly(int row, int column);
     /// Makes all other pairs invalid that do not come in the order of this one: rows up to it with columns
     /// from it on, and rows from it on with columns up to it. Both calls of Algorithm 10.
-    void keepInOrder(int row, int column) {
-        for (int i = 0; i < rows_; ++i)
-            for (int j = 0; j < columns_; ++j)
-                if ((i != row || j != column) && ((i <= row && j >= column) || (i >= row && j <= column)))
-                    invalidate(i, j);
-    }
+    void keepInOrder(int row, int column);
 
 private:
     static constexpr double unit = 1099511627776.0; // 2^40
@@ -118,3 +63,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/MatchingTable.cpp"
+#endif

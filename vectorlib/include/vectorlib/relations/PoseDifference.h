@@ -1,64 +1,34 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/correspondence/Match.h"
-#include "vectorlib/relations/Corner.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/relations/TypedSegment.h"
+
+#include <vector>
 
 namespace vectorlib {
 
 /// The square of the length of the shorter: how precisely two segments tell an angle; m^2. Pose-free thesis
 /// 5.6.1.
-inline double precisionValue(const LineSegment2D<double> &a, const LineSegment2D<double> &b) {
-    const double shorter = std::min(a.length(), b.length());
-    return shorter * shorter;
-}
+double precisionValue(const LineSegment2D<double> &a, const LineSegment2D<double> &b);
 
 /// The rotation of matched segments, current onto reference; radians. Algorithm 8 with erratum 12: a circular
 /// mean weighted by precision values, divided by their sum.
-inline double rotationalDifference(const std::vector<CorrespondencePair> &pairs,
-                                   const std::vector<TypedSegment> &reference,
-                                   const std::vector<TypedSegment> &current) {
-    double sine = 0, cosine = 0;
-    for (const CorrespondencePair &p : pairs) {
-        const LineSegment2D<double> &r = reference[static_cast<std::size_t>(p.fixed)].segment;
-        const LineSegment2D<double> &c = current[static_cast<std::size_t>(p.moving)].segment;
-        const double w = precisionValue(r, c);
-        cosine += w * c.direction().dot(r.direction());
-        sine += w * c.direction().cross(r.direction());
-    }
-    return std::atan2(sine, cosine);
-}
+double rotationalDifference(const std::vector<CorrespondencePair> &pairs,
+                            const std::vector<TypedSegment> &reference,
+                            const std::vector<TypedSegment> &current);
 
 /// The pose difference of two scans from matched segments: moves the current scan onto the reference.
 /// Algorithms 8 and 9 with erratum 12: after the rotation the mean translation of the edges that both scans
 /// have, each by the smaller precision value of the segments that form it. Without any such edge, of parallel
 /// lines, the translation is 0 and the answer false.
-inline bool poseDifference(const std::vector<CorrespondencePair> &pairs,
-                           const std::vector<TypedSegment> &reference,
-                           const std::vector<TypedSegment> &current, double leastAngle,
-                           Transformation2D &pose) {
-    const double alpha = rotationalDifference(pairs, reference, current);
-    const Transformation2D turn(0, 0, alpha);
-    const double sine = std::sin(leastAngle);
-    Vector2D<double> total;
-    double weights = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        for (std::size_t j = i + 1; j < pairs.size(); ++j) {
-            const auto at = [](const std::vector<TypedSegment> &set, int k) -> const LineSegment2D<double> & {
-                return set[static_cast<std::size_t>(k)].segment;
-            };
-            const LineSegment2D<double> &k = at(reference, pairs[i].fixed),
-                                        &u = at(reference, pairs[j].fixed);
-            const LineSegment2D<double> &m = at(current, pairs[i].moving), &v = at(current, pairs[j].moving);
-            Vector2D<double> there, here;
-            if (!crossing(k, u, sine, there) || !crossing(m, v, sine, here))
-                continue;
-            const double w = std::min(precisionValue(k, u), precisionValue(m, v));
-            total += (there - turn * here) * w;
-            weights += w;
-        }
-    const Vector2D<double> t = weights > 0 ? total / weights : Vector2D<double>();
-    pose = Transformation2D(t.x, t.y, alpha);
-    return weights > 0;
-}
+bool poseDifference(const std::vector<CorrespondencePair> &pairs, const std::vector<TypedSegment> &reference,
+                    const std::vector<TypedSegment> &current, double leastAngle, Transformation2D &pose);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/PoseDifference.cpp"
+#endif

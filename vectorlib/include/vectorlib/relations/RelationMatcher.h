@@ -1,12 +1,21 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/correspondence/Match.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/relations/MatchSigns.h"
+#include "vectorlib/relations/MatchingTable.h"
 #include "vectorlib/relations/PairConsensus.h"
 #include "vectorlib/relations/PairSearch.h"
 #include "vectorlib/relations/RelationMatch.h"
 #include "vectorlib/relations/RelationScan.h"
 #include "vectorlib/relations/RelationScores.h"
+#include "vectorlib/relations/RelationSettings.h"
 #include "vectorlib/relations/SeenThrough.h"
+#include "vectorlib/relations/TypedSegment.h"
+
+#include <vector>
 
 namespace vectorlib {
 
@@ -30,24 +39,10 @@ public:
 
     /// Segments of both scans in the order of the scan, each in its sensor's frame. The result is valid until
     /// the next call.
-    const RelationMatch &operator()(const Segments &reference, const Segments &current) {
-        clear();
-        if (!settings.isValid())
-            return end(RelationOutcome::BadSettings);
-        reference_.build(reference, settings);
-        current_.build(current, settings);
-        return match();
-    }
+    const RelationMatch &operator()(const Segments &reference, const Segments &current);
     /// Matches with what was the current scan of the call before: its relations are known already,
     /// by the settings of that call. Where the windows or bounds changed since, call with both scans instead.
-    const RelationMatch &next(const Segments &current) {
-        clear();
-        if (!settings.isValid())
-            return end(RelationOutcome::BadSettings);
-        std::swap(reference_, current_);
-        current_.build(current, settings);
-        return match();
-    }
+    const RelationMatch &next(const Segments &current);
 
 private:
     using Pairs = std::vector<CorrespondencePair>;
@@ -58,172 +53,24 @@ private:
         double evidence = 0; // metres
     };
 
-    void clear() {
-        result_.pose = result_.byEdges = Transformation2D();
-        result_.byScores.clear();
-        result_.pairs.clear();
-        result_.score = result_.reliability = result_.ambiguity = result_.deviation = 0;
-        result_.matchedLength = result_.evidence = result_.rivalEvidence = 0;
-        result_.leftOut = result_.virtualLeftOut = result_.scores = result_.compared = 0;
-        result_.isCut = false;
-        places_.clear();
-        isUnspecific_ = false;
-    }
-    const RelationMatch &end(RelationOutcome outcome) {
-        result_.outcome = outcome;
-        return result_;
-    }
-    const RelationMatch &match() {
-        const Segments &reference = reference_.segments(), &current = current_.segments();
-        result_.leftOut = reference_.leftOut() + current_.leftOut();
-        result_.virtualLeftOut =
-            reference_.relations().virtualEdgesLeftOut + current_.relations().virtualEdgesLeftOut;
-        if (reference.size() < 2)
-            return end(RelationOutcome::TooFewReference);
-        if (current.size() < 2)
-            return end(RelationOutcome::TooFewCurrent);
-        score_(reference, reference_.relations(), current, current_.relations(), settings, table_);
-        result_.scores = table_.scores();
-        result_.compared = score_.compared();
-        result_.isCut = score_.isCut();
-        result_.score = table_.maximum().score;
-        if (result_.score == 0)
-            return end(RelationOutcome::NoCommonRelation);
-        leastSeen_ = std::min(lengthOf(reference), lengthOf(current));
-        consensus_.distance = settings.distanceWindow;
-        consensus_.angle = settings.angleWindow;
-        signs_.distance = settings.distanceWindow;
-        const RelationOutcome first = searchFirst();
-        for (int i = 1; i < settings.searches; ++i)
-            if (!searchAgain())
-                break;
-        if (result_.evidence == 0 && settings.searches > 1)
-            searchAll();
-        if (result_.evidence == 0)
-            return end(isUnspecific_ ? RelationOutcome::Unspecific : first);
-        result_.rivalEvidence = rivalEvidence();
-        return end(result_.rivalEvidence >= settings.rivalShare * result_.evidence
-                       ? RelationOutcome::Ambiguous
-                       : RelationOutcome::Matched);
-    }
-    static double lengthOf(const Segments &segments) {
-        double length = 0;
-        for (const TypedSegment &s : segments)
-            length += s.segment.length();
-        return length;
-    }
+    void clear();
+    const RelationMatch &end(RelationOutcome outcome);
+    const RelationMatch &match();
+    static double lengthOf(const Segments &segments);
     // As published; also what is wrong where it leads nowhere.
-    RelationOutcome searchFirst() {
-        first_ = table_;
-        const Pairs &found = search(first_, settings.threshold);
-        for (const CorrespondencePair &p : found)
-            result_.byScores.push_back({reference_.given(p.fixed), current_.given(p.moving)});
-        for (const CorrespondencePair &p : found)
-            table_.invalidate(p.fixed, p.moving);
-        if (found.size() < 2)
-            return RelationOutcome::OnePair;
-        const bool haveEdge = poseDifference(found, reference_.segments(), current_.segments(),
-                                             consensus_.leastAngle, result_.byEdges);
-        if (place(found, settings.places))
-            return RelationOutcome::Matched;
-        return haveEdge ? RelationOutcome::Contradiction : RelationOutcome::OneDirection;
-    }
+    RelationOutcome searchFirst();
     // Without the pairs that were found before; false when nothing is left.
-    bool searchAgain() {
-        again_ = table_;
-        const Pairs &found = search(again_, settings.laterThreshold);
-        for (const CorrespondencePair &p : found)
-            table_.invalidate(p.fixed, p.moving);
-        if (found.size() >= 2)
-            place(found, settings.places);
-        return !found.empty();
-    }
-    const Pairs &search(MatchingTable &table, double threshold) {
-        search_.threshold = threshold * result_.score;
-        search_.window = settings.angleWindow;
-        search_.sameOrder = settings.sameOrder;
-        const Segments &reference = reference_.segments(), &current = current_.segments();
-        return search_(table, [&](int row, int column) {
-            return relativeAngle(current[static_cast<std::size_t>(column)].segment,
-                                 reference[static_cast<std::size_t>(row)].segment);
-        });
-    }
+    bool searchAgain();
+    const Pairs &search(MatchingTable &table, double threshold);
     // Where all that failed: any pairs that are consistent, the longest first.
-    void searchAll() {
-        all_.clear();
-        for (int i = 0; i < first_.rows(); ++i)
-            for (int j = 0; j < first_.columns(); ++j)
-                if (score_.referenceTable()(i, j))
-                    all_.push_back({i, j});
-        if (all_.size() > mostPairs) {
-            const auto shorter = [&](const CorrespondencePair &p) {
-                return std::min(reference_.segments()[static_cast<std::size_t>(p.fixed)].segment.length(),
-                                current_.segments()[static_cast<std::size_t>(p.moving)].segment.length());
-            };
-            std::nth_element(all_.begin(), all_.begin() + mostPairs, all_.end(),
-                             [&](const CorrespondencePair &a, const CorrespondencePair &b) {
-                                 const double la = shorter(a), lb = shorter(b);
-                                 return la != lb
-                                            ? la > lb
-                                            : std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
-                             });
-            all_.resize(mostPairs);
-        }
-        place(all_, 8);
-    }
+    void searchAll();
     // The places of these pairs; false when there is none.
-    bool place(const Pairs &found, int most) {
-        const int count = consensus_.propose(found, reference_.segments(), current_.segments(), most);
-        bool isAny = false;
-        for (int i = 0; i < count; ++i)
-            isAny = judge(consensus_.settle(i, reference_.segments(), current_.segments())) || isAny;
-        return isAny;
-    }
+    bool place(const Pairs &found, int most);
     // Takes a place for the result if more speaks for it than for those before; keeps all as rivals.
-    bool judge(const Transformation2D &pose) {
-        if (!pose.isFinite() || consensus_.pairs().size() < 2 ||
-            !(consensus_.deviation() <= settings.deviation))
-            return false;
-        const double against = seenThrough_(reference_.segments(), current_.segments(), pose);
-        const double evidence = consensus_.length() - against;
-        if (evidence <= 0 || consensus_.length() < settings.matchedShare * leastSeen_)
-            return false;
-        places_.push_back({pose, evidence});
-        if (against > settings.seenThroughShare * consensus_.length())
-            return false;
-        if (signs_(consensus_.pairs(), reference_.segments(), current_.segments(), pose) <
-            settings.leastSigns) {
-            isUnspecific_ = true;
-            return false;
-        }
-        if (evidence > result_.evidence)
-            take(pose, evidence);
-        return true;
-    }
-    void take(const Transformation2D &pose, double evidence) {
-        const LineSegmentRegistration &registration = consensus_.registration();
-        result_.evidence = evidence;
-        result_.pose = pose;
-        result_.matchedLength = consensus_.length();
-        result_.reliability = registration.reliability();
-        result_.deviation = consensus_.deviation();
-        result_.ambiguity = registration.ambiguity().total() / registration.weight();
-        result_.pairs.clear();
-        for (const CorrespondencePair &p : consensus_.pairs())
-            result_.pairs.push_back({reference_.given(p.fixed), current_.given(p.moving)});
-    }
-    double rivalEvidence() const {
-        double most = 0;
-        for (const Place &place : places_)
-            if (!isFound(place.pose))
-                most = std::max(most, place.evidence);
-        return most;
-    }
-    bool isFound(const Transformation2D &pose) const {
-        const Transformation2D apart = result_.pose.inverse() * pose;
-        return apart.translation().norm() <= 2 * settings.distanceWindow &&
-               std::abs(apart.alpha()) <= 2 * settings.angleWindow;
-    }
+    bool judge(const Transformation2D &pose);
+    void take(const Transformation2D &pose, double evidence);
+    double rivalEvidence() const;
+    bool isFound(const Transformation2D &pose) const;
 
     RelationScan reference_, current_;
     RelationScores score_;
@@ -240,3 +87,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/RelationMatcher.cpp"
+#endif

@@ -1,8 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/relations/RelationSet.h"
+#include "vectorlib/relations/RelationSettings.h"
+#include "vectorlib/relations/TypedSegment.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace vectorlib {
 
@@ -13,20 +19,7 @@ namespace vectorlib {
 class RelationScan {
 public:
     /// Takes the segments of a scan in their order.
-    void build(const std::vector<TypedSegment> &all, const RelationSettings &settings) {
-        chooseUsable(all);
-        keepLongest(all, settings.maxSegments);
-        segments_.clear();
-        for (std::size_t k = 0; k < numbers_.size(); ++k) {
-            segments_.push_back(all[numbers_[k]]);
-            // A neighbour that is left out takes the angle edge with it.
-            TypedSegment &s = segments_.back();
-            s.joined = s.joined && k + 1 < numbers_.size() && numbers_[k + 1] == numbers_[k] + 1 &&
-                       (s.segment.end() - all[numbers_[k + 1]].segment.begin()).norm() < meeting;
-        }
-        leftOut_ = all.size() - numbers_.size();
-        relations_.build(segments_, settings);
-    }
+    void build(const std::vector<TypedSegment> &all, const RelationSettings &settings);
     const std::vector<TypedSegment> &segments() const { return segments_; }
     const RelationSet &relations() const { return relations_; }
     std::size_t leftOut() const { return leftOut_; }
@@ -38,25 +31,8 @@ private:
 
     static bool isWithinReach(Vector2D<double> p) { return std::max(std::abs(p.x), std::abs(p.y)) < 1e6; }
 
-    void chooseUsable(const std::vector<TypedSegment> &all) {
-        numbers_.clear();
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const LineSegment2D<double> &s = all[i].segment;
-            if (isUsable(s) && isWithinReach(s.begin()) && isWithinReach(s.end()) && s.length() > 1e-6)
-                numbers_.push_back(i);
-        }
-    }
-    void keepLongest(const std::vector<TypedSegment> &all, std::size_t most) {
-        if (numbers_.size() <= most)
-            return;
-        std::nth_element(numbers_.begin(), numbers_.begin() + std::ptrdiff_t(most), numbers_.end(),
-                         [&](std::size_t a, std::size_t b) {
-                             const double la = all[a].segment.length(), lb = all[b].segment.length();
-                             return la != lb ? la > lb : a < b;
-                         });
-        numbers_.resize(most);
-        std::sort(numbers_.begin(), numbers_.end());
-    }
+    void chooseUsable(const std::vector<TypedSegment> &all);
+    void keepLongest(const std::vector<TypedSegment> &all, std::size_t most);
 
     std::vector<std::size_t> numbers_;
     std::vector<TypedSegment> segments_;
@@ -65,3 +41,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/RelationScan.cpp"
+#endif

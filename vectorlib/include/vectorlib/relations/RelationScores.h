@@ -1,7 +1,17 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/relations/ConsistencyTable.h"
+#include "vectorlib/relations/Corner.h"
 #include "vectorlib/relations/MatchingTable.h"
 #include "vectorlib/relations/RelationSet.h"
+#include "vectorlib/relations/RelationSettings.h"
+#include "vectorlib/relations/Relations.h"
+#include "vectorlib/relations/TypedSegment.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace vectorlib {
 
@@ -24,89 +34,17 @@ public:
     /// Adds the scores of all relations to the table, whose rows are the reference segments and whose columns
     /// the current ones.
     void operator()(const Segments &reference, const RelationSet &ofReference, const Segments &current,
-                    const RelationSet &ofCurrent, const RelationSettings &settings, MatchingTable &table) {
-        toReference_.fill(reference, current, settings);
-        toCurrent_.fill(current, current, settings);
-        cornersToReference_.fill(ofReference.corners(), ofCurrent.corners(), toReference_,
-                                 settings.angleWindow);
-        cornersToCurrent_.fill(ofCurrent.corners(), ofCurrent.corners(), toCurrent_, settings.angleWindow);
-        table.reset(reference.size(), current.size());
-        isCut_ = false;
-        compared_ = 0;
-        mostScores_ = settings.maxScores;
-        mostCompared_ = settings.maxCompared;
-        scoreLengths(ofReference, current, ofCurrent, table);
-        scoreCorners(ofReference, ofCurrent, table);
-        scorePairs(ofCurrent.parallels(), ofReference, ofCurrent, table);
-        scorePairs(ofCurrent.angles(), ofReference, ofCurrent, table);
-    }
+                    const RelationSet &ofCurrent, const RelationSettings &settings, MatchingTable &table);
 
 private:
     void scoreLengths(const RelationSet &ofReference, const Segments &current, const RelationSet &ofCurrent,
-                      MatchingTable &table) {
-        for (std::size_t j = 0; j < current.size(); ++j) {
-            numbers_.clear();
-            ofReference.lengthsLike(current[j], [&](int i) {
-                if (toReference_(i, static_cast<int>(j)))
-                    numbers_.push_back(i);
-            });
-            if (numbers_.empty())
-                continue;
-            if (!hasRoom(table, numbers_.size()))
-                return;
-            int count = 0;
-            ofCurrent.lengthsLike(current[j], [&](int i) { count += toCurrent_(i, static_cast<int>(j)); });
-            const double score = scoreOf(count, numbers_.size());
-            for (int i : numbers_) {
-                const std::size_t cell = table.cell(i, static_cast<int>(j));
-                table.add(score, &cell, 1);
-            }
-        }
-    }
+                      MatchingTable &table);
     /// Relations of two segments.
     template <typename Relation>
     void scorePairs(const std::vector<Relation> &relations, const RelationSet &ofReference,
-                    const RelationSet &ofCurrent, MatchingTable &table) {
-        for (const Relation &c : relations) {
-            if (!mayCompare())
-                return;
-            cells_.clear();
-            compared_ += ofReference.like(c, [&](const Relation &r) {
-                if (toReference_(r.first, c.first) && toReference_(r.second, c.second))
-                    cells_.push_back({{table.cell(r.first, c.first), table.cell(r.second, c.second)}, 2});
-            });
-            if (cells_.empty())
-                continue;
-            if (!hasRoom(table, cells_.size()))
-                return;
-            int count = 0;
-            compared_ += ofCurrent.like(c, [&](const Relation &other) {
-                count += toCurrent_(other.first, c.first) && toCurrent_(other.second, c.second);
-            });
-            addAll(count, table);
-        }
-    }
+                    const RelationSet &ofCurrent, MatchingTable &table);
     /// Relations of two corners, of up to four segments.
-    void scoreCorners(const RelationSet &ofReference, const RelationSet &ofCurrent, MatchingTable &table) {
-        for (const CornerRelation &c : ofCurrent.cornerRelations()) {
-            if (!mayCompare())
-                return;
-            cells_.clear();
-            compared_ += ofReference.like(c, [&](const CornerRelation &r) {
-                if (cornersToReference_(r.first, c.first) && cornersToReference_(r.second, c.second))
-                    cells_.push_back(cellsOf(r, ofReference.corners(), c, ofCurrent.corners(), table));
-            });
-            if (cells_.empty())
-                continue;
-            if (!hasRoom(table, cells_.size()))
-                return;
-            int count = 0;
-            compared_ += ofCurrent.like(c, [&](const CornerRelation &other) {
-                count += cornersToCurrent_(other.first, c.first) && cornersToCurrent_(other.second, c.second);
-            });
-            addAll(count, table);
-        }
-    }
+    void scoreCorners(const RelationSet &ofReference, const RelationSet &ofCurrent, MatchingTable &table);
 
     struct Cells {
         std::size_t cells[4];
@@ -114,38 +52,13 @@ private:
     };
     static Cells cellsOf(const CornerRelation &r, const std::vector<Corner> &reference,
                          const CornerRelation &c, const std::vector<Corner> &current,
-                         const MatchingTable &table) {
-        Cells result{{0, 0, 0, 0}, 0};
-        const auto add = [&](int i, int j) {
-            if (i >= 0 && j >= 0)
-                result.cells[result.count++] = table.cell(i, j);
-        };
-        const Corner &a = reference[static_cast<std::size_t>(r.first)],
-                     &b = reference[static_cast<std::size_t>(r.second)];
-        const Corner &p = current[static_cast<std::size_t>(c.first)],
-                     &q = current[static_cast<std::size_t>(c.second)];
-        add(a.first, p.first);
-        add(a.second, p.second);
-        add(b.first, q.first);
-        add(b.second, q.second);
-        return result;
-    }
-    bool hasRoom(const MatchingTable &table, std::size_t more) {
-        isCut_ = isCut_ || table.scores() + more > mostScores_;
-        return !isCut_;
-    }
-    bool mayCompare() {
-        isCut_ = isCut_ || compared_ >= mostCompared_;
-        return !isCut_;
-    }
+                         const MatchingTable &table);
+    bool hasRoom(const MatchingTable &table, std::size_t more);
+    bool mayCompare();
     static double scoreOf(int count, std::size_t matches) {
         return 1 / (double(std::max(1, count)) * double(matches));
     }
-    void addAll(int count, MatchingTable &table) {
-        const double score = scoreOf(count, cells_.size());
-        for (const Cells &c : cells_)
-            table.add(score, c.cells, c.count);
-    }
+    void addAll(int count, MatchingTable &table);
 
     ConsistencyTable toReference_, toCurrent_;
     CornerTable cornersToReference_, cornersToCurrent_;
@@ -156,3 +69,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/RelationScores.cpp"
+#endif

@@ -1,7 +1,14 @@
 #pragma once
 
+#include "vectorlib/Body.h"
 #include "vectorlib/relations/BinnedOrder.h"
+#include "vectorlib/relations/Corner.h"
+#include "vectorlib/relations/RelationSettings.h"
 #include "vectorlib/relations/Relations.h"
+#include "vectorlib/relations/TypedSegment.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace vectorlib {
 
@@ -12,14 +19,7 @@ public:
     std::size_t virtualEdgesLeftOut = 0;
 
     /// Copies what it needs of the settings' windows; the segments stay with the caller.
-    void build(const std::vector<TypedSegment> &segments, const RelationSettings &settings) {
-        window_ = settings.distanceWindow;
-        turn_ = turnPart(settings.angleWindow);
-        virtualEdgesLeftOut = findCorners_(segments, settings, corners_);
-        buildLengths(segments);
-        buildPairs(segments, settings.angleWindow);
-        buildCorners(segments, settings.leastEdgeDistance);
-    }
+    void build(const std::vector<TypedSegment> &segments, const RelationSettings &settings);
     const std::vector<Corner> &corners() const { return corners_; }
     const std::vector<AngleRelation> &angles() const { return angles_; }
     const std::vector<ParallelRelation> &parallels() const { return parallels_; }
@@ -78,53 +78,9 @@ private:
     int angleBins() const { return std::max(3, 65536 / std::max(1, static_cast<int>(turn_) + 1)); }
     double angleKey(const AngleRelation &r) const { return double(r.angle) * angleBins() / 65536; }
 
-    void buildLengths(const std::vector<TypedSegment> &segments) {
-        complete_.clear();
-        incomplete_.clear();
-        widestSlack_ = 0;
-        for (std::size_t i = 0; i < segments.size(); ++i) {
-            const TypedSegment &s = segments[i];
-            (s.isComplete() ? complete_ : incomplete_).push_back({s.segment.length(), static_cast<int>(i)});
-            for (const SegmentEnd *end : {&s.begin, &s.end})
-                if (end->isEdge())
-                    widestSlack_ = std::max(widestSlack_, 2 * end->slack);
-        }
-        for (std::vector<Length> *lengths : {&complete_, &incomplete_})
-            std::sort(lengths->begin(), lengths->end(), [](const Length &a, const Length &b) {
-                return a.length != b.length ? a.length < b.length : a.number < b.number;
-            });
-    }
-    void buildPairs(const std::vector<TypedSegment> &segments, double angleWindow) {
-        angles_.clear();
-        parallels_.clear();
-        for (std::size_t i = 0; i < segments.size(); ++i)
-            for (std::size_t j = i + 1; j < segments.size(); ++j) {
-                AngleRelation a;
-                ParallelRelation p;
-                a.first = p.first = static_cast<std::int16_t>(i);
-                a.second = p.second = static_cast<std::int16_t>(j);
-                a.angle = turnPart(relativeAngle(segments[i].segment, segments[j].segment));
-                angles_.push_back(a);
-                if (parallelRelation(segments[i], segments[j], angleWindow, p))
-                    parallels_.push_back(p);
-            }
-        angleOrder_.build(angles_, angleBins(), [this](const AngleRelation &r) { return angleKey(r); });
-        parallelOrder_.build(parallels_, distanceBins,
-                             [this](const ParallelRelation &r) { return distanceKey(r.across); });
-    }
-    void buildCorners(const std::vector<TypedSegment> &segments, double least) {
-        cornerRelations_.clear();
-        for (std::size_t i = 0; i < corners_.size(); ++i)
-            for (std::size_t j = i + 1; j < corners_.size(); ++j) {
-                CornerRelation r;
-                r.first = static_cast<std::int16_t>(i);
-                r.second = static_cast<std::int16_t>(j);
-                if (cornerRelation(segments, corners_[i], corners_[j], least, r))
-                    cornerRelations_.push_back(r);
-            }
-        cornerOrder_.build(cornerRelations_, distanceBins,
-                           [this](const CornerRelation &r) { return distanceKey(r.distance); });
-    }
+    void buildLengths(const std::vector<TypedSegment> &segments);
+    void buildPairs(const std::vector<TypedSegment> &segments, double angleWindow);
+    void buildCorners(const std::vector<TypedSegment> &segments, double least);
 
     double window_ = 0;
     int turn_ = 0;
@@ -141,3 +97,7 @@ private:
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/RelationSet.cpp"
+#endif

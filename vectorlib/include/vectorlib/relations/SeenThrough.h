@@ -1,8 +1,10 @@
 #pragma once
 
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/relations/TypedSegment.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace vectorlib {
@@ -17,31 +19,17 @@ public:
     /// Length of the segments of either scan that stand in the free space of the other when the pose brings
     /// the current scan onto the reference; metres.
     double operator()(const std::vector<TypedSegment> &reference, const std::vector<TypedSegment> &current,
-                      const Transformation2D &pose) const {
-        return standingIn(reference, current, pose) + standingIn(current, reference, pose.inverse());
-    }
+                      const Transformation2D &pose) const;
 
 private:
     double standingIn(const std::vector<TypedSegment> &seen, const std::vector<TypedSegment> &others,
-                      const Transformation2D &pose) const {
-        double length = 0;
-        for (const TypedSegment &o : others) {
-            const LineSegment2D<double> s = pose * o.segment;
-            for (int i = 0; i < samples; ++i) {
-                const Vector2D<double> p = s.begin() + (s.end() - s.begin()) * ((i + 0.5) / samples);
-                if (isInFront(seen, p))
-                    length += s.length() / samples;
-            }
-        }
-        return length;
-    }
+                      const Transformation2D &pose) const;
     // Between the sensor, in the origin, and a segment of its scan, by more than the margin.
-    bool isInFront(const std::vector<TypedSegment> &seen, Vector2D<double> p) const {
-        return std::any_of(seen.begin(), seen.end(), [&](const TypedSegment &t) {
-            const LineSegment2D<double> &s = t.segment;
-            return s.begin().cross(p) > 0 && p.cross(s.end()) > 0 && s.across(p) > margin;
-        });
-    }
+    bool isInFront(const std::vector<TypedSegment> &seen, Vector2D<double> p) const;
 };
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/relations/SeenThrough.cpp"
+#endif

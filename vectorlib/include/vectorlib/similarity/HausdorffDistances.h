@@ -1,10 +1,7 @@
 #pragma once
 
-#include "vectorlib/geometry/SegmentPair.h"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/LineSegment2D.h"
 
 namespace vectorlib {
 
@@ -14,33 +11,20 @@ namespace vectorlib {
 /// Hausdorff distance, thesis (7.1), (7.2): how far the point of one segment that is farthest from the other
 /// lies from it. The distance to a segment bends up only, so that this point is an end. Not a perpendicular
 /// distance, as the thesis says of it: beside the ends it is that to the end.
-inline double hausdorffDistance(const LineSegment2D<double> &p, const LineSegment2D<double> &q) {
-    if (!isUsable(p) || !isUsable(q))
-        return std::numeric_limits<double>::quiet_NaN();
-    return std::max({p.distance(q.begin()), p.distance(q.end()), q.distance(p.begin()), q.distance(p.end())});
-}
+double hausdorffDistance(const LineSegment2D<double> &p, const LineSegment2D<double> &q);
 
 /// "Modified" Hausdorff distance, thesis (7.3): the shorter length by the sine of the angle between the
 /// lines. That angle is at most a right one: with the printed sine it would be below 0 beyond half a turn.
-inline double modifiedHausdorffDistance(const LineSegment2D<double> &p, const LineSegment2D<double> &q) {
-    if (!isUsable(p) || !isUsable(q))
-        return std::numeric_limits<double>::quiet_NaN();
-    return std::min(p.length(), q.length()) * std::abs(p.direction().cross(q.direction()));
-}
+double modifiedHausdorffDistance(const LineSegment2D<double> &p, const LineSegment2D<double> &q);
 
 /// "Modified perpendicular" Hausdorff distance, thesis (7.4) to (7.6): of the distances of the ends from the
 /// other one's line the larger d1 and the smaller d2, each of the segment where it is less, weighted by
 /// themselves. The weights add up to 1, so that the printed half in (7.6) would halve the distance of
 /// parallel lines; it is left out. Where both are 0 the weights (7.5) are 0 / 0, and the distance is 0.
-inline double perpendicularHausdorffDistance(const LineSegment2D<double> &p, const LineSegment2D<double> &q) {
-    if (!isUsable(p) || !isUsable(q))
-        return std::numeric_limits<double>::quiet_NaN();
-    const double qBegin = std::abs(p.across(q.begin())), qEnd = std::abs(p.across(q.end()));
-    const double pBegin = std::abs(q.across(p.begin())), pEnd = std::abs(q.across(p.end()));
-    const double d1 = std::min(std::max(qBegin, qEnd), std::max(pBegin, pEnd));
-    const double d2 = std::min(std::min(qBegin, qEnd), std::min(pBegin, pEnd));
-    const double sum = d1 + d2;
-    return sum > 0 ? d1 * (d1 / sum) + d2 * (d2 / sum) : 0;
-}
+double perpendicularHausdorffDistance(const LineSegment2D<double> &p, const LineSegment2D<double> &q);
 
 } // namespace vectorlib
+
+#ifdef VECTORLIB_HEADER_ONLY
+#include "vectorlib/src/similarity/HausdorffDistances.cpp"
+#endif

@@ -1,0 +1,71 @@
+#include "vectorlib/correspondence/SolutionCovariance.h"
+
+#include "vectorlib/geometry/SmallMatrix.h"
+
+#include <Eigen/LU>
+
+namespace vectorlib {
+
+VECTORLIB_BODY std::optional<Eigen::Matrix3d>
+SolutionCovariance::operator()(const Solution &solution, const MeasuredSegments &fixed,
+                               const MeasuredSegments &moving) const {
+    if (!(solution.reliability > 0))
+        return std::nullopt;
+    std::vector<Effect> effects;
+    Eigen::Matrix3d sums = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
+    for (const CorrespondencePair &p : solution.pairs) {
+        if (!isKnown(p.fixed, fixed) || !isKnown(p.moving, moving))
+            return std::nullopt;
+        effects.push_back(
+            effectOf(at(fixed.segments, p.fixed), at(moving.segments, p.moving), solution.pose, sums));
+    }
+    // A line in two pairs errs in both alike.
+    for (std::size_t a = 0; a < effects.size(); ++a)
+        for (std::size_t b = 0; b < effects.size(); ++b) {
+            const CorrespondencePair &p = solution.pairs[a], &q = solution.pairs[b];
+            if (p.fixed == q.fixed)
+                spread += product(effects[a].byFixed,
+                                  at(fixed.lines, p.fixed).ofSegment(at(fixed.segments, p.fixed)),
+                                  effects[b].byFixed);
+            if (p.moving == q.moving)
+                spread += product(effects[a].byMoving,
+                                  at(moving.lines, p.moving).ofSegment(at(moving.segments, p.moving)),
+                                  effects[b].byMoving);
+        }
+    const Eigen::Matrix3d inverse = sums.inverse(); // symmetric
+    const Eigen::Matrix3d covariance = product(inverse, spread, inverse);
+    return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
+}
+
+template <typename T>
+const T &SolutionCovariance::at(const std::vector<T> &list, int i) {
+    return list[static_cast<std::size_t>(i)];
+}
+
+VECTORLIB_BODY bool SolutionCovariance::isKnown(int i, const MeasuredSegments &set) {
+    return i >= 0 && static_cast<std::size_t>(i) < std::min(set.segments.size(), set.lines.size()) &&
+           at(set.lines, i).valid;
+}
+
+VECTORLIB_BODY SolutionCovariance::Effect SolutionCovariance::effectOf(const LineSegment2D<double> &fixed,
+                                                                       const LineSegment2D<double> &moving,
+                                                                       const Transformation2D &pose,
+                                                                       Eigen::Matrix3d &sums) {
+    const double length = moving.length(), moment = length * length * length / 12;
+    const Vector2D<double> n = fixed.normal(), v = fixed.direction(), middle = pose * moving.middle();
+    const Eigen::Vector3d j(n.x, n.y, v.dot(middle - pose.translation()));
+    sums += square(length, j);
+    sums(2, 2) += moment;
+    const auto effect = [&](double u) {
+        Eigen::Matrix<double, 3, 2> by;
+        for (int i = 0; i < 3; ++i) {
+            by(i, 0) = u * length * j(i);
+            by(i, 1) = length * j(i);
+        }
+        by(2, 0) += moment;
+        return by;
+    };
+    return {effect(v.dot(middle)), effect(moving.direction().dot(moving.middle()))};
+}
+
+} // namespace vectorlib

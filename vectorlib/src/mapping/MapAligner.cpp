@@ -1,0 +1,173 @@
+#include "vectorlib/mapping/MapAligner.h"
+
+#include "vectorlib/geometry/SmallMatrix.h"
+
+#include <cstdint>
+#include <set>
+
+namespace vectorlib {
+
+VECTORLIB_BODY MapAlignment MapAligner::operator()(VectorMap &fixed, const std::vector<MapEdge> &moving) {
+    MapAlignment result;
+    findPlaces(moving);
+    result.places = places_.size();
+    findVotes(fixed, moving);
+    result.found = votes_.size();
+    const std::size_t best = bestVote(result);
+    if (result.agree < leastAgree)
+        return result;
+    result.outcome = MapAlignment::Outcome::Ambiguous;
+    if (2 * result.rival >= result.agree)
+        return result;
+    result.overlap = registration(fixed, moving, motionOfAll(votes_[best]));
+    result.against = countContradictions(result.overlap.motion);
+    const bool isContradicted = 2 * result.against >= result.agree;
+    result.outcome = isContradicted ? MapAlignment::Outcome::Contradicted : MapAlignment::Outcome::Found;
+    return result;
+}
+
+VECTORLIB_BODY MapAlignment MapAligner::confirm(VectorMap &fixed, const std::vector<MapEdge> &moving,
+                                                const Transformation2D &told) {
+    MapAlignment result;
+    findPlaces(moving);
+    result.places = places_.size();
+    result.overlap = registration(fixed, moving, told);
+    inFixed_.index().follow(fixed.slots());
+    forEachFit(result.overlap.motion, [&](const PlaceFit &fit) {
+        result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= mostHidden;
+        result.against += isAgainst(fit);
+    });
+    if (result.against > 0 && 2 * result.against >= result.agree)
+        result.outcome = MapAlignment::Outcome::Contradicted;
+    else if (result.agree >= 3 * leastAgree)
+        result.outcome = MapAlignment::Outcome::Found;
+    return result;
+}
+
+VECTORLIB_BODY void MapAligner::findPlaces(const std::vector<MapEdge> &map) {
+    places_.clear();
+    std::vector<LineSegment2D<double>> walls;
+    for (const MapEdge &edge : map)
+        walls.push_back(edge.segment);
+    std::set<std::pair<std::int64_t, std::int64_t>> taken;
+    for (const LineSegment2D<double> &wall : walls)
+        for (double t = std::min(0.5 * wall.length(), 0.5 * spacing); t < wall.length(); t += spacing) {
+            const Vector2D<double> p = wall.begin() + wall.direction() * t + wall.normal() * 0.8;
+            const std::pair<std::int64_t, std::int64_t> square(std::floor(p.x / spacing),
+                                                               std::floor(p.y / spacing));
+            if (wall.length() < 0.5 || taken.count(square) > 0)
+                continue;
+            PlaceOfMap place{{p.x, p.y, 0}, {}};
+            if (see(walls, place) < leastSeen)
+                continue;
+            taken.insert(square);
+            places_.push_back(place);
+        }
+    if (places_.size() <= mostPlaces)
+        return;
+    for (std::size_t i = 0; i < mostPlaces; ++i)
+        places_[i] = places_[i * places_.size() / mostPlaces];
+    places_.resize(mostPlaces);
+}
+
+VECTORLIB_BODY double MapAligner::see(const std::vector<LineSegment2D<double>> &walls, PlaceOfMap &place) {
+    observe_.maxRange = reach;
+    double seen = 0;
+    for (const VisiblePart<double> &part : observe_(walls, place.pose))
+        if (part.segment.length() >= 0.1) {
+            seen += part.segment.length();
+            place.edges.emplace_back(TlsSums(), part.segment, 0);
+        }
+    return seen;
+}
+
+VECTORLIB_BODY void MapAligner::findVotes(VectorMap &fixed, const std::vector<MapEdge> &moving) {
+    votes_.clear();
+    std::size_t done = 0;
+    for (const PlaceOfMap &place : places_) {
+        const Relocalized &found = search(inFixed_, fixed.slots(), place);
+        if (found.isFound()) {
+            const Transformation2D motion =
+                Transformation2D(found.places.front().pose) * Transformation2D(place.pose).inverse();
+            const Relocalized &own = search(inMoving_, moving, place);
+            if (own.isFound() && isNear(Transformation2D(own.places.front().pose), place.pose, 0))
+                votes_.push_back({place.pose, motion});
+        }
+        if (progress)
+            progress(++done, places_.size());
+    }
+}
+
+VECTORLIB_BODY const Relocalized &MapAligner::search(PlaceSearch &search, const std::vector<MapEdge> &map,
+                                                     const PlaceOfMap &place) {
+    search.maxSeconds = 1e6; // the result is always the same
+    return search(map, place.edges, {});
+}
+
+VECTORLIB_BODY bool MapAligner::isNear(const Transformation2D &a, const Pose2D &b, double way) const {
+    const Transformation2D off = a.inverse() * Transformation2D(b);
+    return off.translation().norm() <= same + bent * way && std::abs(off.alpha()) <= sameAlpha;
+}
+
+VECTORLIB_BODY bool MapAligner::agree(const Vote &a, const Vote &b) const {
+    const Transformation2D there = a.motion * Transformation2D(b.pose);
+    const Transformation2D found = b.motion * Transformation2D(b.pose);
+    return isNear(there, found.pose(), std::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y));
+}
+
+VECTORLIB_BODY std::size_t MapAligner::bestVote(MapAlignment &result) const {
+    std::size_t best = 0;
+    const auto count = [this](const Vote &vote, const Vote *without) {
+        return std::size_t(std::count_if(votes_.begin(), votes_.end(), [&](const Vote &other) {
+            return agree(vote, other) && !(without && agree(*without, other));
+        }));
+    };
+    for (std::size_t i = 0; i < votes_.size(); ++i)
+        if (const std::size_t n = count(votes_[i], nullptr); n > result.agree) {
+            result.agree = n;
+            best = i;
+        }
+    for (const Vote &vote : votes_)
+        if (!agree(votes_[best], vote))
+            result.rival = std::max(result.rival, count(vote, &votes_[best]));
+    return best;
+}
+
+VECTORLIB_BODY Transformation2D MapAligner::motionOfAll(const Vote &best) const {
+    Vector2D<double> from, to;
+    double count = 0, sine = 0, cosine = 0;
+    const auto forEach = [&](auto take) {
+        for (const Vote &vote : votes_)
+            if (const Vector2D<double> p(vote.pose.x, vote.pose.y); agree(best, vote))
+                take(p, vote.motion * p);
+    };
+    forEach([&](Vector2D<double> p, Vector2D<double> q) {
+        from += p;
+        to += q;
+        ++count;
+    });
+    from = from * (1 / count);
+    to = to * (1 / count);
+    forEach([&](Vector2D<double> p, Vector2D<double> q) {
+        sine += (p - from).cross(q - to);
+        cosine += (p - from).dot(q - to);
+    });
+    return Transformation2D(to.x, to.y, std::atan2(sine, cosine)) * Transformation2D(-from.x, -from.y, 0);
+}
+
+VECTORLIB_BODY std::size_t MapAligner::countContradictions(const Transformation2D &motion) {
+    std::size_t against = 0;
+    forEachFit(motion, [&](const PlaceFit &fit) { against += isAgainst(fit); });
+    return against;
+}
+
+template <typename Take>
+void MapAligner::forEachFit(const Transformation2D &motion, Take take) {
+    for (const PlaceOfMap &place : places_) {
+        inFixed_.scan.take(place.edges, {});
+        take(inFixed_.fit.judge(inFixed_.index().tiles(), inFixed_.scan.points(),
+                                motion * Transformation2D(place.pose), 1, true, inFixed_.scan.wallOfPoint()));
+    }
+}
+
+} // namespace vectorlib

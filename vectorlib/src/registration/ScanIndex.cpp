@@ -1,0 +1,91 @@
+#include "vectorlib/registration/ScanIndex.h"
+
+#include "vectorlib/simd/NearestOfEight.h"
+
+#include <cmath>
+
+namespace vectorlib {
+
+VECTORLIB_BODY void ScanIndex::build(PointSpan<float> given, std::size_t most) {
+    const PointSpan<float> scan = order_(given);
+    x_.assign(window, far);
+    y_.assign(window, far);
+    const std::size_t step = 1 + scan.size() / (std::max<std::size_t>(1, most) + 1);
+    for (std::size_t i = 0; i < scan.size(); i += step)
+        if (const Vector2D<float> &p = scan[i];
+            std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f && (p.x != x_.back() || p.y != y_.back())) {
+            x_.push_back(p.x);
+            y_.push_back(p.y);
+        }
+    size_ = static_cast<int>(x_.size()) - window;
+    x_.insert(x_.end(), window, far);
+    y_.insert(y_.end(), window, far);
+    findNormals();
+    findDirections();
+}
+
+VECTORLIB_BODY int ScanIndex::nearest(Vector2D<float> p, float squaredGate) const {
+    int best = -1;
+    const auto isBeyond = [&](int k, float side) {
+        const Vector2D<float> f = point(k);
+        if (const float d = (f - p).squaredNorm(); d < squaredGate) {
+            squaredGate = d;
+            best = k;
+        }
+        const float across = side * p.cross(f);
+        return across > 0 && across * across > squaredGate * f.squaredNorm();
+    };
+    const int start = ahead(p);
+    for (int k = start; k < size_ && !isBeyond(k, 1); ++k) {
+    }
+    for (int k = start - 1; k >= 0 && !isBeyond(k, -1); --k) {
+    }
+    return best;
+}
+
+VECTORLIB_BODY int ScanIndex::nearestAhead(Vector2D<float> p, float squaredGate) const {
+    const int first = ahead(p) - window / 2; // what lies outside is padding, far away
+    const simd::NearestOfEight nearest(x_.data() + at(first), y_.data() + at(first), p.x, p.y);
+    return nearest.squared < squaredGate ? first + nearest.number : -1;
+}
+
+VECTORLIB_BODY bool ScanIndex::looksPast(Vector2D<float> p) const {
+    const int k = ahead(p);
+    if (k <= 0 || k >= size_)
+        return false;
+    const float range = 1.05f * p.norm() + 0.1f;
+    return std::min(point(k).squaredNorm(), point(k - 1).squaredNorm()) > range * range;
+}
+
+VECTORLIB_BODY std::size_t ScanIndex::binOf(Vector2D<float> p) {
+    const float sum = std::abs(p.x) + std::abs(p.y);
+    const float t = sum > 0 && sum < far ? p.y / sum : 0;
+    const float turn = p.x >= 0 ? t : (p.y >= 0 ? 2 - t : -2 - t);
+    return static_cast<std::size_t>((turn + 2) * (bins / 4));
+}
+
+VECTORLIB_BODY void ScanIndex::findDirections() {
+    first_.assign(bins + 1, -1);
+    for (int i = size_; i-- > 0;)
+        first_[binOf(point(i))] = i;
+    int next = size_;
+    for (std::size_t b = bins + 1; b-- > 0;)
+        next = first_[b] = first_[b] < 0 ? next : first_[b];
+}
+
+VECTORLIB_BODY void ScanIndex::findNormals() {
+    constexpr int reach = 4;
+    constexpr float gap = 0.15f, gapByRange = 0.06f; // metres, and metres for each metre of range
+    normals_.resize(static_cast<std::size_t>(size_));
+    for (int i = 0; i < size_; ++i) {
+        const float limit = std::max(gap * gap, gapByRange * gapByRange * point(i).squaredNorm());
+        int from = i, to = i;
+        while (from > 0 && i - from < reach && (point(from - 1) - point(from)).squaredNorm() < limit)
+            --from;
+        while (to + 1 < size_ && to - i < reach && (point(to + 1) - point(to)).squaredNorm() < limit)
+            ++to;
+        normals_[static_cast<std::size_t>(i)] = (point(to) - point(from)).normalized().left();
+    }
+}
+
+} // namespace vectorlib

@@ -1,0 +1,44 @@
+#include "vectorlib/relations/RelationScan.h"
+
+#include "vectorlib/geometry/SegmentPair.h"
+
+namespace vectorlib {
+
+VECTORLIB_BODY void RelationScan::build(const std::vector<TypedSegment> &all,
+                                        const RelationSettings &settings) {
+    chooseUsable(all);
+    keepLongest(all, settings.maxSegments);
+    segments_.clear();
+    for (std::size_t k = 0; k < numbers_.size(); ++k) {
+        segments_.push_back(all[numbers_[k]]);
+        // A neighbour that is left out takes the angle edge with it.
+        TypedSegment &s = segments_.back();
+        s.joined = s.joined && k + 1 < numbers_.size() && numbers_[k + 1] == numbers_[k] + 1 &&
+                   (s.segment.end() - all[numbers_[k + 1]].segment.begin()).norm() < meeting;
+    }
+    leftOut_ = all.size() - numbers_.size();
+    relations_.build(segments_, settings);
+}
+
+VECTORLIB_BODY void RelationScan::chooseUsable(const std::vector<TypedSegment> &all) {
+    numbers_.clear();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const LineSegment2D<double> &s = all[i].segment;
+        if (isUsable(s) && isWithinReach(s.begin()) && isWithinReach(s.end()) && s.length() > 1e-6)
+            numbers_.push_back(i);
+    }
+}
+
+VECTORLIB_BODY void RelationScan::keepLongest(const std::vector<TypedSegment> &all, std::size_t most) {
+    if (numbers_.size() <= most)
+        return;
+    std::nth_element(numbers_.begin(), numbers_.begin() + std::ptrdiff_t(most), numbers_.end(),
+                     [&](std::size_t a, std::size_t b) {
+                         const double la = all[a].segment.length(), lb = all[b].segment.length();
+                         return la != lb ? la > lb : a < b;
+                     });
+    numbers_.resize(most);
+    std::sort(numbers_.begin(), numbers_.end());
+}
+
+} // namespace vectorlib
