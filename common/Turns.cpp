@@ -11,7 +11,7 @@
 namespace hermes {
 namespace {
 
-constexpr double longest_s = 0.001;
+constexpr double longestTurn_s = 0.001;
 constexpr double rest_s = 0.002;
 constexpr int mostKnown = 10000;
 
@@ -60,7 +60,7 @@ void Turns::post() {
 
 void Turns::run() {
     posted_ = false;
-    const double end = monotonicNow() + longest_s;
+    const double end = monotonicNow() + longestTurn_s;
     while (monotonicNow() < end && !isIdle())
         runNext();
     if (!isIdle())

@@ -6,7 +6,7 @@ hermes_library_packages=(
     qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libsdl2-dev libeigen3-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev zlib1g-dev
 )
 hermes_build_packages=("${hermes_tool_packages[@]}" "${hermes_library_packages[@]}")
-hermes_package_packages=(debhelper dpkg-dev fakeroot help2man libgpiod-dev)
+hermes_package_packages=(debhelper dpkg-dev fakeroot help2man)
 hermes_site_packages=(mkdocs mkdocs-material mkdocstrings mkdocstrings-python-handlers doxygen help2man mandoc)
 hermes_long_test_packages=("${hermes_package_packages[@]}" "${hermes_site_packages[@]}" lintian debootstrap systemd-container umockdev
     g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine64)

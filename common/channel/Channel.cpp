@@ -25,7 +25,7 @@ qint64 costOf(const CodecFrame &frame) {
 }
 
 // So much may lie with the system before messages of topics wait where newer ones can replace them.
-constexpr qint64 handOverBytes = 32 << 10;
+constexpr qint64 topicsHandOverBytes = 32 << 10;
 
 CodecItem readAll(const Codec &codec, const CodecFrame &frame, bool withDigest) {
     CodecItem item = codec.read(frame);
@@ -135,7 +135,7 @@ qint64 Channel::bytesToWrite() const {
 bool Channel::hasSpaceForTopics() const {
     if (!isOpen())
         return false;
-    return writer_ ? !writer_->link().hasTopicUnderWay() : carrier_->bytesToWrite() < handOverBytes;
+    return writer_ ? !writer_->link().hasTopicUnderWay() : carrier_->bytesToWrite() < topicsHandOverBytes;
 }
 
 LinkCounters Channel::linkCounters() const {

@@ -155,7 +155,7 @@ Result<Opened> openNamed(const QString &path, const QStringList &folders) {
 }
 
 /// So that the name is on the disk, too.
-Result<void> syncFolder(const QString &path) {
+Result<void> syncNamesIn(const QString &path) {
     const Descriptor folder(::open(QFile::encodeName(path).constData(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (folder >= 0 && ::fsync(folder) == 0)
         return {};
@@ -233,7 +233,7 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
                                   replace ? 0 : RENAME_NOREPLACE) == 0 ||
                       ((errno == EINVAL || errno == ENOSYS) &&
                        ::renameat(folder, draft.constData(), folder, name.constData()) == 0)))
-        return syncFolder(parent);
+        return syncNamesIn(parent);
     const Error error = failed();
     ::unlinkat(folder, draft.constData(), 0);
     return error;

@@ -11,11 +11,11 @@
 namespace hermes {
 namespace {
 
-constexpr std::chrono::seconds longest{1};
+constexpr std::chrono::seconds farewellLimit{1};
 constexpr std::size_t drainAtOnceBytes = 64 << 10;
-constexpr int most = 32; // at the same time
+constexpr int mostFarewells = 32; // at the same time
 
-int number = 0; // now; all are in the main thread
+int farewells = 0; // now; all are in the main thread
 
 class Farewell : public QObject {
 public:
@@ -23,14 +23,14 @@ public:
         : QObject(theParent)
         , descriptor_(ownDescriptor)
         , notifier_(ownDescriptor, QSocketNotifier::Read) {
-        ++number;
+        ++farewells;
         connect(&notifier_, &QSocketNotifier::activated, this, &Farewell::drain);
         connect(&limit_, &QTimer::timeout, this, &QObject::deleteLater);
         limit_.setSingleShot(true);
-        limit_.start(longest);
+        limit_.start(farewellLimit);
     }
     ~Farewell() override {
-        --number;
+        --farewells;
         notifier_.setEnabled(false);
         ::close(descriptor_);
     }
@@ -52,7 +52,7 @@ private:
 } // namespace
 
 void sayFarewell(int socket, QObject *parent) {
-    if (number >= most)
+    if (farewells >= mostFarewells)
         return;
     const int own = ::fcntl(socket, F_DUPFD_CLOEXEC, 0);
     if (own < 0)

@@ -15,7 +15,7 @@
 namespace hermes {
 namespace {
 
-const QString source = QStringLiteral("server");
+const QString serverSource = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
 constexpr std::size_t mostHandshakes = 16; // at the same time, then the oldest goes
 constexpr int handshakesAtOnce = 1;        // to begin a handshake takes a millisecond
@@ -79,7 +79,7 @@ Result<void> TlsServerInterface::listen() {
     revokedTimer_.start();
     constexpr double soon_s = 30.0 * 24 * 3600;
     if (const double left_s = toPeer(keys_.localCertificate()).until - stampNow(); left_s < soon_s)
-        logWarning(source,
+        logWarning(serverSource,
                    QStringLiteral("%1: its certificate expires in %2 days; hermesctl keys issue makes a "
                                   "new one")
                        .arg(address())
@@ -150,9 +150,9 @@ void TlsServerInterface::refuse(QSslSocket *socket, const QString &why) {
     ++refused_;
     if (const double now = monotonicNow(); now - refusedTold_ > 1) { // many may come
         refusedTold_ = now;
-        logWarning(source, QStringLiteral("%1: a client at %2 is refused: %3; %4 in all")
-                               .arg(address(), socket->peerAddress().toString(), why)
-                               .arg(refused_));
+        logWarning(serverSource, QStringLiteral("%1: a client at %2 is refused: %3; %4 in all")
+                                     .arg(address(), socket->peerAddress().toString(), why)
+                                     .arg(refused_));
     }
     socket->disconnect(this);
     socket->abort();
@@ -175,7 +175,7 @@ void TlsServerInterface::lookAtRevoked() {
                         file.filePath() + QStringLiteral(": is empty or missing now, and was not before"));
     revokedProblem_ = revoked ? QString() : revoked.error().message;
     if (!revoked)
-        return logError(source,
+        return logError(serverSource,
                         QStringLiteral("%1: new clients are refused: %2").arg(address(), revokedProblem_));
     revoked_ = *revoked;
 }
@@ -191,7 +191,7 @@ void TlsServerInterface::closeBad() {
             continue;
         const QString why = isRevoked ? QStringLiteral("its certificate is revoked")
                                       : QStringLiteral("its certificate has expired");
-        logWarning(source, QStringLiteral("closing client %1: %2").arg(peer->name(), why));
+        logWarning(serverSource, QStringLiteral("closing client %1: %2").arg(peer->name(), why));
         peer->close(why);
     }
 }

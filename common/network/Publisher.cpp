@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::seconds retry{5}; // until there is a bus
 constexpr int mostRenamed = 100;
 const QString busName = QStringLiteral("hermes-announcement");
-const QString source = QStringLiteral("network");
+const QString networkSource = QStringLiteral("network");
 
 } // namespace
 
@@ -126,7 +126,7 @@ void Publisher::onBusLost() {
 
 void Publisher::tellOnce(const QString &text) {
     if (!std::exchange(isTold_, true))
-        logInfo(source, text);
+        logInfo(networkSource, text);
 }
 
 } // namespace hermes

@@ -8,7 +8,7 @@ namespace hermes {
 
 namespace {
 
-constexpr int longestName = 100; // bytes; file systems allow 255, and files add to it
+constexpr int longestRecordingName = 100; // bytes; file systems allow 255, and files add to it
 
 bool isNameCharacter(QChar c) {
     return c.category() != QChar::Other_Control && c != '/';
@@ -17,16 +17,17 @@ bool isNameCharacter(QChar c) {
 } // namespace
 
 Result<void> checkName(const QString &what, const QString &name) {
-    const bool fine = !name.isEmpty() && !name.startsWith('.') && name.toUtf8().size() <= longestName &&
+    const bool fine = !name.isEmpty() && !name.startsWith('.') &&
+                      name.toUtf8().size() <= longestRecordingName &&
                       std::all_of(name.begin(), name.end(), isNameCharacter);
     if (fine)
         return {};
     const QString expected =
         QString("1 to %1 bytes without '/' and control characters, not beginning with a dot")
-            .arg(longestName);
+            .arg(longestRecordingName);
     return invalidParams(
         {{what, name, expected}},
-        QString("%1: found \"%2\", expected %3").arg(what, name.left(longestName), expected));
+        QString("%1: found \"%2\", expected %3").arg(what, name.left(longestRecordingName), expected));
 }
 
 } // namespace hermes

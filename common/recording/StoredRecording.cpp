@@ -14,8 +14,8 @@ namespace hermes {
 
 namespace {
 
-constexpr double latest_s = 4294967295; // what the stamps of the files can hold
-constexpr double longest_s = 1e7;       // four months
+constexpr double latest_s = 4294967295;    // what the stamps of the files can hold
+constexpr double longestRecording_s = 1e7; // four months
 
 } // namespace
 
@@ -39,7 +39,7 @@ Result<StoredRecording> StoredRecording::find(const QString &root, const QString
     const double length =
         hasMono ? sidecar->value("end_mono").toDouble() - sidecar->value("start_mono").toDouble()
                 : sidecar->value("end").toDouble() - recording.start_s;
-    recording.length_s = std::clamp(length, 0.0, longest_s);
+    recording.length_s = std::clamp(length, 0.0, longestRecording_s);
     return recording;
 }
 

@@ -1,6 +1,7 @@
 #include "common/settings/Settings.h"
 
 #include "common/files/NamedFile.h"
+#include "common/schema/SchemaKeys.h"
 #include "common/settings/DottedPath.h"
 #include "protocol/wire/JsonText.h"
 
@@ -9,8 +10,6 @@
 
 namespace hermes {
 namespace {
-
-const QString propertiesKey = QStringLiteral("properties");
 
 QJsonObject emptySchema() {
     return {{QStringLiteral("type"), QStringLiteral("object")},
@@ -34,7 +33,7 @@ QJsonObject propertyAt(QJsonObject schema, const QString &path) {
     return schema;
 }
 
-Error fileError(const QString &file, const QString &what) {
+Error settingsFileError(const QString &file, const QString &what) {
     return Error(ErrorCode::InputOutput, QStringLiteral("settings file %1: %2").arg(file, what),
                  QJsonObject{{QStringLiteral("path"), file}});
 }
@@ -160,7 +159,7 @@ Result<QByteArray> readSettingsFile(const QString &name) {
         return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + text.error().message,
                      text.error().data);
     if (text->startsWith("\xff\xfe") || text->startsWith("\xfe\xff"))
-        return fileError(name, QStringLiteral("line 1: found UTF-16, expected UTF-8"));
+        return settingsFileError(name, QStringLiteral("line 1: found UTF-16, expected UTF-8"));
     if (text->startsWith("\xef\xbb\xbf")) // as some editors write it
         text->remove(0, 3);
     return text;
@@ -168,9 +167,9 @@ Result<QByteArray> readSettingsFile(const QString &name) {
 
 Result<void> checkSettingsFile(const QString &name, const QByteArray &text) {
     if (text.size() > mostSettingsBytes)
-        return fileError(name, QStringLiteral("it would have %1 bytes, expected at most %2")
-                                   .arg(text.size())
-                                   .arg(mostSettingsBytes));
+        return settingsFileError(name, QStringLiteral("it would have %1 bytes, expected at most %2")
+                                           .arg(text.size())
+                                           .arg(mostSettingsBytes));
     const auto replaceable = checkReplaceable(name);
     if (replaceable)
         return {};
@@ -185,9 +184,9 @@ Result<QJsonObject> Settings::read(const QString &name) const {
     WireError error;
     const auto value = parseJson(*text, &error);
     if (!value)
-        return fileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
+        return settingsFileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
     if (!value->isObject())
-        return fileError(name, QStringLiteral("line 1: expected a JSON object"));
+        return settingsFileError(name, QStringLiteral("line 1: expected a JSON object"));
     const QJsonObject proposed = merged(merged(initial_, value->toObject()), insisted_);
     const auto violations = check(proposed);
     if (!violations.empty())
@@ -218,7 +217,7 @@ Result<QString> Settings::save(const QString &name) const {
     // commit() alone does not notice a full disk
     if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
         !file.commit())
-        return fileError(target, file.errorString());
+        return settingsFileError(target, file.errorString());
     return target;
 }
 

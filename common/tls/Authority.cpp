@@ -44,7 +44,7 @@ Result<void> append(const QString &path, const QByteArray &line) {
     return failed(path, why);
 }
 
-Result<QByteArray> read(const QString &path) {
+Result<QByteArray> readAuthorityFile(const QString &path) {
     QFile file(path);
     if (!file.open(QIODevice::ReadOnly))
         return failed(path, file.errorString() + QStringLiteral("; hermesctl keys init makes an authority"));
@@ -98,7 +98,8 @@ Result<void> Authority::fill(const QString &owner, int days, int daysOfOwner) co
 }
 
 Result<CertifiedKey> Authority::load() const {
-    const auto certificate = read(path(KeyFolder::authorityFile())), key = read(path(authorityKeyFile));
+    const auto certificate = readAuthorityFile(path(KeyFolder::authorityFile())),
+               key = readAuthorityFile(path(authorityKeyFile));
     if (!certificate || !key)
         return certificate ? key.error() : certificate.error();
     if (!belongTogether({*certificate, *key}))
@@ -159,7 +160,7 @@ Result<QString> Authority::issue(const CertificateSubject &subject, int days) co
 }
 
 Result<std::vector<Authority::Issued>> Authority::list() const {
-    const auto content = read(path(issuedFile));
+    const auto content = readAuthorityFile(path(issuedFile));
     if (!content)
         return content.error();
     const auto revoked = KeyFolder::revoked(folder_);
@@ -209,7 +210,7 @@ Result<int> Authority::revoke(const QString &nameOrSerial) const {
 }
 
 Result<void> Authority::takeBack(const QString &folder) const {
-    const auto certificate = read(QDir(folder).filePath(KeyFolder::ownFile()));
+    const auto certificate = readAuthorityFile(QDir(folder).filePath(KeyFolder::ownFile()));
     if (!certificate)
         return certificate.error();
     const auto revoked = revoke(toPeer(QSslCertificate(*certificate)).serial);

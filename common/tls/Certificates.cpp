@@ -15,7 +15,7 @@ namespace {
 constexpr long secondsOfDay = 24 * 3600;
 constexpr long clockTolerance_s = 24 * 3600; // a robot without a clock of its own begins in the past
 constexpr int serialBytes = 8;
-constexpr int longestName = 64; // X.520 ub-common-name
+constexpr int longestCommonName = 64; // X.520 ub-common-name
 
 template <auto Free>
 struct Freeing {
@@ -89,9 +89,10 @@ bool describe(X509 *certificate, EVP_PKEY *key, const CertificateSubject &subjec
 
 // Signed by the issuer; null: by its own key.
 Result<CertifiedKey> make(const CertificateSubject &subject, int days, X509 *issuer, EVP_PKEY *issuerKey) {
-    if (subject.name.isEmpty() || subject.name.size() > longestName)
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("the name of a certificate has 1 to %1 characters").arg(longestName));
+    if (subject.name.isEmpty() || subject.name.size() > longestCommonName)
+        return Error(
+            ErrorCode::InvalidParams,
+            QStringLiteral("the name of a certificate has 1 to %1 characters").arg(longestCommonName));
     const Key key(EVP_EC_gen("P-256"));
     const Certificate made(X509_new());
     if (!key || !made || !describe(made.get(), key.get(), subject, days))

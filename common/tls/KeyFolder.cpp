@@ -27,7 +27,7 @@ Error wrong(const QString &file, const QString &what, const QString &how = remed
             QJsonObject{{QStringLiteral("path"), file}}};
 }
 
-Result<QByteArray> read(const QString &path) {
+Result<QByteArray> readKeyFile(const QString &path) {
     QFile file(path);
     const QFileInfo info(path);
     if (info.exists() && (!info.isFile() || info.size() > mostBytes)) // a pipe is not opened: that waits
@@ -40,7 +40,7 @@ Result<QByteArray> read(const QString &path) {
 }
 
 Result<QByteArray> readSecret(const QString &path) {
-    const Result<QByteArray> content = read(path);
+    const Result<QByteArray> content = readKeyFile(path);
     constexpr QFile::Permissions others = QFile::ReadGroup | QFile::WriteGroup | QFile::ExeGroup |
                                           QFile::ReadOther | QFile::WriteOther | QFile::ExeOther;
     if (content && permissionsTellReaders() && (QFile::permissions(path) & others))
@@ -76,7 +76,8 @@ Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
     const QDir dir(folder);
     const QString authorityPath = dir.filePath(authorityFile()), ownPath = dir.filePath(ownFile()),
                   keyPath = dir.filePath(keyFile());
-    const auto authorityPem = read(authorityPath), ownPem = read(ownPath), keyPem = readSecret(keyPath);
+    const auto authorityPem = readKeyFile(authorityPath), ownPem = readKeyFile(ownPath),
+               keyPem = readSecret(keyPath);
     for (const auto *content : {&authorityPem, &ownPem, &keyPem})
         if (!*content)
             return content->error();
@@ -103,7 +104,7 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
         isAbsent(path) && place.isReadable() && (place.isExecutable() || !permissionsTellReaders());
     if (isNone)
         return QSet<QByteArray>();
-    const auto content = read(path);
+    const auto content = readKeyFile(path);
     if (!content)
         return content.error();
     QSet<QByteArray> serials;

@@ -7,12 +7,6 @@
 #include <utility>
 
 namespace hermes::motorcontrol {
-namespace {
-
-constexpr double overspeed = 1.5; // times full duty: faster no wheel turns
-
-} // namespace
-
 DriveEngine::DriveEngine(const MotorSettings &settings) {
     for (int i = 0; i < controllerCount; ++i) {
         const auto onLine =
@@ -30,7 +24,8 @@ void DriveEngine::configure(const MotorSettings &settings) {
     drive_.configure(settings.drive);
     odometry_.setNoise(settings.odometry);
     tracker_.configure(settings.wheels, settings.countsPerTurn,
-                       overspeed * settings.pid.qpps * 2 * vectorlib::pi / settings.countsPerTurn);
+                       MotorController::overspeed * settings.pid.qpps * 2 * vectorlib::pi /
+                           settings.countsPerTurn);
     faults_.configure(settings);
     for (const auto &controller : controllers_)
         controller->configure(settings);

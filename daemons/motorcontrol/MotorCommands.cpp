@@ -40,19 +40,21 @@ Result<QJsonValue> nullOr(const Result<void> &result) {
 
 } // namespace
 
-Command MotorControl::loopCommand(const QString &name, const QString &summary,
-                                  const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
-    return Command(name, summary)
+hermes::Command
+MotorControl::loopCommand(const QString &name, const QString &summary,
+                          const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
+    return hermes::Command(name, summary)
         .returnsNull()
         .asyncHandler([this, work](const Call &call, const Reply &reply) {
             inLoop([call, work](DriveLoop &loop) { return work(call, loop); }, reply);
         });
 }
 
-Command MotorControl::stopCommand(const QString &name, const QString &summary,
-                                  const std::function<void(const Call &, Drive &)> &stop) {
-    return Command(name, summary + ". Tells which controllers have confirmed that they stand: a set-point of "
-                                   "zero acknowledged, and since then no motion of the encoders")
+hermes::Command MotorControl::stopCommand(const QString &name, const QString &summary,
+                                          const std::function<void(const Call &, Drive &)> &stop) {
+    return hermes::Command(
+               name, summary + ". Tells which controllers have confirmed that they stand: a set-point of "
+                               "zero acknowledged, and since then no motion of the encoders")
         .param(Field::number("wait_s",
                              "Answers when all have confirmed, after this time at the latest; 0: at once")
                    .unit("s")
@@ -82,7 +84,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
         });
 }
 
-Command
+hermes::Command
 MotorControl::freshLoopCommand(const QString &name, const QString &summary,
                                const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
     const auto unlessVoid = [work](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
@@ -110,7 +112,7 @@ void MotorControl::declareMotorCommands() {
                    .param(stampField())
                    .with("x-needs-lease", true)
                    .example({{"vx", 0.3}, {"vy", 0}, {"omega", 0.1}}, QJsonValue()));
-    Command wheels = freshLoopCommand(
+    hermes::Command wheels = freshLoopCommand(
         "motor.wheels",
         "Turns each wheel with its own speed, until the next command: for tests with the "
         "robot jacked up",
@@ -144,11 +146,12 @@ void MotorControl::declareMotorCommands() {
                        return QJsonValue();
                    })
                    .param(clientField()));
-    addCommand(Command("motor.state",
-                       "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
-                   .needs(Role::Observer)
-                   .gives<MotorState>()
-                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
+    addCommand(
+        hermes::Command("motor.state",
+                        "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
+            .needs(Role::Observer)
+            .gives<MotorState>()
+            .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
     addCommand(
         loopCommand("odometry.reset", "Sets the pose, as certain",
                     [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
@@ -204,12 +207,13 @@ void MotorControl::declareControlCommands() {
                            })
                    .param(clientField())
                    .gives<LeaseState>());
-    addCommand(Command("control.state", "Who holds the control, and for how long without a further command")
-                   .needs(Role::Observer)
-                   .gives<LeaseState>()
-                   .handler([this](const Call &) -> Result<QJsonValue> {
-                       return asJson(told_.lease.state(monotonicNow()));
-                   }));
+    addCommand(
+        hermes::Command("control.state", "Who holds the control, and for how long without a further command")
+            .needs(Role::Observer)
+            .gives<LeaseState>()
+            .handler([this](const Call &) -> Result<QJsonValue> {
+                return asJson(told_.lease.state(monotonicNow()));
+            }));
 }
 
 } // namespace hermes::motorcontrol

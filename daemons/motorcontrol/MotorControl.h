@@ -30,20 +30,21 @@ private:
     void declareMotorCommands();
     void declareControlCommands();
     /// A stop: answers what is confirmed to stand, at once or when all is, after wait_s at the latest.
-    Command stopCommand(const QString &name, const QString &summary,
-                        const std::function<void(const Call &, Drive &)> &stop);
+    hermes::Command stopCommand(const QString &name, const QString &summary,
+                                const std::function<void(const Call &, Drive &)> &stop);
     void answerStops();
 
     void afterGap(const QString &text);
     /// Runs in the loop's thread, sends what follows from it at once, and gives the reply.
     void inLoop(const Work &work, const Reply &reply);
     /// A command that acts upon the loop.
-    Command loopCommand(const QString &name, const QString &summary,
-                        const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work);
+    hermes::Command loopCommand(const QString &name, const QString &summary,
+                                const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work);
 
     /// The same for one that was received after the last gap.
-    Command freshLoopCommand(const QString &name, const QString &summary,
-                             const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work);
+    hermes::Command
+    freshLoopCommand(const QString &name, const QString &summary,
+                     const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work);
 
     void postJobs();
     void takeReports();

@@ -21,7 +21,6 @@ constexpr double shortestPatience_s = 0.03; // FTDI adapters hold bytes for up t
 constexpr double timeoutMargin_s = 0.1;     // of the controllers' own clock
 constexpr double barredSilence_s = 5;
 constexpr double readingPause_s = 0.02; // while it is seen to stand
-constexpr double overspeed = 1.5;       // times full duty: faster no motor turns
 constexpr double standMargin_s = 0.2;   // and half of the time of braking more: motors lag behind
 constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 

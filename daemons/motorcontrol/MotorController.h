@@ -28,6 +28,7 @@ public:
     static constexpr double longestTimeout_s =
         0.5; ///< that the settings allow; what a controller may have from before
     static constexpr double leastRate_Hz = 10; ///< of set-points and readings: slower nothing is driven
+    static constexpr double overspeed = 1.5;   ///< times full duty: faster no motor turns
 
     /// A request, and how long its answer is waited for (seconds). For one that is patient nothing else is
     /// driven.

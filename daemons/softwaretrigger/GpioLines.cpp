@@ -1,55 +1,80 @@
 #include "daemons/softwaretrigger/GpioLines.h"
 
+#include <QFileInfo>
+
 #include <cerrno>
 #include <cstring>
-#include <gpiod.h>
+#include <fcntl.h>
+#include <linux/gpio.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
 
 namespace hermes::softwaretrigger {
+namespace {
 
-bool GpioLines::isAvailable() {
-    return true;
+QString chipPath(const QString &chip) {
+    bool isNumber = false;
+    chip.toUInt(&isNumber);
+    return chip.startsWith('/') ? chip : (isNumber ? "/dev/gpiochip" : "/dev/") + chip;
 }
 
-Result<GpioLines::Line> GpioLines::take(const QString &chip, int offset) {
+/// A descriptor, or -1. What is no GPIO chip is not opened: that alone may start a device, as a watchdog.
+int openChip(const QByteArray &path) {
+    struct stat status {};
+    if (::stat(path.constData(), &status) != 0)
+        return -1;
+    const auto subsystem =
+        QString("/sys/dev/char/%1:%2/subsystem").arg(major(status.st_rdev)).arg(minor(status.st_rdev));
+    if (!S_ISCHR(status.st_mode) ||
+        QFileInfo(QFileInfo(subsystem).canonicalFilePath()).fileName() != "gpio") {
+        errno = ENODEV;
+        return -1;
+    }
+    return ::open(path.constData(), O_RDWR | O_CLOEXEC);
+}
+
+bool setLine(int line, bool on) {
+    gpio_v2_line_values values{};
+    values.bits = on;
+    values.mask = 1;
+    return ::ioctl(line, GPIO_V2_LINE_SET_VALUES_IOCTL, &values) == 0;
+}
+
+} // namespace
+
+Result<void> GpioLines::set(const QString &chip, int offset, bool on) {
     const auto failed = [&](const char *what) {
         return Error(ErrorCode::DeviceFault, QString("GPIO chip %1, line %2: %3: %4")
                                                  .arg(chip)
                                                  .arg(offset)
                                                  .arg(what, QString::fromLocal8Bit(std::strerror(errno))));
     };
-    Line result;
-    result.chip = ::gpiod_chip_open_lookup(chip.toLocal8Bit().constData());
-    if (!result.chip)
-        return failed("cannot open the chip");
-    result.line = ::gpiod_chip_get_line(result.chip, unsigned(offset));
-    if (!result.line || ::gpiod_line_request_output(result.line, "hermes", 0) != 0) {
-        const Error error = failed(result.line ? "cannot take the line" : "there is no such line");
-        ::gpiod_chip_close(result.chip);
-        return error;
-    }
-    return result;
-}
-
-Result<void> GpioLines::set(const QString &chip, int offset, bool on) {
     const QString key = QString("%1 %2").arg(chip).arg(offset);
     if (!lines_.contains(key)) {
-        auto taken = take(chip, offset);
-        if (!taken)
-            return taken.error();
-        lines_.insert(key, *taken);
+        const int device = openChip(chipPath(chip).toLocal8Bit());
+        if (device < 0)
+            return failed("cannot open the chip");
+        gpio_v2_line_request request{};
+        request.offsets[0] = unsigned(offset);
+        request.num_lines = 1;
+        request.config.flags = GPIO_V2_LINE_FLAG_OUTPUT;
+        std::strcpy(request.consumer, "hermes");
+        const bool isTaken = ::ioctl(device, GPIO_V2_GET_LINE_IOCTL, &request) == 0;
+        const Error error = failed(errno == EINVAL ? "there is no such line" : "cannot take the line");
+        ::close(device);
+        if (!isTaken)
+            return error;
+        lines_.insert(key, request.fd);
     }
-    if (::gpiod_line_set_value(lines_.value(key).line, on) != 0)
-        return Error(ErrorCode::DeviceFault, QString("GPIO chip %1, line %2: cannot set: %3")
-                                                 .arg(chip)
-                                                 .arg(offset)
-                                                 .arg(QString::fromLocal8Bit(std::strerror(errno))));
-    return {};
+    return setLine(lines_.value(key), on) ? Result<void>() : failed("cannot set");
 }
 
 void GpioLines::close() {
-    for (const Line &line : qAsConst(lines_)) {
-        ::gpiod_line_set_value(line.line, 0);
-        ::gpiod_chip_close(line.chip);
+    for (const int line : qAsConst(lines_)) {
+        setLine(line, false);
+        ::close(line);
     }
     lines_.clear();
 }

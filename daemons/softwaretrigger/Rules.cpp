@@ -2,7 +2,6 @@
 #include "common/client/DaemonAddress.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "daemons/softwaretrigger/Definition.h"
-#include "daemons/softwaretrigger/GpioLines.h"
 #include "protocol/wire/JsonTextWriter.h"
 
 #include <QHash>
@@ -108,8 +107,6 @@ void Checker::checkAction(const QString &base, const QJsonObject &action) {
                "another command; a trigger that fires after this one has when.trigger");
     if (kind == "serial" || kind == "pulse")
         checkSerial(base, action);
-    if (kind == "gpio" && !GpioLines::isAvailable())
-        refuse(base + "do", kind, "another action: this program was built without libgpiod");
 }
 
 void Checker::checkDaemon(const QString &member, const QJsonValue &daemon) {

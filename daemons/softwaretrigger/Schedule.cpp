@@ -7,12 +7,6 @@
 #include <vector>
 
 namespace hermes::softwaretrigger {
-namespace {
-
-constexpr int realtimePriority = 10; // below the motors'
-
-} // namespace
-
 Schedule::Schedule()
     : thread_([this] { run(); }) {}
 

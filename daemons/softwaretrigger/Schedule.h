@@ -26,6 +26,7 @@ public:
         quint64 missed = 0; ///< before it, since the last call
     };
     using Function = std::function<void(const Due &)>;
+    static constexpr int realtimePriority = 10; ///< below the motors'
 
     Schedule();
     ~Schedule() override;

@@ -4,17 +4,11 @@
 #include "common/Time.h"
 
 namespace hermes::softwaretrigger {
-namespace {
-
-constexpr int realtimePriority = 10; // below the motors'
-
-} // namespace
-
 TriggerEngine::TriggerEngine(const QString &folder, double fileBytes)
     : log_(folder, fileBytes, Firing::csvHeader()) {}
 
 void TriggerEngine::start() {
-    realtime_ = becomeRealtime(realtimePriority);
+    realtime_ = becomeRealtime(Schedule::realtimePriority);
     schedule_ = std::make_unique<Schedule>();
     runner_ = std::make_unique<ActionRunner>(nullptr);
 }

@@ -9,7 +9,8 @@ namespace hermes::velodynelogger {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1000000000;
+constexpr std::int64_t longStep_ns = 1000000000;
+
 /// From one stamp of the hour to the next, the shorter way round.
 std::int64_t stampStep(std::int64_t from_us, std::int64_t to_us) {
     constexpr std::int64_t hour_us = velodyne::stampPeriod_us;
@@ -52,7 +53,7 @@ void PacketAccount::follow(const Datagram &datagram) {
     lastReceive_ns_ = datagram.stamp_ns;
     if (!first && waited_ns < 0)
         ++counts_.hostClockSteps;
-    if (!first && step_us <= 0 && step_us * 1000 > -second_ns) {
+    if (!first && step_us <= 0 && step_us * 1000 > -longStep_ns) {
         ++counts_.late;
         if (step_us < 0 && counts_.missing > 0) // it was taken for missing
             --counts_.missing;
@@ -61,7 +62,7 @@ void PacketAccount::follow(const Datagram &datagram) {
     lastStamp_us_ = stamp_us;
     // A short step of the sensor's clock is believed whatever the host's does; a long one only if they agree.
     const std::int64_t step_ns = step_us * 1000;
-    if (!first && step_ns > 0 && (step_ns < second_ns || std::abs(step_ns - waited_ns) <= second_ns))
+    if (!first && step_ns > 0 && (step_ns < longStep_ns || std::abs(step_ns - waited_ns) <= longStep_ns))
         counts_.missing +=
             std::uint64_t(std::max<std::int64_t>(0, (step_ns + period_ns / 2) / period_ns - 1));
     else if (!first)

@@ -1,13 +1,12 @@
 #include "gui/hermesctl/Descriptions.h"
 
+#include "common/schema/SchemaKeys.h"
 #include "common/schema/SchemaText.h"
 
 #include <QJsonArray>
 
 namespace hermes::ctl {
 namespace {
-
-const QString propertiesKey = QStringLiteral("properties");
 
 void addPaths(QStringList &paths, const QJsonObject &schema, const QString &prefix, bool withGroups) {
     const QJsonObject properties = schema[propertiesKey].toObject();

@@ -14,7 +14,7 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr int most = 20;
+constexpr int mostHosts = 20;
 constexpr qint64 mostBytes = 10000;
 
 QString fileName() {
@@ -26,7 +26,9 @@ QStringList reached() {
     QFile file(fileName());
     if (!file.open(QIODevice::ReadOnly))
         return {};
-    return QString::fromUtf8(file.read(mostBytes)).split(QLatin1Char('\n'), Qt::SkipEmptyParts).mid(0, most);
+    return QString::fromUtf8(file.read(mostBytes))
+        .split(QLatin1Char('\n'), Qt::SkipEmptyParts)
+        .mid(0, mostHosts);
 }
 
 /// Empty: one of this computer, or none.
@@ -51,7 +53,7 @@ void rememberHost(const QString &address) {
     QDir().mkpath(QFileInfo(fileName()).path());
     QSaveFile file(fileName());
     if (file.open(QIODevice::WriteOnly) &&
-        file.write(hosts.mid(0, most).join(QLatin1Char('\n')).toUtf8()) > 0)
+        file.write(hosts.mid(0, mostHosts).join(QLatin1Char('\n')).toUtf8()) > 0)
         file.commit();
 }
 

@@ -1,5 +1,6 @@
 #include "gui/hermesctl/Markdown.h"
 
+#include "common/schema/SchemaKeys.h"
 #include "common/schema/SchemaText.h"
 #include "protocol/wire/JsonText.h"
 
@@ -157,7 +158,6 @@ QString topicSection(const QString &heading, const QJsonObject &topic) {
 
 QString settingLines(const QJsonObject &schema, const QJsonObject &butFor, const QString &prefix) {
     QString lines;
-    const QString propertiesKey = QStringLiteral("properties");
     const QJsonObject properties = schema[propertiesKey].toObject();
     const QJsonObject others = butFor[propertiesKey].toObject();
     for (auto property = properties.begin(); property != properties.end(); ++property) {

@@ -1,6 +1,7 @@
 // hermesctl doc --all: what several daemons tell of themselves, on one page.
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
+#include "common/schema/SchemaKeys.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Markdown.h"
@@ -72,7 +73,6 @@ QJsonArray without(const QJsonArray &list, const QJsonArray &common) {
 
 /// A schema with the settings only that are alike in both.
 QJsonObject alike(const QJsonObject &a, const QJsonObject &b) {
-    const QString propertiesKey = QStringLiteral("properties");
     const QJsonObject ofA = a[propertiesKey].toObject(), ofB = b[propertiesKey].toObject();
     QJsonObject result;
     for (auto one = ofA.begin(); one != ofA.end(); ++one) {

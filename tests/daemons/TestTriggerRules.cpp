@@ -15,6 +15,7 @@ private Q_SLOTS:
     void refuses_data();
     void refuses();
     void accepts();
+    void opensNothingButGpioChips();
     void refusesCycles();
     void refusesToRemoveWhatOthersFollow();
     void refusesNumbersThatAreNone();
@@ -126,17 +127,22 @@ void TestTriggerRules::accepts() {
     QJsonArray actions{
         callTarget("count"),
         QJsonObject{{"do", "serial"}, {"url", "serial:///dev/none?baud=9600"}, {"hex", "00ff"}},
-        QJsonObject{{"do", "pulse"}, {"url", "serial:///dev/none"}, {"line", "dtr"}, {"length_s", 0.1}}};
-    const QJsonObject gpio{{"do", "gpio"}, {"chip", "no-such-chip"}, {"offset", 3}, {"length_s", 0.1}};
-    if (GpioLines::isAvailable())
-        actions.append(gpio);
-    else
-        QVERIFY(
-            failure("trigger.define", {{"id", "gpio"}, {"when", byCommand()}, {"actions", QJsonArray{gpio}}})
-                .message.contains("libgpiod"));
+        QJsonObject{{"do", "pulse"}, {"url", "serial:///dev/none"}, {"line", "dtr"}, {"length_s", 0.1}},
+        QJsonObject{{"do", "gpio"}, {"chip", "no-such-chip"}, {"offset", 3}, {"length_s", 0.1}}};
     define("command", byCommand(), actions);
     QCOMPARE(call("trigger.list").toArray().size(), 7);
     QCOMPARE(listed("command")["actions"].toArray(), actions);
+}
+
+void TestTriggerRules::opensNothingButGpioChips() {
+    for (const char *chip : {"/dev/null", "null", "/dev", "no-such-chip", "99"}) {
+        const Result<void> set = GpioLines().set(chip, 3, true);
+        QVERIFY(!set);
+        QVERIFY(set.error().is(ErrorCode::DeviceFault));
+        QVERIFY2(set.error().message.startsWith(
+                     QString("GPIO chip %1, line 3: cannot open the chip: No such ").arg(chip)),
+                 qPrintable(set.error().message));
+    }
 }
 
 void TestTriggerRules::refusesCycles() {

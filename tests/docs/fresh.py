@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follows docs/getting-started.md in a fresh Debian 12, as somebody who has read nothing: builds Hermes there, then takes each path
+"""Follows docs/getting-started.md in a fresh Debian, as somebody who has read nothing: builds Hermes there, then takes each path
 in a terminal of its own, block by block as printed, and tells how long each took.
 
 fresh.py [--debian FOLDER] [--keep] [PATH ...]   (numbers of paths; all of them without one)
@@ -86,7 +86,7 @@ def run(arguments):
         fresh_debian.make(root, arguments.debian, ["sudo"])
         student = Student(root)
         student.prepare()
-        print(f"{time.monotonic() - since:6.1f} s  a fresh Debian 12", flush=True)
+        print(f"{time.monotonic() - since:6.1f} s  a fresh Debian", flush=True)
         print(f"{student.follow('build', found[0]):6.1f} s  the build, {len(found[0])} blocks", flush=True)
         late = []
         for path in arguments.paths or sorted(set(found) - {0}):
@@ -106,7 +106,7 @@ def run(arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--debian", metavar="FOLDER", help="copy the Debian 12 in this folder instead of making one")
+    parser.add_argument("--debian", metavar="FOLDER", help="copy the Debian in this folder instead of making one")
     parser.add_argument("--keep", action="store_true", help="leave the Debian there")
     parser.add_argument("paths", metavar="PATH", nargs="*", type=int, help="a path's number")
     try:

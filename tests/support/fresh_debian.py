@@ -1,5 +1,6 @@
-"""Makes a fresh Debian 12 in a folder, for tests that begin where a user does."""
+"""Makes a fresh Debian, as new as this one, in a folder: for tests that begin where a user does."""
 import os
+import platform
 import shutil
 import subprocess
 
@@ -27,11 +28,12 @@ def need(*programs):
 
 
 def make(folder, like, packages):
-    """A fresh Debian 12 in the folder with these packages, or a copy of the one in the folder `like`."""
+    """A fresh Debian of this machine's release in the folder with these packages, or a copy of the one in the folder `like`."""
     if like:
         subprocess.run(["cp", "-a", like + "/.", folder], check=True)
         return
-    made = subprocess.run(["debootstrap", "--variant=minbase", "--include=" + ",".join(packages), "bookworm", folder, mirror()],
+    release = platform.freedesktop_os_release()["VERSION_CODENAME"]
+    made = subprocess.run(["debootstrap", "--variant=minbase", "--include=" + ",".join(packages), release, folder, mirror()],
                           capture_output=True, text=True, check=False)
     if made.returncode != 0:
         raise RuntimeError(f"debootstrap ended with status {made.returncode}: {(made.stdout + made.stderr)[-1500:]}")
