@@ -8,10 +8,10 @@ NAP_S = 0.004
 
 class Lateness:
     """How late a thread without work is woken, on each processor, while this is open: what holds up a nap of a few milliseconds
-    here holds up the program under test too."""
+    here holds up the program under test too. It also counts in times_over how often that was more than `limit_s`."""
 
-    def __init__(self):
-        self.late_s, self.ends = {}, False
+    def __init__(self, limit_s=0.05):
+        self.late_s, self.ends, self.limit_s, self.times_over = {}, False, limit_s, 0
         self.threads = [threading.Thread(target=self.watch, args=(number,)) for number in os.sched_getaffinity(0)]
 
     def __enter__(self):
@@ -34,5 +34,6 @@ class Lateness:
         while not self.ends:
             due = time.monotonic() + NAP_S
             time.sleep(NAP_S)
-            late = self.late_s
-            late[processor] = max(late.get(processor, 0.0), time.monotonic() - due)
+            late, late_s = self.late_s, time.monotonic() - due
+            late[processor] = max(late.get(processor, 0.0), late_s)
+            self.times_over += late_s > self.limit_s
