@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Fails when a test of this build is not of exactly one tier (CONTRIBUTING.md), has a mark that there is not, or is marked `exact` without
-being a unit test; when a tier has no test; and when a list of a tier in a CMakeLists.txt names what is no test."""
+being a unit test; when a tier has no test; and when a list in a CMakeLists.txt names what is no test, or two name one test."""
 import collections
 import glob
 import json
@@ -51,6 +51,8 @@ def main():
     assert len(lists) > 50, lists
     wrong += [f"tests_of_{tier} names {name}, which is no test" for tier, name in lists
               if tier not in TIERS | MARKS or has_all and name not in labels]
+    named = collections.Counter(name for tier, name in lists if tier in TIERS)
+    wrong += [f"{name} is in the lists of {count} tiers" for name, count in named.items() if count > 1]
     counts = collections.Counter(label for own in labels.values() for label in own)
     wrong += [f"no test is {label}" for label in sorted(TIERS | MARKS) if has_all and not counts[label]]
     print("\n".join(wrong) or ", ".join(f"{counts[label]} {label}" for label in sorted(TIERS | MARKS)))
