@@ -160,11 +160,14 @@ class ScannerTest(unittest.TestCase):
         begin = self.simulator.call("sim.state")["pose"]
         segments = matcher.call("matcher.state")["map_segments"]
         self.simulator.call("sim.drive")
-        time.sleep(8)  # on its way
+
+        def wait_for_way(metres):
+            wait_for("a way", lambda: math.dist((begin["x"], begin["y"]), [self.simulator.call("sim.state")["pose"][axis] for axis in "xy"]) > metres)
+        wait_for_way(1)
         self.publisher.send_signal(signal.SIGSTOP)
         time.sleep(0.7)  # as on a busy computer
         self.publisher.send_signal(signal.SIGCONT)
-        time.sleep(2)
+        wait_for_way(2)
         self.simulator.call("sim.halt")
         wait_for("standstill", lambda: abs(self.simulator.call("sim.state")["twist"]["vx"]) < 1e-6)
         count = matcher.call("matcher.state")["scans"]

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """An emergency stop is answered at once whatever else clients send that the limits allow: HERMES_TRIALS stops (20) in each kind of
-traffic, by a client that was there before, and by new ones where all places are taken."""
+traffic, by a client that was there before, and by new ones where all places are taken. Nor does a hang-up of the terminal leave the
+robot moving."""
 import contextlib
 import json
 import math
 import os
 import random
 import select
+import signal
 import socket
 import subprocess
 import sys
@@ -101,6 +103,7 @@ TRAFFIC = {
     "batches of 1,000 rpc.discover": (8, lambda port: pump(port, batch("rpc.discover", 1000))),
     "batches of 1 MB": (8, lambda port: pump(port, batch("daemon.status", 950, x="y" * 1000))),
     "batches of 1,000 motor.drive": (8, lambda port: pump(port, batch("motor.drive", 1000, vx=0.1))),
+    "motor.drive, answers unread": (8, lambda port: pump(port, line(request("motor.drive", vx=0.3)) * 200, reads=False)),
     "other stops": (8, lambda port: pump(port, line(request("motor.stop", wait_s=0.1)) * 1000)),
     "one request after another": (8, lambda port: pump(port, line(request("daemon.status")) * 1000)),
     "the same, answers unread": (8, lambda port: pump(port, line(request("settings.get")) * 1000, reads=False)),
@@ -205,6 +208,19 @@ def check(kind, port):
             kept.close()
 
 
+def check_hang_up(driven, simulator):
+    def goes():
+        motors.call("motor.drive", vx=0.3)
+        return simulator.call("sim.state")["twist"]["vx"] > 0.2
+    with driven.connect() as motors:
+        motors.call("motor.reset_estop")
+        motors.call("control.acquire", client="test", timeout_s=5)
+        wait_for("motion", goes, 10)
+        driven.process.send_signal(signal.SIGHUP)
+    assert driven.process.wait(10) == 0, driven.last_words()
+    wait_for("standing", lambda: simulator.call("sim.state")["twist"]["vx"] == 0, 2)
+
+
 def main():
     if len(sys.argv) == 3:
         if "silent" not in sys.argv[1]:  # those say so when all are connected
@@ -214,7 +230,7 @@ def main():
         simulated, link = simulated_hall(folder)
         driven = None
         try:
-            simulated.connect().close()
+            simulator = simulated.connect()
             url = f"serial://{link}?baud=115200"
             driven = Process(BINARIES, "motorcontrol", free_port(0), folder,
                              {"controllers.1.url": url, "controllers.2.url": url})
@@ -223,6 +239,7 @@ def main():
             kinds = os.environ.get("HERMES_TRAFFIC", "").split(";") if "HERMES_TRAFFIC" in os.environ else TRAFFIC
             late = [kind for kind in kinds if not check(kind, driven.port)]
             assert not late, f"emergency stops are late in: {', '.join(late)}"
+            check_hang_up(driven, simulator)
         finally:
             if driven:
                 driven.stop()
