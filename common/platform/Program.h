@@ -23,4 +23,8 @@ struct ProgramEnd {
 std::optional<ProgramEnd> runProgram(const std::string &name, const std::string &argument,
                                      const std::string &input);
 
+/// Puts another program in the place of this one, with the same standard streams: of the search path, or that
+/// file where the name has a folder. Comes back only when there is none.
+void becomeProgram(const std::string &name, const std::vector<std::string> &arguments);
+
 } // namespace hermes

@@ -72,4 +72,14 @@ std::optional<ProgramEnd> runProgram(const std::string &name, const std::string 
                       contents(err.get())};
 }
 
+void becomeProgram(const std::string &name, const std::vector<std::string> &arguments) {
+    std::vector<std::string> words{name};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char *> pointers;
+    for (std::string &word : words)
+        pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    ::execvp(name.c_str(), pointers.data());
+}
+
 } // namespace hermes

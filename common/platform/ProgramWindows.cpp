@@ -137,4 +137,22 @@ std::optional<ProgramEnd> runProgram(const std::string &name, const std::string 
     return ProgramEnd{status != 0, out.contents(), err.contents()};
 }
 
+void becomeProgram(const std::string &name, const std::vector<std::string> &arguments) {
+    const fs::path own = fs::u8path(name);
+    const fs::path program = own.has_parent_path() ? fs::u8path(name + ".exe") : findProgram(name);
+    std::wstring line = quoted(program.wstring());
+    for (const std::string &argument : arguments)
+        line += L' ' + quoted(fs::u8path(argument).wstring());
+    STARTUPINFOW start{};
+    start.cb = sizeof start;
+    PROCESS_INFORMATION child{};
+    if (program.empty() || !::CreateProcessW(program.c_str(), line.data(), nullptr, nullptr, TRUE, 0, nullptr,
+                                             nullptr, &start, &child))
+        return;
+    ::WaitForSingleObject(child.hProcess, INFINITE);
+    DWORD status = 1;
+    ::GetExitCodeProcess(child.hProcess, &status);
+    ::ExitProcess(status);
+}
+
 } // namespace hermes
