@@ -16,6 +16,11 @@ inline int runExperiment(const QStringList &arguments, QByteArray *error = nullp
     return process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
 }
 
+/// Whether plots are drawn here.
+inline bool hasMatplotlib() {
+    return QProcess::execute("/usr/bin/python3", {"-c", "import matplotlib"}) == 0;
+}
+
 inline QList<QByteArray> lines(const QString &path) {
     QFile file(path);
     return file.open(QIODevice::ReadOnly) ? file.readAll().trimmed().split('\n') : QList<QByteArray>();

@@ -1,7 +1,9 @@
 #include "gui/vector/MapRun.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/ProgressParts.h"
+#include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
+#include "tests/support/Latex.h"
 #include "vectorlib/experiments/ExperimentCommand.h"
 
 #include <vectorlib/mapping/MapAligner.h>
@@ -14,8 +16,8 @@
 using namespace hermes::experiments;
 using namespace hermes::vector;
 
-/// Every experiment, and whatever else takes long, tells how far it is, up to its end. Experiments that are
-/// done at once are listed here.
+/// Every experiment, and whatever else takes long, tells how far it is, up to its end, and leaves a whole
+/// document where it draws. Experiments that are done at once, and those that draw nothing, are listed here.
 class TestExperimentProgress : public QObject {
     Q_OBJECT
 
@@ -23,6 +25,7 @@ class TestExperimentProgress : public QObject {
     const QStringList short_{"segmentation-room", "segmentation-objects", "adaptive-threshold", "threshold",
                              "real-segmentation", "empty-room",           "corridor",           "laboratory",
                              "criterion",         "registration-space",   "free-copy"};
+    const QStringList undrawn_{"pairs", "places", "drawn-places", "place-trust", "pose-trust"};
 
     static QStringList names() {
         CLI::App app;
@@ -108,6 +111,25 @@ private Q_SLOTS:
         QVERIFY(told.isSteady);
         QCOMPARE(told.last, told.total);
         QVERIFY2(isShort || told.calls > 1, "to be told, or to be listed as short");
+
+        const QDir left(QString::fromStdString(command.folder));
+        const QStringList documents = left.entryList({"*.tex"}), figures = left.entryList({"*-figures.json"});
+        QCOMPARE(documents.isEmpty(), undrawn_.contains(QTest::currentDataTag()));
+        if (hasMatplotlib())
+            for (const QString &file : figures)
+                QCOMPARE(QProcess::execute(qEnvironmentVariable("HERMES_SOURCE") +
+                                               "/vectorlib/experiments/plot.py",
+                                           {left.filePath(file)}),
+                         0);
+        static const hermes::Latex latex;
+        for (const QString &name : documents) {
+            const QList<QByteArray> text = lines(left.filePath(name));
+            QVERIFY(text.first().startsWith("\\documentclass") && text.last() == "\\end{document}");
+            QVERIFY(text.join().contains("tikzpicture") || text.join().contains("\\includegraphics"));
+            const QByteArray fault =
+                latex.missing().isEmpty() ? hermes::Latex::fault(left.filePath(name)) : QByteArray();
+            QVERIFY2(fault.isEmpty(), fault.constData());
+        }
     }
 
     void mapIsToldToItsEnd() {

@@ -59,10 +59,14 @@ void TestExperiments::writesTablePlotsAndDocument() {
     QVERIFY(rows.size() >= 3);
     QVERIFY(rows.value(1).startsWith("0.02,200,"));
     QVERIFY(lines(folder.filePath("new/corners.tex")).last() == "\\end{document}");
-    if (error_.contains("gnuplot is not installed"))
-        QSKIP("gnuplot is not installed");
-    for (const char *plot : {"time", "lines", "area"})
+    QVERIFY(lines(folder.filePath("new/corners-figures.json")).last().startsWith("{\"plots\":[{"));
+    QCOMPARE(error_.contains("matplotlib is not installed"), !hasMatplotlib());
+    if (!hasMatplotlib())
+        QSKIP("matplotlib is not installed");
+    for (const char *plot : {"time", "lines", "area"}) {
         QVERIFY(lines(folder.filePath(QString("new/corners-%1.svg").arg(plot))).last() == "</svg>");
+        QVERIFY(lines(folder.filePath(QString("new/corners-%1.pdf").arg(plot))).last() == "%%EOF");
+    }
 }
 
 void TestExperiments::sameSeedGivesTheSameLines() {

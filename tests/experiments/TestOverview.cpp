@@ -1,12 +1,9 @@
 #include "tests/experiments/ExperimentFiles.h"
-#include "vectorlib/experiments/Plot.h"
 
 #include <QDir>
 #include <QSet>
 #include <QTemporaryDir>
 #include <QtTest>
-
-#include <sstream>
 
 // hermes-vector experiment: those of the overview paper.
 class TestOverview : public QObject {
@@ -87,12 +84,6 @@ void TestOverview::namesOfLogsHarmNothing() {
     QCOMPARE(runExperiment({"baseline", "--log", hostile, "--out", out}), 0);
     QVERIFY(!QFile::exists("pwned") && !QFile::exists(out + "/pwned"));
     QCOMPARE(table(out + "/baseline.csv")[0]["set"], QByteArray("a---set-print--pwned---print-1"));
-    const hermes::experiments::Plot plot{
-        "p", "it's\n'; system('x')", "x [m]", "y", false, false, {{"o'clock", "#0072b2", {{0, 0}, {1, 1}}}}};
-    std::ostringstream script;
-    hermes::experiments::writeGnuplot(script, plot);
-    QVERIFY(script.str().find("title 'it''s ''; system(''x'')'\n") != std::string::npos);
-    QVERIFY(script.str().find("title 'o''clock'\n") != std::string::npos);
 }
 
 void TestOverview::figuresOfNothingAreRefused() {

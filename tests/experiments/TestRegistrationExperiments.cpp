@@ -173,8 +173,8 @@ void TestRegistrationExperiments::spaceOfTransformations() { // paper figures 2 
     }
     QCOMPARE(table(path("space/registration-space.csv")).size(), 3 * (5 + 2 + 7));
     const QByteArray latex = contents(path("space/registration-space.tex"));
-    QVERIFY(latex.contains("\\addplot3[") && latex.endsWith("\\end{document}\n"));
-    if (!QStandardPaths::findExecutable("gnuplot").isEmpty())
+    QVERIFY(latex.contains("\\includegraphics") && latex.endsWith("\\end{document}\n"));
+    if (hasMatplotlib())
         QCOMPARE(QDir(path("space")).entryList({"*.svg"}).size(), 4);
 }
 
@@ -259,7 +259,7 @@ void TestRegistrationExperiments::weightsNarrowTheScatter() { // paper figure 8 
         if (row["world"] == "pillars")
             (row["weighted"] == "1" ? weighted : plain) += row["var_x"].toDouble() + row["var_y"].toDouble();
     QVERIFY2(weighted > 0 && weighted < plain / 2, qPrintable(QString("%1 %2").arg(weighted).arg(plain)));
-    if (QStandardPaths::findExecutable("gnuplot").isEmpty())
+    if (!hasMatplotlib())
         return;
     QCOMPARE(QDir(path("dispersion")).entryList({"*.svg"}).size(), 14);
     QVERIFY(contents(path("dispersion/dispersion-a.svg")).contains("to scale"));
@@ -275,7 +275,7 @@ void TestRegistrationExperiments::reliabilityFallsWhereWallsAreHidden() { // pap
     }
     QVERIFY2(least >= 0 && least < 0.9, qPrintable(QString::number(least)));
     QVERIFY2(most > 0.95 && most <= 1, qPrintable(QString::number(most)));
-    if (!QStandardPaths::findExecutable("gnuplot").isEmpty())
+    if (hasMatplotlib())
         QVERIFY(contents(path("reliability/reliability-circles.svg")).contains("lowest single scan, R = "));
 }
 

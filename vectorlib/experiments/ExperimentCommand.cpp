@@ -244,6 +244,7 @@ void addExperimentCommand(CLI::App &app) {
     sub->callback([command, sub] {
         command->refuseUnused(*sub);
         command->run();
+        command->drawFigures();
     });
 }
 

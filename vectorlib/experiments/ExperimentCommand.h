@@ -46,6 +46,9 @@ struct ExperimentCommand {
     /// Throws CLI::ValidationError when an option was given that the experiment does not take.
     void refuseUnused(const CLI::App &sub) const;
     void run();
+    /// Lets plot.py, which lies with the program, draw the figures that run() left; comes back where that is
+    /// not possible, or there are none.
+    void drawFigures() const;
 
     void segmentationRoom(OutputSet &files, std::ostream &csv) const;
     void segmentationObjects(OutputSet &files, std::ostream &csv) const;
@@ -129,11 +132,9 @@ private:
     /// "-" for all that is no ASCII letter, digit or point. Throws Failure where two are called alike.
     static std::vector<std::string> setNames(const std::vector<std::string> &files);
     using NamedPicture = std::pair<std::string, vectorlib::SvgPicture>; ///< name: in file names
-    /// The figures and pictures, each as SVG, all in one LaTeX document; pictures first.
-    void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "",
-              std::vector<NamedPicture> named = {}) const;
-    template <typename Figure>
-    bool draw(OutputSet &files, const std::string &suffix, const Figure &figure) const;
+    /// All in one LaTeX document, pictures first; the pictures as SVG, and the figures as JSON, of which
+    /// drawFigures() makes what the document shows.
+    void draw(OutputSet &files, const Figures &figures, std::vector<NamedPicture> named = {}) const;
 };
 
 } // namespace hermes::experiments

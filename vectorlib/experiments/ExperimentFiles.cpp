@@ -1,18 +1,16 @@
 #include "vectorlib/experiments/ExperimentCommand.h"
 
+#include "common/platform/Program.h"
 #include "common/progress/Progress.h"
 #include "common/world/WorldFile.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
-#include "vectorlib/experiments/Gnuplot.h"
 #include "vectorlib/io/LatexExport.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <optional>
-#include <sstream>
 
 namespace hermes::experiments {
 
@@ -21,6 +19,12 @@ using vector::Input;
 using vector::valueOrFail;
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char *figuresEnd = "-figures.json";
+
+} // namespace
 
 void ExperimentCommand::tell(std::ostream &json, const nlohmann::ordered_json &summary) {
     const std::string text = summary.dump(2) + '\n';
@@ -88,42 +92,47 @@ std::vector<std::string> ExperimentCommand::setNames(const std::vector<std::stri
     return names;
 }
 
-void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std::string &suffix,
+void ExperimentCommand::draw(OutputSet &files, const Figures &figures,
                              std::vector<NamedPicture> named) const {
-    vectorlib::LatexExport document(open(files, suffix + ".tex"), name);
+    vectorlib::LatexExport document(open(files, ".tex"), name);
     for (auto &[which, picture] : named) {
-        picture.write(open(files, suffix + (which.empty() ? "" : "-" + which) + ".svg"));
+        picture.write(open(files, (which.empty() ? "" : "-" + which) + ".svg"));
         document.picture(picture, {14, 9});
     }
-    document.figures(figures);
+    for (const Table &table : figures.tables)
+        document.table(table);
+    const nlohmann::json all = figures;
+    for (const auto &[kind, some] : all.items())
+        for (const auto &figure : some) {
+            const std::string file = name + '-' + figure.at("name").get<std::string>();
+            const auto exists = [&file](const char *end, const char *command) {
+                return "\\IfFileExists{" + file + end + "}{" + command + '{' + file + end + "}}{";
+            };
+            document.latex(exists(".pgf", "\\input") + exists(".pdf", "\\includegraphics[width=14cm]") +
+                           vectorlib::latexText(figure.at("title").get<std::string>()) +
+                           ": nothing is drawn.}}\n\n\\bigskip\n");
+        }
     document.finish();
-    bool drawn = true;
-    Progress progress("drawing, figure");
-    const std::size_t all = figures.plots.size() + figures.surfaces.size() + figures.spaces.size();
-    std::size_t done = 0;
-    const auto drawOne = [&](const auto &figure) {
-        drawn = drawn && draw(files, suffix, figure);
-        progress.update(double(++done), double(all));
-    };
-    for (const Plot &plot : figures.plots)
-        if (vectorlib::latex::boxOf(plot)) // else there is nothing to show, as the document says
-            drawOne(plot);
-    for (const Surface &surface : figures.surfaces)
-        drawOne(surface);
-    for (const SpacePlot &space : figures.spaces)
-        drawOne(space);
-    if (!drawn)
-        std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX files\n";
+    if (!figures.plots.empty() || !figures.surfaces.empty() || !figures.spaces.empty())
+        open(files, figuresEnd) << all << '\n';
 }
 
-template <typename Figure>
-bool ExperimentCommand::draw(OutputSet &files, const std::string &suffix, const Figure &figure) const {
-    std::ostringstream script;
-    writeGnuplot(script, figure);
-    const std::optional<std::string> svg = runGnuplot(script.str());
-    if (svg)
-        open(files, suffix + "-" + figure.name + ".svg") << *svg;
-    return svg.has_value();
+void ExperimentCommand::drawFigures() const {
+    const std::string figures = (fs::u8path(folder) / (name + figuresEnd)).u8string();
+    if (!fs::exists(fs::u8path(figures)))
+        return;
+    const std::string script =
+        (programFile().parent_path().parent_path() / "share" / "hermes" / "experiments" / "plot.py")
+            .u8string();
+    std::vector<std::string> arguments{figures};
+    if (force)
+        arguments.emplace_back("--force");
+    if (Progress::isJson())
+        arguments.emplace_back("--json");
+    std::cout.flush();
+    becomeProgram(script, arguments);
+    std::cerr << "hermes-experiments: the plots are not drawn, the script " << script
+              << " does not run here; python3 and matplotlib draw them by it from " << figures << '\n';
 }
 
 } // namespace hermes::experiments

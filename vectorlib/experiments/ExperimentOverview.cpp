@@ -48,7 +48,7 @@ void ExperimentCommand::overview(OutputSet &files, std::ostream &csv, const Worl
     const OverviewRun &first = drives.front();
     const std::string scans = std::to_string(first.scans.size()) + " scans";
     const auto millimetres = [](double metres) { return std::to_string(std::lround(1000 * metres)) + " mm"; };
-    draw(files, {}, "",
+    draw(files, {},
          {{"raw", pictureOfRaw(scans + ", not fitted: the last pose is " +
                                    millimetres(first.odometryClosingError()) + " off",
                                first)},

@@ -56,7 +56,7 @@ void ExperimentCommand::relation(OutputSet &files, std::ostream &csv, const std:
     const RelationRun run = relationRun(scans, {fieldOfView, rays, options.progress});
     writeCsv(csv, run);
     tell(open(files, ".json"), summaryOf(run, published));
-    draw(files, {plotsOf(run), {}, {}}, "", {{"ways", pictureOfWays(run)}});
+    draw(files, {plotsOf(run), {}, {}}, {{"ways", pictureOfWays(run)}});
 }
 
 } // namespace hermes::experiments

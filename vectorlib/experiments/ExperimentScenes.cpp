@@ -33,7 +33,7 @@ void ExperimentCommand::adaptiveThreshold(OutputSet &files, std::ostream &csv) c
     std::vector<NamedPicture> drawn;
     for (const AdaptiveThresholdPanel &panel : panels)
         drawn.emplace_back(panel.name, pictureOf(panel));
-    draw(files, {}, "", std::move(drawn));
+    draw(files, {}, std::move(drawn));
 }
 
 void ExperimentCommand::realSegmentation(OutputSet &files, std::ostream &csv) const {
@@ -48,14 +48,14 @@ void ExperimentCommand::realSegmentation(OutputSet &files, std::ostream &csv) co
             << scan.outliers.size() << '\n';
         drawn.emplace_back(title, pictureOfClusters(title, scan));
     }
-    draw(files, {}, "", std::move(drawn));
+    draw(files, {}, std::move(drawn));
 }
 
 void ExperimentCommand::threshold(OutputSet &files, std::ostream &csv) const {
     const ThresholdExperiment experiment(options.seed);
     experiment.writeCsv(csv);
     tell(open(files, ".json"), experiment.summary());
-    draw(files, {{experiment.errorPlot()}, {}, {}}, "",
+    draw(files, {{experiment.errorPlot()}, {}, {}},
          {{"clouds", experiment.pictureOfClouds()}, {"lines", experiment.pictureOfLines()}});
 }
 
@@ -65,12 +65,16 @@ void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
     std::map<double, std::vector<ResultRow>, std::greater<>> bySigma;
     for (const ResultRow &row : rows)
         bySigma[row.sigma].push_back(row);
+    Figures figures;
     for (const auto &[sigma, some] : bySigma) {
         std::ostringstream text;
-        text << "-sigma" << sigma;
-        draw(files, {plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some), {}, {}}, text.str());
+        text << sigma;
+        for (Plot &plot : plotsOf("semicircle, sigma " + text.str() + " m", some)) {
+            plot.name.insert(0, "sigma" + text.str() + '-');
+            figures.plots.push_back(std::move(plot));
+        }
     }
-    draw(files, {}, "", {{"cloud", pictureOfSemicircle()}});
+    draw(files, figures, {{"cloud", pictureOfSemicircle()}});
 }
 
 void ExperimentCommand::edges(OutputSet &files, std::ostream &csv) const {
@@ -142,7 +146,7 @@ void ExperimentCommand::segment(OutputSet &files, std::ostream &csv, const Scene
         drawn.emplace_back(std::to_string(std::lround(100 * panel.noise)) + "cm-" +
                                std::to_string(std::lround(100 * panel.outlierShare)) + "percent",
                            pictureOf(scene, panel));
-    draw(files, {}, "", std::move(drawn));
+    draw(files, {}, std::move(drawn));
 }
 
 void ExperimentCommand::quality(OutputSet &files, std::ostream &csv, const std::string &title,
@@ -173,13 +177,13 @@ RealScanChoice ExperimentCommand::chooseScans(const std::vector<RealScanKind> &k
 void ExperimentCommand::realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
     const RealScanResult result = realScanExperiment(chooseScans({kind}).best(0));
     writeCsv(csv, result);
-    draw(files, {{}, {}, {tableOf(name, result)}}, "", {{"", pictureOf(name, result)}});
+    draw(files, {{}, {}, {tableOf(name, result)}}, {{"", pictureOf(name, result)}});
 }
 
 void ExperimentCommand::scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
     const std::vector<ResultRow> rows = sceneExperiment(scene, options);
     writeCsv(csv, rows);
-    draw(files, {plotsOf(scene.title, rows), {}, {lineTable(scene.title, rows)}}, "",
+    draw(files, {plotsOf(scene.title, rows), {}, {lineTable(scene.title, rows)}},
          {{"cloud", pictureOfCloud(scene, options)}});
 }
 

@@ -1,10 +1,20 @@
 #pragma once
 
-#include "vectorlib/io/LatexPlot.h"
+#include "vectorlib/io/LatexPicture.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace vectorlib {
 
-/// Writes pictures of scenes, plots, surfaces and tables as LaTeX, one after the other: a document that
+/// A table; its cells are LaTeX, which latexText() makes of text; its title is text.
+struct Table {
+    std::string title;
+    std::vector<std::string> header;
+    std::vector<std::vector<std::string>> rows;
+};
+
+/// Writes pictures of scenes and tables as LaTeX, one after the other: a document that
 /// pdflatex compiles, or a fragment to be included, whose first lines name the packages that it needs. Text
 /// of any content is escaped. Thesis 4.2.2, LaTeXExport.
 class LatexExport {
@@ -20,9 +30,8 @@ public:
             out << "\\documentclass[a4paper,10pt]{article}\n";
         else
             out << "% For \\input in a document with:\n";
-        for (const char *line :
-             {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}", "\\usepackage{longtable}",
-              "\\usepackage{pgfplots}", "\\pgfplotsset{compat=1.16}"})
+        for (const char *line : {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}",
+                                 "\\usepackage{longtable}", "\\usepackage{tikz}"})
             out << prefix << line << '\n';
         if (as == As::Fragment)
             return;
@@ -52,11 +61,6 @@ public:
         LatexPicture::writeLegend(out_, layers);
         out_ << "\\par}\n\\bigskip\n";
     }
-    /// A plot; see writeLatex().
-    void plot(const Plot &plot) { figure(plot); }
-    /// A surface; see writeLatex().
-    void surface(const Surface &surface) { figure(surface); }
-
     /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
     /// header; others that are wider than the page are made smaller.
     void table(const Table &table) {
@@ -82,17 +86,6 @@ public:
                     : "}%\n\\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox0}\\else\\usebox0\\fi")
             << "\n\n\\bigskip\n";
     }
-    /// Tables, plots, surfaces, lines in space.
-    void figures(const Figures &figures) {
-        for (const Table &t : figures.tables)
-            table(t);
-        for (const Plot &p : figures.plots)
-            plot(p);
-        for (const Surface &s : figures.surfaces)
-            surface(s);
-        for (const SpacePlot &s : figures.spaces)
-            figure(s);
-    }
     /// A paragraph; any text.
     void text(const std::string &paragraph) { out_ << latexText(paragraph) << "\n\n"; }
     /// What is LaTeX already.
@@ -114,11 +107,6 @@ public:
     }
 
 private:
-    template <typename Figure>
-    void figure(const Figure &figure) {
-        writeLatex(out_, figure);
-        out_ << "\n\n\\bigskip\n";
-    }
     template <typename Write>
     void column(double share, char at, Write write) {
         out_ << "\\begin{minipage}[" << at << "]{" << Fixed{share, 2} << "\\textwidth}\\vspace{0pt}\n";
