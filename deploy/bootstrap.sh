@@ -10,7 +10,7 @@ hermes_package_packages=(debhelper dpkg-dev fakeroot help2man)
 hermes_site_packages=(mkdocs mkdocs-material mkdocstrings mkdocstrings-python-handlers doxygen help2man mandoc)
 hermes_long_test_packages=("${hermes_package_packages[@]}" "${hermes_site_packages[@]}" lintian debootstrap systemd-container umockdev
     g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine64)
-hermes_test_packages=(codespell iproute2 libpcap-dev python3-jsonschema clang-format tshark gnuplot-nox zsh xvfb openbox xdotool)
+hermes_test_packages=(codespell iproute2 libpcap-dev python3-jsonschema clang-format tshark python3-matplotlib zsh xvfb openbox xdotool)
 hermes_fuzz_packages=(clang libclang-rt-dev)
 hermes_bench_packages=(libbenchmark-dev)
 

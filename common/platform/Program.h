@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +12,8 @@ std::vector<std::string> programArguments(int argc, char **argv);
 /// Where this program lies; empty when that cannot be told.
 std::filesystem::path programFile();
 
-struct ProgramEnd {
-    bool failed = false;
-    std::string out, err;
-};
-
-/// Runs another program of the search path, and on Windows of nothing else, to its end, on this standard
-/// input. Nothing: there is none. Throws std::runtime_error where no temporary file can be made.
-std::optional<ProgramEnd> runProgram(const std::string &name, const std::string &argument,
-                                     const std::string &input);
+/// Puts another program in the place of this one, with the same standard streams: of the search path, or that
+/// file where the name has a folder. Comes back only when there is none.
+void becomeProgram(const std::string &name, const std::vector<std::string> &arguments);
 
 } // namespace hermes

@@ -1,7 +1,7 @@
 #include "gui/vector/MapRun.h"
 
+#include "gui/vector/Quantile.h"
 #include "gui/vector/evaluation/MotionErrors.h"
-#include "gui/vector/experiment/PairsExperiment.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/mapping/WallIds.h"
 

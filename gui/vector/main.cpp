@@ -1,10 +1,5 @@
-#include "common/help/HelpText.h"
-#include "common/platform/Console.h"
-#include "common/platform/Pipes.h"
 #include "common/platform/Program.h"
-#include "common/platform/TemporaryNames.h"
-#include "common/progress/Progress.h"
-#include "gui/vector/Failure.h"
+#include "gui/vector/CommandLine.h"
 #include "gui/vector/Options.h"
 
 #include <algorithm>
@@ -15,90 +10,37 @@ using namespace hermes::vector;
 
 namespace {
 
-constexpr int failed = 1;
-constexpr int wrongUsage = 2;
+constexpr const char *elsewhere[] = {"experiment", "report"};
 
-/// The first thing of a command line that nobody knows; an option, if there is one.
-std::string unknownIn(const CLI::App &app) {
-    const std::vector<std::string> all = app.remaining(true);
-    const auto option = std::find_if(all.begin(), all.end(), [](const auto &one) { return one[0] == '-'; });
-    if (option != all.end())
-        return "unknown option " + *option;
-    return (app.get_subcommands().empty() ? "unknown command " : "unexpected argument ") + all.front();
+/// For the help alone: these are commands of hermes-experiments, which is asked before.
+void addElsewhere(CLI::App &app) {
+    for (const char *name : elsewhere)
+        app.add_subcommand(name, "Of the package hermes-experiments: hermes-experiments --help");
 }
 
-/// What is wrong with a command line, where CLI11 tells it in its own terms.
-std::string textOf(const CLI::ParseError &error, const CLI::App &app) {
-    const std::string text = error.what(), name = text.substr(0, text.find(':'));
-    const std::string most = ": At Most 1 required but received ", required = ": 1 required ",
-                      missing = " missing";
-    if (dynamic_cast<const CLI::ExtrasError *>(&error) != nullptr)
-        return unknownIn(app);
-    if (text.find(required) != std::string::npos && text.size() > missing.size())
-        return name + ": a value is missing, expected " +
-               text.substr(name.size() + required.size(),
-                           text.size() - name.size() - required.size() - missing.size());
-    if (text.find(most) == std::string::npos)
-        return text;
-    std::string names;
-    const auto commands = app.get_subcommands();
-    for (const std::string &one : commands.front()->get_option(name)->get_lnames())
-        names += (names.empty() ? "--" : " or --") + one;
-    return (names.empty() ? name : names) + ": given " + text.substr(name.size() + most.size()) +
-           " times, expected once";
+/// Lets hermes-experiments, beside this program or in the search path, do it; comes back when there is none.
+int runElsewhere(const std::vector<std::string> &arguments) {
+    const std::string name = "hermes-experiments";
+    becomeProgram((programFile().parent_path() / name).u8string(), arguments);
+    becomeProgram(name, arguments);
+    std::cerr << "hermes-vector: " << arguments[0] << " is a command of the program " << name
+              << ", which is not installed; in Debian the package of that name has it\n";
+    return 1;
 }
 
 } // namespace
 
 /// hermes-vector: the vector library at the command line. See docs/hermes-vector.md.
 int main(int argc, char **argv) {
-    prepareConsole();
-    CLI::App app("Scans to line segments, and line segments to maps.");
-    app.name("hermes-vector");
-    app.allow_windows_style_options(false); // /a/b.csv is a file there, too
-    app.set_version_flag("--version", "hermes-vector " HERMES_VERSION);
-    app.require_subcommand(0, 1); // none is told below: CLI11 would not name a wrong one
-    app.footer("hermes-vector COMMAND --help says more and shows an example.");
-    addSegmentCommand(app);
-    addVectorizeCommand(app);
-    addRegisterCommand(app);
-    addSimilarityCommand(app);
-    addMatchCommand(app);
-    addRelocalizeCommand(app);
-    addObserveCommand(app);
-    addMapCommand(app);
-    addMapMergeCommand(app);
-    addEvaluateCommand(app);
-    addRingCommand(app);
-    addExperimentCommand(app);
-    addReportCommand(app);
-    for (CLI::App *command : app.get_subcommands({}))
-        command->add_flag_callback(
-            "--json", Progress::useJson,
-            "Tell the progress of long work as JSON, one object a line, on standard error, terminal or not");
-    removeTemporariesOnSignals();
-    outliveClosedPipes();
-    try {
-        std::vector<std::string> arguments = programArguments(argc, argv);
-        std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
-        app.parse(std::move(arguments));
-        if (app.get_subcommands().empty())
-            throw CLI::RequiredError("A subcommand");
-    } catch (const CLI::CallForHelp &) {
-        std::cout << fittedHelp(app.help());
-    } catch (const CLI::ParseError &e) {
-        if (e.get_exit_code() == int(CLI::ExitCodes::Success))
-            return app.exit(e); // prints the help or the version
-        const auto commands = app.get_subcommands();
-        std::cerr << "hermes-vector: " << textOf(e, app) << "\nSee hermes-vector "
-                  << (commands.empty() ? "" : commands.front()->get_name() + ' ') << "--help.\n";
-        return wrongUsage;
-    } catch (const Failure &e) {
-        std::cerr << "hermes-vector: " << e.what() << '\n';
-        return failed;
-    } catch (const std::exception &e) {
-        std::cerr << "hermes-vector: unexpected failure: " << e.what() << '\n';
-        return failed;
-    }
-    return 0;
+    const std::vector<std::string> arguments = programArguments(argc, argv);
+    if (!arguments.empty() &&
+        std::find(std::begin(elsewhere), std::end(elsewhere), arguments[0]) != std::end(elsewhere))
+        return runElsewhere(arguments);
+    const CommandLine line{"hermes-vector",
+                           HERMES_VERSION,
+                           "Scans to line segments, and line segments to maps.",
+                           {addSegmentCommand, addVectorizeCommand, addRegisterCommand, addSimilarityCommand,
+                            addMatchCommand, addRelocalizeCommand, addObserveCommand, addMapCommand,
+                            addMapMergeCommand, addEvaluateCommand, addRingCommand, addElsewhere}};
+    return line.run(argc, argv);
 }

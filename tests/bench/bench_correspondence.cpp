@@ -1,10 +1,10 @@
 #include "common/world/WorldFile.h"
-#include "gui/vector/report/ScanPair.h"
 #include "tests/bench/FloorPlanPairs.h"
 #include "tests/bench/Logs.h"
 #include "tests/bench/PlaceRows.h"
 #include "tests/bench/PoseFree.h"
 #include "tests/support/Hall.h"
+#include "vectorlib/experiments/report/ScanPair.h"
 
 #ifdef BENCH_MRPT
 #include "tests/bench/MrptGlobal.h"
@@ -62,7 +62,7 @@ void searchMap(benchmark::State &state) {
             find(hall.map, scan, Transformation2D(hall.middle.x, hall.middle.y, 0.2)).solutions.size());
 }
 
-void searchScans(benchmark::State &state, const hermes::vector::ScanPair &scans) {
+void searchScans(benchmark::State &state, const hermes::experiments::ScanPair &scans) {
     CorrespondenceFinder find;
     for (auto _ : state)
         benchmark::DoNotOptimize(find(scans.fixed.segments, scans.moving.segments).solutions.size());
@@ -81,12 +81,12 @@ bool addPillars() {
         std::cerr << world.error() << '\n';
         return false;
     }
-    const Segments edges = hermes::vector::edgesOf(*world);
+    const Segments edges = hermes::experiments::edgesOf(*world);
     for (std::size_t i = 0; i + 1 < world->poses.size(); ++i) {
         const auto pose = [&](std::size_t k) {
             return Pose2D{world->poses[k].x, world->poses[k].y, world->poses[k].theta};
         };
-        const hermes::vector::ScanPair scans = hermes::vector::scanPair(edges, pose(i), pose(i + 1), {});
+        const hermes::experiments::ScanPair scans = hermes::vector::scanPair(edges, pose(i), pose(i + 1), {});
         benchmark::RegisterBenchmark("search between two scans of pillars", [scans](benchmark::State &state) {
             searchScans(state, scans);
         })->Arg(int64_t(i));

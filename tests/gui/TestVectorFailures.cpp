@@ -57,7 +57,6 @@ private Q_SLOTS:
             row(address, {"map", "x.pcap", "--sender", address}, "--sender");
         row("port of no capture", {"map", log, "--port", "2368"}, "--port: only of a capture");
         row("sender of no capture", {"map", log, "--sender", "10.0.0.1"}, "--sender: only of a capture");
-        row("half 3", {"experiment", "pairs", "--half", "3"}, "--half: 3 not in {1,2}");
         row("unknown option and its value", {"map", log, "--ouy", "x", "--every", "2"},
             ": unknown option --ouy\n");
         row("one file more", {"map", log, "b.log", "c.log"}, ": unexpected argument b.log\n");

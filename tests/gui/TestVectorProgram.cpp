@@ -280,7 +280,7 @@ private Q_SLOTS:
     void helpAndVersion() {
         QCOMPARE(run({"--version"}).out.left(14), QByteArray("hermes-vector "));
         for (const char *command : {"segment", "vectorize", "register", "similarity", "match", "observe",
-                                    "map", "ring", "experiment", "report"}) {
+                                    "map", "ring"}) {
             const Result r = run({command, "--help"});
             QCOMPARE(r.status, 0);
             QVERIFY2(r.out.contains(QByteArray("Example:\n  hermes-vector ") + command), r.out.constData());

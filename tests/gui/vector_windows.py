@@ -28,7 +28,7 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 # Times that a run took.
 TIMES = re.compile(r'"(ms|ms_per_scan|seconds|closures_seconds)": (\{[^}]*\}|[-\d.e]+)')
 ENVIRONMENT = dict(os.environ, WINEDEBUG="-all", WINEPREFIX=os.path.join(BUILD, "wine"), WINEDLLOVERRIDES="mscoree,mshtml=", DISPLAY="",
-                   PATH="/usr/lib/wine") # no gnuplot
+                   PATH="/usr/lib/wine")
 
 
 def missing():
@@ -107,8 +107,9 @@ def capture(turns):
 class Commands(unittest.TestCase):
     """Each command, with the same inputs as here."""
 
-    def same(self, *arguments, stdin=b"", status=0, prepare=(), tolerance=TOLERANCE, has_times=False):
-        """Runs both in folders of their own; gives what the program for Windows left. has_times: its tables are of nothing else."""
+    def same(self, *arguments, stdin=b"", status=0, prepare=(), tolerance=TOLERANCE, has_times=False, has_plots=False):
+        """Runs both in folders of their own; gives what the program for Windows left. has_times: its tables are of nothing else.
+        has_plots: they are drawn here, if at all."""
         runs = []
         for run in (native, windows):
             with tempfile.TemporaryDirectory() as folder:
@@ -120,6 +121,10 @@ class Commands(unittest.TestCase):
                 runs.append(run(folder, *arguments, stdin=stdin))
         here, there = runs
         self.assertEqual((here.status, there.status), (status, status), (arguments, here.err, there.err))
+        if has_plots:
+            self.assertIn(b"the plots are not drawn", there.err)
+            here.err = there.err = b""
+            here.files = {name: content for name, content in here.files.items() if name[:-3] + "pdf" not in here.files}
         self.assertEqual(set(here.files), set(there.files), arguments)
         for what, one, other in [("stdout", here.out, there.out), ("stderr", here.err, there.err)] + \
                 [(name, here.files[name], there.files[name]) for name in here.files]:
@@ -209,9 +214,9 @@ class Commands(unittest.TestCase):
     def test_experiments(self):
         self.same("experiment", "segmentation-room", "--out", "results")
         for name in ("weighting", "reliability"):
-            self.same("experiment", name, "--runs", "2", "--max-points", "500", "--out", "results")
+            self.same("experiment", name, "--runs", "2", "--max-points", "500", "--out", "results", has_plots=True)
         # Its ratios of tiny spreads make more of how the C libraries round.
-        self.same("experiment", "dispersion", "--runs", "2", "--max-points", "500", "--out", "results", tolerance=1e-6)
+        self.same("experiment", "dispersion", "--runs", "2", "--max-points", "500", "--out", "results", tolerance=1e-6, has_plots=True)
         self.same("experiment", "empty-room", "--log", "raw.log", "--out", "results", has_times=True)
 
     def test_real_log(self):
@@ -343,22 +348,22 @@ class Differences(unittest.TestCase):
         run = windows(self.folder, "segment", "room.csv", "--out", "NULL.csv")
         self.assertEqual(run.files["NULL.csv"], self.clusters)
 
-    def test_other_programs_are_of_the_search_path_only(self):
-        """A program beside the data may be anybody's."""
-        write(self.path("gnuplot.c"), b"""#include <stdio.h>
-            int main(int count, char **words) { puts(count == 2 ? words[1] : "wrong words"); return 0; }""")
-        os.mkdir(self.path("two words"))
-        subprocess.run(["x86_64-w64-mingw32-gcc", "-o", self.path("gnuplot.exe"), self.path("gnuplot.c")], check=True)
-        arguments = ["experiment", "weighting", "--runs", "1", "--max-points", "500", "--force", "--out", "results"]
+    def test_other_programs_are_beside_it_or_in_the_search_path(self):
+        """A program in the current folder may be anybody's."""
+        write(self.path("words.c"), b"""#include <stdio.h>
+            int main(int count, char **words) { for (int i = 1; i < count; ++i) printf("%s|", words[i]); return 3; }""")
+        for folder in ("alone", "two words"):
+            os.mkdir(self.path(folder))
+        shutil.copy(EXE, self.path("alone"))
+        subprocess.run(["x86_64-w64-mingw32-gcc", "-o", self.path("hermes-experiments.exe"), self.path("words.c")], check=True)
+        program, arguments = [WINE, self.path("alone/hermes-vector.exe")], ["report", 'a "b" c', "two words\\"]
         for path in (".", ""):
-            run = windows(self.folder, *arguments, environment={"WINEPATH": path})
-            self.assertEqual(run.status, 0, run.err)
-            self.assertIn(b"gnuplot is not installed", run.err)
-        os.rename(self.path("gnuplot.exe"), self.path("two words/gnuplot.exe"))
-        run = windows(self.folder, *arguments, environment={"WINEPATH": "Z:" + self.path("two words").replace("/", "\\")})
-        self.assertEqual((run.status, run.err), (0, b""))
-        pictures = {content.strip() for name, content in run.files.items() if name.endswith(".svg")}
-        self.assertEqual(pictures, {b"-"}, run.files.keys())
+            run = Run(program, self.folder, arguments, environment={"WINEPATH": path})
+            self.assertEqual(run.status, 1, run.out)
+            self.assertIn(b"hermes-experiments, which is not installed", run.err)
+        os.rename(self.path("hermes-experiments.exe"), self.path("two words/hermes-experiments.exe"))
+        run = Run(program, self.folder, arguments, environment={"WINEPATH": "Z:" + self.path("two words").replace("/", "\\")})
+        self.assertEqual((run.status, run.out, run.err), (3, b'report|a "b" c|two words\\|', b""))
 
     def test_help_and_wrong_use(self):
         for arguments in (["--help"], ["--version"], ["match", "--help"], [], ["nothing"], ["segment"], ["segment", "a", "--k", "x"]):

@@ -40,9 +40,9 @@ class Known:
     """What there is to be named."""
 
     def __init__(self):
-        self.experiments = experiments_of(read("gui/vector/ExperimentCommand.cpp"))
-        self.reports = set(re.findall(r'"(--[\w-]+)"', read("gui/vector/ReportCommand.cpp")))
-        sources = "".join(read(path) for path in files_below("gui/vector", ".cpp"))
+        self.experiments = experiments_of(read("vectorlib/experiments/ExperimentCommand.cpp"))
+        self.reports = set(re.findall(r'"(--[\w-]+)"', read("vectorlib/experiments/report/ReportCommand.cpp")))
+        sources = "".join(read(path) for folder in ("gui/vector", "vectorlib/experiments") for path in files_below(folder, ".cpp"))
         self.options = set(re.findall(OPTION, sources))
         self.commands = set(re.findall(r'add_subcommand\(\s*"([\w-]+)"', sources))
         self.headers = {os.path.basename(path) for path in files_below(HEADERS, ".h")}

@@ -6,9 +6,11 @@ import os
 import re
 import sys
 
-# What a folder may include of ours, by the first (for daemons: first two) parts of the path.
+# What a folder may include of ours, by the first (for daemons and experiments: first two) parts of the path. The experiments are for
+# nobody else.
 ALLOWED = {
     "vectorlib": {"vectorlib"},
+    "vectorlib/experiments": {"common", "protocol", "vectorlib", "gui/vector"},
     "protocol": {"protocol"},
     "common": {"common", "protocol"},
     "daemons/motorcontrol": {"common", "protocol"},
@@ -23,7 +25,7 @@ ALLOWED = {
 # Rooms of vectorlib that everyone may include: one result type, one pose, one twist, one pi in the whole project.
 OF_ALL = ("vectorlib/error", "vectorlib/geometry")
 # Qt that a folder may include; None means any.
-QT_ALLOWED = {"vectorlib": set(), "protocol": {"QByteArray", "QCborStreamReader", "QCborStreamWriter", "QString", "QStringList", "QVector", "QVariant", "QtGlobal", "QtEndian",
+QT_ALLOWED = {"vectorlib": set(), "vectorlib/experiments": set(), "protocol": {"QByteArray", "QCborStreamReader", "QCborStreamWriter", "QString", "QStringList", "QVector", "QVariant", "QtGlobal", "QtEndian",
                                                "QJsonObject", "QJsonArray", "QJsonValue", "QJsonDocument", "QMap"}}
 # The rooms of vectorlib, from the ground up: each may include those before it.
 ROOMS = ("error", "geometry", "simd", "tls", "segmentation", "vectorization", "edges", "observation", "registration", "similarity",
@@ -31,7 +33,8 @@ ROOMS = ("error", "geometry", "simd", "tls", "segmentation", "vectorization", "e
 OURS = ("vectorlib", "protocol", "common", "daemons", "gui")
 # The namespace of each program's code; what is shared is in hermes.
 NAMESPACES = {**{folder: "hermes::" + folder.split("/")[1] for folder in ALLOWED if folder.startswith("daemons/")},
-              "gui/desktop": "hermes::desktop", "gui/hermesctl": "hermes::ctl", "gui/vector": "hermes::vector"}
+              "gui/desktop": "hermes::desktop", "gui/hermesctl": "hermes::ctl", "gui/vector": "hermes::vector",
+              "vectorlib/experiments": "hermes::experiments"}
 NAMESPACE = re.compile(r"^namespace (hermes[\w:]*) \{")
 # What is built for Windows, too (docs/windows.md), and knows nothing of a system but in sources whose names end with its name, which
 # stand beside each other: XPosix.cpp and XWindows.cpp for X.h. Of common these are the sources that its CMakeLists.txt names before
@@ -51,13 +54,13 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 def zone_of(path):
     parts = path.split("/")
-    return "/".join(parts[:2]) if parts[0] == "daemons" and len(parts) > 2 else parts[0]
+    return "/".join(parts[:2]) if (parts[0] == "daemons" or path.startswith("vectorlib/experiments/")) and len(parts) > 2 else parts[0]
 
 
 def room_of(path):
     """The room of vectorlib that a header lies in, or None."""
     parts = path.split("/")
-    return parts[1] if parts[0] == "vectorlib" and len(parts) == 3 else None
+    return parts[1] if parts[0] == "vectorlib" and len(parts) == 3 and parts[1] != "experiments" else None
 
 
 def complaint(path, include, root):
@@ -84,7 +87,8 @@ def complaint(path, include, root):
         beside = os.path.join(root, os.path.dirname(path), include)
         return "files of ours are included by their path from the root" if os.path.exists(beside) else None
     target = zone_of(include)
-    if target == zone or first in allowed or include.startswith(tuple(room + "/" for room in OF_ALL)):
+    permitted = tuple(folder + "/" for folder in (*allowed, *OF_ALL))
+    if target == zone or (include.startswith(permitted) and target != "vectorlib/experiments"):
         return None
     return f"{zone} may include only {', '.join(sorted(allowed))} (and itself)"
 
@@ -168,9 +172,12 @@ def self_test():
                 ("protocol/jsonrpc/A.cpp", "common/Result.h"), ("common/daemon/A.cpp", "vectorlib/mapping/MapBuilder.h"),
                 ("daemons/scanmatcher/A.cpp", "daemons/simulator/B.h"), ("gui/hermesctl/A.cpp", "daemons/simulator/B.h"),
                 ("vectorlib/include/vectorlib/edges/A.h", "vectorlib/mapping/MapBuilder.h"),
-                ("daemons/velodynelogger/A.cpp", "vectorlib/mapping/MapBuilder.h"), ("common/A.cpp", "daemons/simulator/B.h")]
+                ("daemons/velodynelogger/A.cpp", "vectorlib/mapping/MapBuilder.h"), ("common/A.cpp", "daemons/simulator/B.h"),
+                ("gui/vector/A.cpp", "vectorlib/experiments/B.h"), ("vectorlib/include/vectorlib/io/A.h", "vectorlib/experiments/B.h"),
+                ("vectorlib/experiments/A.cpp", "gui/desktop/B.h"), ("vectorlib/experiments/A.cpp", "QString")]
     fine = [("vectorlib/include/vectorlib/io/A.h", "vectorlib/edges/MapEdge.h"), ("daemons/scanmatcher/A.cpp", "vectorlib/mapping/MapBuilder.h"), ("daemons/scanmatcher/A.cpp", "daemons/scanmatcher/B.h"),
-            ("protocol/jsonrpc/A.cpp", "QJsonObject"), ("common/A.cpp", "protocol/jsonrpc/JsonRpc.h"), ("gui/A.cpp", "vector")]
+            ("protocol/jsonrpc/A.cpp", "QJsonObject"), ("common/A.cpp", "protocol/jsonrpc/JsonRpc.h"), ("gui/A.cpp", "vector"),
+            ("vectorlib/experiments/A.cpp", "gui/vector/Input.h"), ("vectorlib/experiments/A.cpp", "vectorlib/io/Svg.h")]
     wrong = [f"not caught: {p} including {i}" for p, i in crossing if not complaint(p, i, "/nonexistent")]
     if not namespace_complaint("daemons/supervisor/A.h", "hermes") or namespace_complaint("gui/vector/A.h", "hermes::vector") \
             or not namespace_complaint("gui/vector/A.h", "hermes::vectors"):
@@ -208,7 +215,7 @@ def main():
                         opened = NAMESPACE.match(line)
                         if opened and (why := namespace_complaint(path, opened.group(1))):
                             errors.append(f"{path}:{number}: {line.strip()}: {why}")
-                        if path.startswith(("gui/vector/", "common/capture/", "common/platform/", "common/world/")) and CODE_PAGE.search(line):
+                        if path.startswith(("gui/vector/", "vectorlib/experiments/", "common/capture/", "common/platform/", "common/world/")) and CODE_PAGE.search(line):
                             errors.append(f"{path}:{number}: {line.strip()}: names of files are UTF-8: u8path(), u8string()")
                         match = INCLUDE.match(line)
                         if match:

@@ -15,7 +15,7 @@ public:
             missing_ = "pdflatex is not installed: the documents were not compiled";
             return;
         }
-        for (const char *file : {"pgfplots.sty", "longtable.sty", "geometry.sty"}) {
+        for (const char *file : {"tikz.sty", "longtable.sty", "geometry.sty"}) {
             QProcess find;
             find.start("kpsewhich", {file});
             if (!find.waitForFinished(30000) || find.readAllStandardOutput().trimmed().isEmpty())

@@ -1,5 +1,8 @@
 #include "vectorlib/io/LatexExport.h"
 
+#include <algorithm>
+#include <ostream>
+
 namespace vectorlib {
 
 VECTORLIB_BODY LatexExport::LatexExport(std::ostream &out, const std::string &title, As as)
@@ -11,8 +14,7 @@ VECTORLIB_BODY LatexExport::LatexExport(std::ostream &out, const std::string &ti
     else
         out << "% For \\input in a document with:\n";
     for (const char *line :
-         {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}", "\\usepackage{longtable}",
-          "\\usepackage{pgfplots}", "\\pgfplotsset{compat=1.16}"})
+         {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}", "\\usepackage{longtable}", "\\usepackage{tikz}"})
         out << prefix << line << '\n';
     if (as == As::Fragment)
         return;
@@ -56,17 +58,6 @@ VECTORLIB_BODY void LatexExport::table(const Table &table) {
          << (isLong ? ""
                     : "}%\n\\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox0}\\else\\usebox0\\fi")
          << "\n\n\\bigskip\n";
-}
-
-VECTORLIB_BODY void LatexExport::figures(const Figures &figures) {
-    for (const Table &t : figures.tables)
-        table(t);
-    for (const Plot &p : figures.plots)
-        plot(p);
-    for (const Surface &s : figures.surfaces)
-        surface(s);
-    for (const SpacePlot &s : figures.spaces)
-        figure(s);
 }
 
 VECTORLIB_BODY void LatexExport::finish() {

@@ -3,10 +3,8 @@
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/io/LatexPicture.h"
-#include "vectorlib/io/LatexPlot.h"
 #include "vectorlib/io/LatexText.h"
 #include "vectorlib/io/Picture.h"
-#include "vectorlib/io/Plot.h"
 
 #include <iosfwd>
 #include <string>
@@ -14,7 +12,14 @@
 
 namespace vectorlib {
 
-/// Writes pictures of scenes, plots, surfaces and tables as LaTeX, one after the other: a document that
+/// A table; its cells are LaTeX, which latexText() makes of text; its title is text.
+struct Table {
+    std::string title;
+    std::vector<std::string> header;
+    std::vector<std::vector<std::string>> rows;
+};
+
+/// Writes pictures of scenes and tables as LaTeX, one after the other: a document that
 /// pdflatex compiles, or a fragment to be included, whose first lines name the packages that it needs. Text
 /// of any content is escaped. Thesis 4.2.2, LaTeXExport.
 class LatexExport {
@@ -34,16 +39,9 @@ public:
     }
     /// What the layers with a label mean.
     void legend(const std::vector<Picture::Layer> &layers);
-    /// A plot; see writeLatex().
-    void plot(const Plot &plot) { figure(plot); }
-    /// A surface; see writeLatex().
-    void surface(const Surface &surface) { figure(surface); }
-
     /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
     /// header; others that are wider than the page are made smaller.
     void table(const Table &table);
-    /// Tables, plots, surfaces, lines in space.
-    void figures(const Figures &figures);
     /// A paragraph; any text.
     void text(const std::string &paragraph) { out_ << latexText(paragraph) << "\n\n"; }
     /// What is LaTeX already.
@@ -62,11 +60,6 @@ public:
     void finish();
 
 private:
-    template <typename Figure>
-    void figure(const Figure &figure) {
-        writeLatex(out_, figure);
-        out_ << "\n\n\\bigskip\n";
-    }
     template <typename Write>
     void column(double share, char at, Write write) {
         out_ << "\\begin{minipage}[" << at << "]{" << Fixed{share, 2} << "\\textwidth}\\vspace{0pt}\n";

@@ -1,0 +1,183 @@
+#include "tests/support/RealData.h"
+
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QProcess>
+#include <QTemporaryDir>
+#include <QtTest>
+
+// hermes-vector experiment pairs on real logs: how often the motion between two scans is found.
+class TestScanPairs : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void sharesOnRealLogs_data();
+    void sharesOnRealLogs();
+    void withoutAnyGuess_data();
+    void withoutAnyGuess();
+    void halvesMakeTheWhole();
+    void probabilitiesAreCalibrated();
+    void writesARowAPairAndPictures();
+    void needsALog();
+
+private:
+    int run(const QStringList &arguments, const QString &experiment = "pairs") {
+        QProcess process;
+        process.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-experiments",
+                      QStringList{"experiment", experiment, "--out", folder_.filePath("out"), "--force"} +
+                          arguments);
+        process.waitForFinished(120000);
+        output_ = process.readAllStandardOutput();
+        return process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
+    }
+    QTemporaryDir folder_;
+    QByteArray output_;
+};
+
+void TestScanPairs::sharesOnRealLogs_data() {
+    QTest::addColumn<QString>("log");
+    QTest::addColumn<QStringList>("options");
+    QTest::addColumn<int>("pairs");
+    QTest::addColumn<double>("share");
+    QTest::newRow("intel") << "intel" << QStringList() << 909 << 0.97;
+    QTest::newRow("freiburg-079") << "freiburg-079" << QStringList{"--first", "1000"} << 1000 << 0.995;
+    QTest::newRow("freiburg-079, every 5th") << "freiburg-079" << QStringList{"--every", "5"} << 958 << 0.95;
+    QTest::newRow("fhw") << "fhw" << QStringList() << 487 << 0.90;
+    QTest::newRow("belgioioso") << "belgioioso" << QStringList() << 394 << 0.99;
+    QTest::newRow("orebro, no odometry") << "orebro" << QStringList() << 236 << 0.75;
+}
+
+void TestScanPairs::sharesOnRealLogs() {
+    QFETCH(QString, log);
+    QFETCH(QStringList, options);
+    QFETCH(int, pairs);
+    QFETCH(double, share);
+    const QString path = realData(log + "-corrected.log.gz");
+    if (path.isEmpty())
+        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    QCOMPARE(run(QStringList{"--log", path} + options), 0);
+    const QJsonObject found = QJsonDocument::fromJson(output_).object();
+    QCOMPARE(found["pairs"].toInt(), pairs);
+    QVERIFY2(found["within_10cm_2deg"].toDouble() >= share, output_.constData());
+    QVERIFY2(found["accepted_wrong"].toDouble() < 0.01, output_.constData());
+}
+
+void TestScanPairs::withoutAnyGuess_data() {
+    QTest::addColumn<QString>("log");
+    QTest::addColumn<QString>("every");
+    QTest::addColumn<int>("pairs");
+    QTest::addColumn<double>("share");
+    QTest::newRow("intel") << "intel"
+                           << "1" << 909 << 0.965;
+    QTest::newRow("freiburg-079, every 5th") << "freiburg-079"
+                                             << "5" << 958 << 0.948;
+    QTest::newRow("fhw") << "fhw"
+                         << "1" << 487 << 0.90;
+    QTest::newRow("belgioioso") << "belgioioso"
+                                << "1" << 394 << 0.99;
+    QTest::newRow("orebro") << "orebro"
+                            << "1" << 236 << 0.97;
+}
+
+void TestScanPairs::withoutAnyGuess() {
+    QFETCH(QString, log);
+    QFETCH(QString, every);
+    QFETCH(int, pairs);
+    QFETCH(double, share);
+    const QString path = realData(log + "-corrected.log.gz");
+    if (path.isEmpty())
+        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    QCOMPARE(run({"--log", path, "--every", every, "--no-guess"}), 0);
+    const QJsonObject found = QJsonDocument::fromJson(output_).object();
+    QCOMPARE(found["pairs"].toInt(), pairs);
+    QVERIFY2(found["within_10cm_2deg"].toDouble() >= share, output_.constData());
+    QVERIFY2(found["accepted_of_right"].toDouble() >= 0.9, output_.constData());
+    QVERIFY2(found["accepted_wrong"].toDouble() < 0.003, output_.constData());
+}
+
+void TestScanPairs::halvesMakeTheWhole() {
+    const QString path = realData("belgioioso-corrected.log.gz");
+    if (path.isEmpty())
+        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    double right = 0;
+    int pairs = 0;
+    for (const QStringList &half : {QStringList{"--half", "1"}, QStringList{"--half", "2"}, QStringList{}}) {
+        QCOMPARE(run(QStringList{"--log", path, "--no-guess"} + half), 0);
+        const QJsonObject found = QJsonDocument::fromJson(output_).object();
+        const int sign = half.isEmpty() ? -1 : 1;
+        pairs += sign * found["pairs"].toInt();
+        right += sign * found["pairs"].toInt() * found["within_10cm_2deg"].toDouble();
+    }
+    QCOMPARE(pairs, 0);
+    QVERIFY(std::abs(right) < 1e-6);
+}
+
+// On the half of the pairs that the probability was not fitted to.
+void TestScanPairs::probabilitiesAreCalibrated() {
+    QStringList arguments{"--half", "2", "--every", "1", "--every", "5", "--every", "1"};
+    for (const char *log : {"intel", "freiburg-079", "fhw", "belgioioso", "orebro"}) {
+        const QString path = realData(QLatin1String(log) + "-corrected.log.gz");
+        if (path.isEmpty())
+            QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+        arguments += {"--log", path};
+    }
+    QCOMPARE(run(arguments, "calibration"), 0);
+    const QJsonObject found = QJsonDocument::fromJson(output_).object();
+    for (const char *of : {"best", "all"})
+        for (const QJsonValue &tenth : found[of].toArray())
+            if (tenth["solutions"].toInt() >= 50)
+                QVERIFY2(std::abs(tenth["told"].toDouble() - tenth["right"].toDouble()) < 0.03,
+                         output_.constData());
+    QVERIFY(QFile::exists(folder_.filePath("out/calibration.csv")));
+    QVERIFY(QFile::exists(folder_.filePath("out/calibration.tex")));
+}
+
+void TestScanPairs::writesARowAPairAndPictures() {
+    // A sensor that turns by 5 degrees a step before a corner of two walls. The last scan sees nothing.
+    QFile log(folder_.filePath("corner.log"));
+    QVERIFY(log.open(QIODevice::WriteOnly));
+    for (int scan = 0; scan < 4; ++scan) {
+        const double heading = scan * 5 * 3.14159265358979 / 180;
+        QByteArray ranges;
+        for (int i = 0; i < 180; ++i) {
+            const double angle = heading + (i - 90) * 3.14159265358979 / 180;
+            const double x = std::cos(angle) > 0.05 ? 3 / std::cos(angle) : 60;
+            const double y = std::sin(angle) < -0.05 ? -2 / std::sin(angle) : 60;
+            ranges += QByteArray::number(scan < 3 ? std::min(x, y) : 81.91, 'f', 3) + ' ';
+        }
+        const QByteArray pose = "0 0 " + QByteArray::number(heading, 'f', 6) + ' ';
+        const QByteArray wheels = "ODOM 0 0 " + QByteArray::number(heading + 0.05, 'f', 6) + " 0 0 0 1 h 1\n";
+        log.write("FLASER 180 " + ranges + pose + pose + "1 h " + QByteArray::number(scan) + '\n' + wheels);
+    }
+    log.close();
+    QCOMPARE(run({"--log", log.fileName(), "--draw", "5"}), 0);
+    const QJsonObject found = QJsonDocument::fromJson(output_).object();
+    QCOMPARE(found["pairs"].toInt(), 3);
+    QVERIFY2(std::abs(found["within_10cm_2deg"].toDouble() - 2.0 / 3) < 1e-6, output_.constData());
+    QVERIFY2(std::abs(found["accepted"].toDouble() - 2.0 / 3) < 1e-6, output_.constData());
+    QCOMPARE(found["accepted_wrong"].toDouble(), 0.0);
+    QFile csv(folder_.filePath("out/pairs.csv"));
+    QVERIFY(csv.open(QIODevice::ReadOnly));
+    const QList<QByteArray> rows = csv.readAll().trimmed().split('\n');
+    QCOMPARE(rows.size(), 4);
+    QVERIFY(rows[0].startsWith("from,to,error_m,error_deg,"));
+    QVERIFY(rows[3].startsWith("2,3,"));
+    QVERIFY(QFile::exists(folder_.filePath("out/pairs-2.svg")));
+    QVERIFY(!QFile::exists(folder_.filePath("out/pairs-0.svg")));
+    // Without odometry it is all the same; two walls and a corner are enough.
+    QCOMPARE(run({"--log", log.fileName(), "--draw", "5", "--no-guess"}), 0);
+    QVERIFY2(std::abs(QJsonDocument::fromJson(output_).object()["within_10cm_2deg"].toDouble() - 2.0 / 3) <
+                 1e-6,
+             output_.constData());
+}
+
+void TestScanPairs::needsALog() {
+    QCOMPARE(run({}), 2);
+    QCOMPARE(run({"--log", folder_.filePath("none.log")}), 1);
+    QCOMPARE(run({}, "calibration"), 2);
+    QCOMPARE(run({"--log", "a", "--log", "b"}), 2);
+    QCOMPARE(run({"--log", "a", "--half", "3"}), 2);
+}
+
+QTEST_GUILESS_MAIN(TestScanPairs)
+#include "TestScanPairs.moc"
