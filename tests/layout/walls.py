@@ -76,7 +76,7 @@ def complaint(path, include, root):
         return f"{zone} may include only these of Qt: {', '.join(sorted(QT_ALLOWED[zone])) or 'nothing'}"
     if path.startswith("vectorlib/include/") and include == "vectorlib/vectorlib.h":
         return "the rooms of vectorlib include what they need, not all"
-    room, target_room = room_of(path.removeprefix("vectorlib/include/")), room_of(include)
+    room, target_room = room_of(re.sub("^vectorlib/(include/vectorlib|src)/", "vectorlib/", path)), room_of(include)
     for name in (room, target_room):
         if name and name not in ROOMS:
             return f"vectorlib/{name} has no place among the rooms of {os.path.basename(__file__)}"
@@ -172,6 +172,7 @@ def self_test():
                 ("protocol/jsonrpc/A.cpp", "common/Result.h"), ("common/daemon/A.cpp", "vectorlib/mapping/MapBuilder.h"),
                 ("daemons/scanmatcher/A.cpp", "daemons/simulator/B.h"), ("gui/hermesctl/A.cpp", "daemons/simulator/B.h"),
                 ("vectorlib/include/vectorlib/edges/A.h", "vectorlib/mapping/MapBuilder.h"),
+                ("vectorlib/src/edges/A.cpp", "vectorlib/mapping/MapBuilder.h"),
                 ("daemons/velodynelogger/A.cpp", "vectorlib/mapping/MapBuilder.h"), ("common/A.cpp", "daemons/simulator/B.h"),
                 ("gui/vector/A.cpp", "vectorlib/experiments/B.h"), ("vectorlib/include/vectorlib/io/A.h", "vectorlib/experiments/B.h"),
                 ("vectorlib/experiments/A.cpp", "gui/desktop/B.h"), ("vectorlib/experiments/A.cpp", "QString")]
