@@ -1,7 +1,8 @@
 #include "common/daemon/Reply.h"
 #include "protocol/wire/Fields.h"
 
-#include <QCoreApplication>
+#include <QAbstractEventDispatcher>
+#include <QPointer>
 #include <QThread>
 #include <atomic>
 
@@ -21,10 +22,9 @@ public:
         if (answer && answer->isUndefined()) // of asJson()
             answer = Error(ErrorCode::InternalError,
                            QStringLiteral("internal error: a number of the result is not finite"));
-        QCoreApplication *application = QCoreApplication::instance();
-        if (application && QThread::currentThread() != application->thread()) {
+        if (home_ && QThread::currentThread() != home_->thread()) {
             QMetaObject::invokeMethod(
-                application, [target = std::move(sink_), answer] { target(answer); }, Qt::QueuedConnection);
+                home_, [target = std::move(sink_), answer] { target(answer); }, Qt::QueuedConnection);
         } else {
             sink_(std::move(answer));
         }
@@ -33,6 +33,7 @@ public:
 
 private:
     Sink sink_;
+    const QPointer<QObject> home_ = QAbstractEventDispatcher::instance(); // of the thread that asked
     std::atomic<bool> given_{false};
 };
 

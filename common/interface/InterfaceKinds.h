@@ -26,7 +26,8 @@ struct InterfaceKind {
 
 /// Those of this system. Windows has those that its programs connect by: tcp, tls and serial; no Unix
 /// sockets, no pseudo-terminals, and nothing listens.
-const std::vector<InterfaceKind> &interfaceKinds();
+/// Tests put others in their places before anything is opened.
+std::vector<InterfaceKind> &interfaceKinds();
 
 /// For their tables.
 template <typename T>

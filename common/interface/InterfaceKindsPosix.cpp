@@ -27,9 +27,9 @@ Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
 } // namespace
 
 // A new kind of carrier is one line here.
-const std::vector<InterfaceKind> &interfaceKinds() {
+std::vector<InterfaceKind> &interfaceKinds() {
     using Reach = InterfaceKind::Reach;
-    static const std::vector<InterfaceKind> kinds = {
+    static std::vector<InterfaceKind> kinds = {
         {"tcp", Reach::Network, makeInterfaceOf<TcpInterface>, makeServer<TcpServerInterface>},
         {"tls", Reach::Certified, makeInterfaceOf<TlsInterface>, makeServer<TlsServerInterface>},
         {"local", Reach::Computer, makeInterfaceOf<LocalInterface>, makeServer<LocalServerInterface>},

@@ -6,9 +6,9 @@
 
 namespace hermes {
 
-const std::vector<InterfaceKind> &interfaceKinds() {
+std::vector<InterfaceKind> &interfaceKinds() {
     using Reach = InterfaceKind::Reach;
-    static const std::vector<InterfaceKind> kinds = {
+    static std::vector<InterfaceKind> kinds = {
         {"tcp", Reach::Network, makeInterfaceOf<TcpInterface>, nullptr},
         {"tls", Reach::Certified, makeInterfaceOf<TlsInterface>, nullptr},
         {"serial", Reach::Computer, makeInterfaceOf<SerialInterface>, nullptr},

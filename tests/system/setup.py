@@ -228,7 +228,7 @@ class Setup(unittest.TestCase):
         """Somebody starts it again while it is to end: the search goes on, and another one is possible."""
         line, script = Line(self.folder, "line"), os.path.join(self.folder, "stubborn")
         with open(script, "w", encoding="utf-8") as file:
-            file.write(f"#!/bin/sh\ntrap '' TERM\nexec 3<>{line.path}\nwhile :; do sleep 0.1; done\n")
+            file.write(f"#!/bin/sh\ntrap '' TERM\nexec 3<>{line.path}\nwhile test -e {script}; do sleep 0.1; done\n")
         os.chmod(script, 0o755)
         supervisor = self.supervisor([line.path], [{"name": "stubborn", "program": script, "autostart": True}])
 

@@ -32,6 +32,9 @@ private Q_SLOTS:
     void quietTextIsPainted();
     void wordsAreOfAnOperator();
     void wordsOfDaemonsAreMadePlain();
+
+private:
+    std::unique_ptr<RobotProcesses> robot_;
 };
 
 namespace {
@@ -164,6 +167,8 @@ double contrast(const QColor &one, const QColor &other) {
 
 void TestReadable::initTestCase() {
     theme::apply();
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startAll();
 }
 
 void TestReadable::textsFit_data() {
@@ -174,9 +179,7 @@ void TestReadable::textsFit_data() {
 
 void TestReadable::textsFit() {
     QFETCH(const QSize, size);
-    RobotProcesses robot;
-    robot.startAll();
-    OpenWindow open(robot);
+    OpenWindow open(*robot_);
     QVERIFY(open.show());
     open.window.resize(size);
     QTRY_VERIFY_WITH_TIMEOUT(open.fleet.robot() && open.drive.isPossible(), 20000);
@@ -195,14 +198,12 @@ void TestReadable::textsFit() {
 }
 
 void TestReadable::whatDrivesIsInSight() {
-    RobotProcesses robot;
-    robot.startAll();
-    OpenWindow open(robot);
+    OpenWindow open(*robot_);
     QVERIFY(open.show());
     open.window.resize(1024, 600);
     QTRY_VERIFY_WITH_TIMEOUT(open.drive.isPossible(), 20000);
     Client other;
-    other.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
+    other.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
     QTRY_VERIFY(other.isConnected());
     const QJsonObject anna{{"client", "anna on laptop7"}};
     QVERIFY(other.callAndWait("motor.estop", anna).ok());
