@@ -13,8 +13,8 @@ VECTORLIB_BODY LatexExport::LatexExport(std::ostream &out, const std::string &ti
         out << "\\documentclass[a4paper,10pt]{article}\n";
     else
         out << "% For \\input in a document with:\n";
-    for (const char *line :
-         {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}", "\\usepackage{longtable}", "\\usepackage{tikz}"})
+    for (const char *line : {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}",
+                             "\\usepackage{longtable}", "\\usepackage{tikz}"})
         out << prefix << line << '\n';
     if (as == As::Fragment)
         return;

@@ -1,13 +1,9 @@
 #pragma once
 
-#include "vectorlib/Body.h"
-#include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/SegmentPair.h"
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/geometry/Vector2D.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace vectorlib {
@@ -45,24 +41,62 @@ public:
 
     /// Adds a pair; false (and nothing added) when a segment has no direction or is not finite, the weight is
     /// not a positive number, or the sums would be beyond what a double holds.
-    bool add(const SegmentPair &pair);
+    bool add(const SegmentPair &pair) {
+        if (!isUsable(pair))
+            return false;
+        if (pairs_ == 0) {
+            frame_ = pair.fixed.direction();
+            turn_ = turnOf(pair);
+        }
+        const Sums sum = sums_ + sumsOf(pair);
+        if (!std::isfinite(sum.pp) || !std::isfinite(sum.w))
+            return false;
+        sums_ = sum;
+        ++pairs_;
+        return true;
+    }
     /// The same for two segments.
     bool add(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
         return add({fixed, moving, weight});
     }
     /// Adds all that are usable; returns how many those are.
-    std::size_t add(const std::vector<SegmentPair> &pairs);
+    std::size_t add(const std::vector<SegmentPair> &pairs) {
+        std::size_t added = 0;
+        for (const SegmentPair &pair : pairs)
+            added += add(pair);
+        return added;
+    }
     /// Adds all pairs of another set.
-    void add(const LineSegmentRegistration &o);
+    void add(const LineSegmentRegistration &o) {
+        if (pairs_ == 0) {
+            frame_ = o.frame_;
+            turn_ = o.turn_;
+        }
+        sums_ = sums_ + inFrameOfThis(o);
+        pairs_ += o.pairs_;
+    }
     /// Takes away a pair that was added with the same weight; false for what cannot have been added.
-    bool remove(const SegmentPair &pair);
+    bool remove(const SegmentPair &pair) {
+        if (pairs_ == 0 || !isUsable(pair))
+            return false;
+        drop(1, sumsOf(pair));
+        return true;
+    }
     /// The same for two segments.
     bool remove(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
         return remove({fixed, moving, weight});
     }
     /// Takes away all pairs of another set; false when it has more than there are.
-    bool remove(const LineSegmentRegistration &o);
-    void clear();
+    bool remove(const LineSegmentRegistration &o) {
+        if (o.pairs_ > pairs_)
+            return false;
+        drop(o.pairs_, inFrameOfThis(o));
+        return true;
+    }
+    void clear() {
+        sums_ = Sums();
+        pairs_ = 0;
+    }
     int pairs() const { return pairs_; }
     double weight() const { return sums_.w; }
 
@@ -71,7 +105,12 @@ public:
 
     /// The optimal transformation. Where the translation is not determined, its part along the lines is 0:
     /// only the shift across them is made. Paper (5) to (9) with erratum 7. Identity without pairs.
-    Transformation2D transformation() const;
+    Transformation2D transformation() const {
+        if (pairs_ == 0)
+            return {};
+        const Vector2D<double> t = fromFrame(translation());
+        return {t.x, t.y, turnAngle() + meanAngle()};
+    }
     /// In [0, 1]; 0 means that the translation is not determined, 1 that directions are spread evenly. Paper
     /// (28), erratum 9.
     double reliability() const {
@@ -97,7 +136,11 @@ private:
         double a = 0, aa = 0;             // of the angles
         double sine = 0, cosine = 0;      // sum w sin, w cos of the angles: Wahba
 
-        Sums plus(const Sums &o, double k) const;
+        Sums plus(const Sums &o, double k) const {
+            return {w + k * o.w,   vxx + k * o.vxx,   vxy + k * o.vxy,      vyy + k * o.vyy,
+                    px + k * o.px, py + k * o.py,     pp + k * o.pp,        a + k * o.a,
+                    aa + k * o.aa, sine + k * o.sine, cosine + k * o.cosine};
+        }
         Sums operator+(const Sums &o) const { return plus(o, 1); }
     };
 
@@ -108,18 +151,91 @@ private:
     Vector2D<double> fromFrame(Vector2D<double> v) const { return turned(v, frame_); }
 
     // Cosine and sine of the pair's own rotation.
-    static Vector2D<double> turnOf(const SegmentPair &p);
-    Sums sumsOf(const SegmentPair &pair) const;
+    static Vector2D<double> turnOf(const SegmentPair &p) {
+        const Vector2D<double> v = p.fixed.direction(), d = p.moving.direction();
+        return {d.dot(v), d.cross(v)};
+    }
+    Sums sumsOf(const SegmentPair &pair) const {
+        const double w = pair.weight;
+        const Vector2D<double> v = toFrame(pair.fixed.direction()), turn = turnOf(pair);
+        // Erratum 6: with each line's own left normal the dynamic line moves by (p_S - p_D) along n_S.
+        const double shift =
+            pair.fixed.begin().dot(pair.fixed.normal()) - pair.moving.begin().dot(pair.moving.normal());
+        // Erratum 8: the sums take the unwrapped angle itself. Unwrapping near the first angle, and not near
+        // the previous one, lets pairs be removed in any order.
+        const double sine = turn_.cross(turn), cosine = turn_.dot(turn), alpha = std::atan2(sine, cosine);
+        return {w,
+                w * v.x * v.x,
+                w * v.x * v.y,
+                w * v.y * v.y,
+                -w * shift * v.y,
+                w * shift * v.x,
+                w * shift * shift,
+                w * alpha,
+                w * alpha * alpha,
+                w * sine,
+                w * cosine};
+    }
     // The sums of another set as if its pairs had been added here.
-    Sums inFrameOfThis(const LineSegmentRegistration &o) const;
-    void drop(int count, const Sums &sums);
+    Sums inFrameOfThis(const LineSegmentRegistration &o) const {
+        Sums s = o.sums_;
+        if (o.pairs_ == 0)
+            return s;
+        const Vector2D<double> f = toFrame(o.frame_), p = turned({s.px, s.py}, f);
+        const double xx = s.vxx, xy = s.vxy, yy = s.vyy;
+        s.vxx = f.x * f.x * xx - 2 * f.x * f.y * xy + f.y * f.y * yy;
+        s.vxy = f.x * f.y * (xx - yy) + (f.x * f.x - f.y * f.y) * xy;
+        s.vyy = f.y * f.y * xx + 2 * f.x * f.y * xy + f.x * f.x * yy;
+        s.px = p.x;
+        s.py = p.y;
+        // Its angles lie beside another one; its mean is brought next to the angle of this set.
+        const Vector2D<double> turn(turn_.dot(o.turn_), turn_.cross(o.turn_));
+        const double beside = std::atan2(turn.y, turn.x), mean = s.a / s.w + beside;
+        const double more = beside - 2 * pi * std::round(mean / (2 * pi));
+        s.aa += 2 * more * s.a + more * more * s.w;
+        s.a += more * s.w;
+        const Vector2D<double> sum = turned({s.cosine, s.sine}, turn);
+        s.cosine = sum.x;
+        s.sine = sum.y;
+        return s;
+    }
+    void drop(int count, const Sums &sums) {
+        sums_ = sums_.plus(sums, -1);
+        pairs_ -= count;
+        if (pairs_ == 0)
+            clear();
+    }
     double determinant() const { return sums_.vxx * sums_.vyy - sums_.vxy * sums_.vxy; }
-    Vector2D<double> translation() const;
+    Vector2D<double> translation() const { // in the frame
+        const Sums &s = sums_;
+        if (isSolvable()) {
+            const double d = determinant();
+            return {(s.px * s.vxx + s.vxy * s.py) / d, (s.py * s.vyy + s.vxy * s.px) / d}; // erratum 7
+        }
+        // One direction only: the mean shift across it.
+        return s.w > 0 ? Vector2D<double>(s.px / s.w, s.py / s.w) : Vector2D<double>();
+    }
     double turnAngle() const { return std::atan2(turn_.y, turn_.x); }
     double meanAngle() const { // beside turn_
         return rotation == Rotation::Mitsuta ? sums_.a / sums_.w : std::atan2(sums_.sine, sums_.cosine);
     }
-    Ambiguity ambiguityAt(Vector2D<double> t, double alpha) const;
+    Ambiguity ambiguityAt(Vector2D<double> t, double alpha) const { // t in the frame, alpha beside turn_
+        const Sums &s = sums_;
+        Ambiguity result;
+        if (rotation == Rotation::Mitsuta) {
+            const double mean = s.a / s.w, offset = wrapAngle(alpha - mean);
+            result.alpha = std::max(0.0, s.aa - mean * s.a) + s.w * offset * offset;
+        } else {
+            result.alpha =
+                std::max(0.0, 2 * (s.w - std::sin(alpha) * s.sine - std::cos(alpha) * s.cosine)); // (13)
+        }
+        result.alpha *= stiffness.alpha;
+        // The P are perpendicular to the v, so that sum w P v_y^2 - ... of (7.40) is just sum w P.
+        result.xy = s.pp - 2 * (t.x * s.px + t.y * s.py) + t.x * t.x * s.vyy - 2 * t.x * t.y * s.vxy +
+                    t.y * t.y * s.vxx;
+        result.xy = stiffness.xy * std::max(0.0, result.xy);
+        return result;
+    }
 
     Sums sums_;
     Vector2D<double> frame_{1, 0}; // direction of the first static segment
@@ -128,7 +244,3 @@ private:
 };
 
 } // namespace vectorlib
-
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/LineSegmentRegistration.cpp"
-#endif
