@@ -279,8 +279,8 @@ private Q_SLOTS:
 
     void helpAndVersion() {
         QCOMPARE(run({"--version"}).out.left(14), QByteArray("hermes-vector "));
-        for (const char *command : {"segment", "vectorize", "register", "similarity", "match", "observe",
-                                    "map", "ring"}) {
+        for (const char *command :
+             {"segment", "vectorize", "register", "similarity", "match", "observe", "map", "ring"}) {
             const Result r = run({command, "--help"});
             QCOMPARE(r.status, 0);
             QVERIFY2(r.out.contains(QByteArray("Example:\n  hermes-vector ") + command), r.out.constData());
