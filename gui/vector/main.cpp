@@ -2,7 +2,6 @@
 #include "gui/vector/CommandLine.h"
 #include "gui/vector/Options.h"
 
-#include <algorithm>
 #include <iostream>
 
 using namespace hermes;
@@ -10,12 +9,13 @@ using namespace hermes::vector;
 
 namespace {
 
-constexpr const char *elsewhere[] = {"experiment", "report"};
-
-/// For the help alone: these are commands of hermes-experiments, which is asked before.
+/// Commands of hermes-experiments, which is asked before: here they are for the help alone.
 void addElsewhere(CLI::App &app) {
-    for (const char *name : elsewhere)
-        app.add_subcommand(name, "Of the package hermes-experiments: hermes-experiments --help");
+    app.add_subcommand(
+        "experiment",
+        "Repeat an experiment of the documents behind Hermes (of the package hermes-experiments)");
+    app.add_subcommand("report", "Register consecutive scans of a world and tell how well that went (of the "
+                                 "package hermes-experiments)");
 }
 
 /// Lets hermes-experiments, beside this program or in the search path, do it; comes back when there is none.
@@ -33,8 +33,7 @@ int runElsewhere(const std::vector<std::string> &arguments) {
 /// hermes-vector: the vector library at the command line. See docs/hermes-vector.md.
 int main(int argc, char **argv) {
     const std::vector<std::string> arguments = programArguments(argc, argv);
-    if (!arguments.empty() &&
-        std::find(std::begin(elsewhere), std::end(elsewhere), arguments[0]) != std::end(elsewhere))
+    if (!arguments.empty() && (arguments[0] == "experiment" || arguments[0] == "report"))
         return runElsewhere(arguments);
     const CommandLine line{"hermes-vector",
                            HERMES_VERSION,
