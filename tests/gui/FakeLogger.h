@@ -147,7 +147,7 @@ public:
 };
 
 /// Loggers in the process of the test, and connections to them.
-class FakeRobot {
+class FakeLoggers {
 public:
     FakeLogger &add(const QString &name, FakeLogger::Options options = {}) {
         loggers.push_back(std::make_unique<FakeLogger>(name, root.path(), asked, options));

@@ -44,7 +44,7 @@ private:
     RecordedSession record(const QString &name);
     Result<void> play(const RecordedSession &session, const SessionPlayer::Options &options = {});
 
-    std::unique_ptr<FakeRobot> robot_;
+    std::unique_ptr<FakeLoggers> robot_;
     FakeLogger *a_ = nullptr, *b_ = nullptr, *c_ = nullptr;
     std::chrono::milliseconds timeout_ = Client::defaultTimeout;
 };
@@ -52,7 +52,7 @@ private:
 void TestSessions::init() {
     Log::instance().setStderr(false);
     timeout_ = slowness * Client::defaultTimeout;
-    robot_ = std::make_unique<FakeRobot>();
+    robot_ = std::make_unique<FakeLoggers>();
     a_ = &robot_->add("a", {true, true});
     b_ = &robot_->add("b", {true, true});
     c_ = &robot_->add("c", {false, false});

@@ -17,6 +17,13 @@ class OpenWindow {
 public:
     OpenWindow() = default; // on nobody
     explicit OpenWindow(RobotProcesses &robot) { robot.connectTo(fleet); }
+    /// On a motor control alone, at this address.
+    explicit OpenWindow(const QString &motors) {
+        [&] {
+            QVERIFY(fleet.add(motors).ok());
+            QTRY_VERIFY_WITH_TIMEOUT(drive.stateAge().isFresh(), 10000);
+        }();
+    }
 
     /// To be verified first: what one does in a window that is not active goes nowhere.
     bool show() {

@@ -21,9 +21,10 @@ class RobotProcesses {
 public:
     ~RobotProcesses() {
         for (auto &[name, daemon] : daemons_)
-            daemon.process->terminate();
+            if (daemon.process)
+                daemon.process->terminate();
         for (auto &[name, daemon] : daemons_)
-            if (!daemon.process->waitForFinished(5000))
+            if (daemon.process && !daemon.process->waitForFinished(5000))
                 daemon.process->kill();
     }
 
@@ -77,6 +78,8 @@ public:
               {"controllers.1.url=" + url, "controllers.2.url=" + url, "safety.command_timeout_s=1"});
         daemons_.at("motorcontrol").process->goBeforeOthers();
     }
+    /// One that this object does not start.
+    void add(const QString &name, quint16 port) { daemons_[name].port = port; }
     /// A supervisor that names all daemons that were started so far, as those of one robot.
     quint16 supervise(const QString &robot, const QStringList &settings = {}) {
         QJsonArray processes;

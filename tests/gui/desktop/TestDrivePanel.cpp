@@ -1,7 +1,7 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/drive/Stick.h"
-#include "tests/gui/desktop/RobotProcesses.h"
+#include "tests/support/FakeRobot.h"
 
 #include <QLabel>
 #include <QLineEdit>
@@ -13,7 +13,7 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// Drives the simulated robot with stick and keys, as an operator does.
+/// Drives a robot with stick and keys, as an operator does.
 class TestDrivePanel : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -34,7 +34,7 @@ private Q_SLOTS:
     void heldByAnotherAndTakenOver();
     void whoTakesOverKeepsTheControl();
     void keysDoNotDisturbTheDriveOfAnother();
-    void motorControlKilledAndRestarted();
+    void motorControlGoneAndBack();
     void aHeldKeyDrivesOnlyOnce_data();
     void aHeldKeyDrivesOnlyOnce();
     void aRepeatedKeyOfAMenuDoesNotDrive();
@@ -80,7 +80,7 @@ private:
     void awaitRest() { QTRY_VERIFY(!drive_->mustLetGo()); }
 
     std::unique_ptr<QTimer> repeating_;
-    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<FakeRobot> robot_;
     std::unique_ptr<Fleet> fleet_;
     std::unique_ptr<DriveControl> drive_;
     std::unique_ptr<MainWindow> window_;
@@ -88,20 +88,18 @@ private:
 };
 
 void TestDrivePanel::init() {
-    robot_ = std::make_unique<RobotProcesses>();
-    robot_->startMotors();
+    robot_ = std::make_unique<FakeRobot>();
     fleet_ = std::make_unique<Fleet>();
-    robot_->connectTo(*fleet_);
+    QVERIFY(fleet_->add(robot_->address()).ok());
     drive_ = std::make_unique<DriveControl>(*fleet_);
     window_ = std::make_unique<MainWindow>(*fleet_, *drive_, QString());
     window_->show();
     window_->activateWindow();
     QVERIFY(QTest::qWaitForWindowActive(window_.get()));
     client_ = std::make_unique<Client>();
-    client_->connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+    client_->connectTo(robot_->address());
     QVERIFY(client_->waitConnected().ok());
-    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
-    QTRY_VERIFY(find<Stick>("stick")->isEnabled());
+    QTRY_VERIFY(find<Stick>("stick")->isEnabled() && drive_->stateAge().isFresh());
 }
 
 void TestDrivePanel::cleanup() {
@@ -301,7 +299,7 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
 
 void TestDrivePanel::whoTakesOverKeepsTheControl() {
     Client owner; // who may
-    owner.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol"))));
+    owner.connectTo(asOwner(robot_->address()));
     QVERIFY(owner.waitConnected().ok());
     QTest::keyPress(window_.get(), Qt::Key_W);
     awaitMotion();
@@ -339,7 +337,6 @@ void TestDrivePanel::aHeldKeyDrivesOnlyOnce_data() {
     QTest::addColumn<bool>("isKilled");
     QTest::addColumn<bool>("isRepeated");
     QTest::newRow("killed") << true << false;
-    QTest::newRow("frozen") << false << false;
     QTest::newRow("killed, repeated") << true << true;
     QTest::newRow("frozen, repeated") << false << true;
 }
@@ -352,15 +349,14 @@ void TestDrivePanel::aHeldKeyDrivesOnlyOnce() {
         repeat(Qt::Key_W);
     awaitMotion();
     if (isKilled) {
-        robot_->kill("motorcontrol");
+        robot_->end();
         QTRY_VERIFY(!drive_->isPossible());
-        robot_->startMotorControl();
+        robot_->start();
     } else {
-        robot_->signal("motorcontrol", SIGSTOP);
-        QTest::qWait(2500); // longer than the control lasts, and the time in which it may be silent
-        robot_->signal("motorcontrol", SIGCONT);
+        robot_->freeze();
+        QTest::qWait(1500); // longer than the control lasts, and the time in which it may be silent
+        robot_->thaw();
     }
-    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
     QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
     QTRY_VERIFY(!drive_->isDriving());
     for (int i = 0; i < 20; ++i) {
@@ -396,16 +392,15 @@ void TestDrivePanel::aRepeatedKeyOfAMenuDoesNotDrive() {
     QTest::keyRelease(window_.get(), Qt::Key_W);
 }
 
-void TestDrivePanel::motorControlKilledAndRestarted() {
+void TestDrivePanel::motorControlGoneAndBack() {
     press(0, 1);
     awaitMotion();
-    robot_->kill("motorcontrol");
+    robot_->end();
     QTRY_VERIFY(!drive_->isDriving());
     QTRY_COMPARE(find<QLabel>("lease")->text(), QString("nothing to drive"));
     letGo();
-    robot_->startMotorControl();
+    robot_->start();
     QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
-    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
     awaitRest();
     press(0, 1);
     awaitMotion();
@@ -449,7 +444,7 @@ void TestDrivePanel::speedLimitInItsUnit() {
     QCOMPARE(drive_->limit(), 1.0);
     QCOMPARE(speed->text(), QString("1.00"));
     Client owner;
-    owner.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol"))));
+    owner.connectTo(asOwner(robot_->address()));
     QVERIFY(owner.waitConnected().ok());
     const QJsonObject slower{{"motion", QJsonObject{{"vx", 0.5}}}};
     QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", slower}}).ok());

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/EventsPanel.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/FakeRobot.h"
 
 #include <QTreeView>
 
@@ -29,10 +30,9 @@ private:
 
 void TestEventLine::whatIsOverIsSaidToBeOver() {
     RobotProcesses robot;
-    robot.startMotors();
+    robot.start("simulator");
     OpenWindow window(robot);
     QVERIFY(window.show());
-    QTRY_VERIFY(window.fleet.robot()->withName("simulator"));
     robot.signal("simulator", SIGSTOP);
     QTRY_VERIFY2_WITH_TIMEOUT(line(window)->text().contains("simulator: It is connected, but does not"),
                               qPrintable(line(window)->text()), 10000);
@@ -88,15 +88,14 @@ void TestEventLine::oneNameOfADaemonInAllOfTheList() {
 }
 
 void TestEventLine::otherClientTakesTheControl() {
-    RobotProcesses robot;
-    robot.startMotors();
-    OpenWindow window(robot);
+    FakeRobot robot;
+    OpenWindow window(robot.address());
     QVERIFY(window.show());
     Client other;
-    other.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
-    QTRY_VERIFY(other.isConnected());
+    other.connectTo(robot.address());
+    QVERIFY(other.waitConnected().ok());
     const QJsonObject patrol{{"client", "patrol"}, {"timeout_s", 30}};
-    QTRY_VERIFY_WITH_TIMEOUT(other.callAndWait("control.acquire", patrol).ok(), 10000);
+    QVERIFY(other.callAndWait("control.acquire", patrol).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(column(window, EventTable::TextColumn).contains("patrol has taken the control"),
                               qPrintable(column(window, EventTable::TextColumn).join('\n')), 10000);
     QVERIFY(other.callAndWait("control.release").ok());

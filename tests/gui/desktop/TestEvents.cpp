@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/EventsPanel.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/FakeRobot.h"
 
 #include <QCheckBox>
 #include <QLabel>
@@ -68,18 +69,17 @@ void TestEvents::errorWaitsForAcknowledgement() {
 }
 
 void TestEvents::warningThatIsOverGoes() {
-    Events events;
+    Events events, errors;
+    errors.goesOn("b", Level::Error, "lidar", "no packets");
+    errors.ends("b");
     events.goesOn("a", Level::Warning, "lidar", "silent");
-    QTest::qWait(100);
+    QTest::qWait(500);
     QVERIFY(events.loudest()); // as long as it lasts
     events.ends("a");
     QVERIFY(events.loudest());
     QTRY_VERIFY_WITH_TIMEOUT(!events.loudest(), int(1000 * Events::warningStays_s) + 2000);
     QVERIFY(events.all().front().isOver && !events.all().front().isAcknowledged);
-    events.goesOn("b", Level::Error, "lidar", "no packets");
-    events.ends("b");
-    QTest::qWait(int(1000 * Events::warningStays_s) + 500);
-    QVERIFY(events.loudest()); // an error waits
+    QVERIFY(errors.loudest()); // an error waits
 }
 
 void TestEvents::whatComesAgainIsOneEvent() {
@@ -192,14 +192,12 @@ void TestEvents::killedProcessIsAnError() {
 }
 
 void TestEvents::whoStoppedIsTold() {
-    RobotProcesses robot;
-    robot.startMotors();
-    OpenWindow window(robot);
+    FakeRobot robot;
+    OpenWindow window(robot.address());
     QVERIFY(window.show());
     Client other;
-    other.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
-    QTRY_VERIFY(other.isConnected());
-    QTRY_VERIFY_WITH_TIMEOUT(other.callAndWait("control.state").ok(), 10000);
+    other.connectTo(robot.address());
+    QVERIFY(other.waitConnected().ok());
     QVERIFY(other.callAndWait("motor.estop", QJsonObject{{"client", "anna on laptop7"}}).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(textOf(window).contains("emergency stop by anna on laptop7"),
                               qPrintable(textOf(window)), 10000);
@@ -239,7 +237,7 @@ void TestEvents::healthIsToldWhileItLasts() {
 
 void TestEvents::frozenDaemonIsAnError() {
     RobotProcesses robot;
-    robot.startMotors();
+    robot.start("simulator");
     OpenWindow window(robot);
     QVERIFY(window.show());
     robot.signal("simulator", SIGSTOP);

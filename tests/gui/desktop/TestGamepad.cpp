@@ -2,6 +2,7 @@
 #include "gui/desktop/drive/DriveGamepad.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/gui/desktop/VirtualGamepad.h"
+#include "tests/support/FakeRobot.h"
 
 #include <QLabel>
 #include <cmath>
@@ -10,7 +11,7 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// A gamepad that SDL makes up drives the motors of a simulated robot.
+/// A gamepad that SDL makes up drives the motors of a robot.
 class TestGamepad : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -34,17 +35,14 @@ private:
     bool isSeen() const { return window().findChild<QLabel *>("gamepad")->isVisible(); }
     QString shown() const { return window().findChild<QLabel *>("gamepad")->text(); }
 
-    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<FakeRobot> robot_;
     std::unique_ptr<OpenWindow> window_;
 };
 
 void TestGamepad::initTestCase() {
-    robot_ = std::make_unique<RobotProcesses>();
-    robot_->startMotors();
-    window_ = std::make_unique<OpenWindow>(*robot_);
+    robot_ = std::make_unique<FakeRobot>();
+    window_ = std::make_unique<OpenWindow>(robot_->address());
     QVERIFY(window_->show());
-    QTRY_VERIFY_WITH_TIMEOUT(drive().isPossible(), 10000);
-    QTRY_VERIFY_WITH_TIMEOUT(drive().stateAge().isFresh(), 10000);
 }
 
 void TestGamepad::cleanupTestCase() {

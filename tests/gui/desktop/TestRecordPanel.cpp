@@ -117,7 +117,7 @@ void TestRecordPanel::recordsAsOneAndReplays() {
 
 /// As with hermesctl: see TestSessions.
 void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
-    FakeRobot robot;
+    FakeLoggers robot;
     FakeLogger &prompt = robot.add("prompt"), &late = robot.add("late");
     Fleet fleet;
     for (const auto &logger : robot.loggers)
@@ -239,7 +239,7 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
 
 /// Its link was gone as Stop was pressed.
 void TestRecordPanel::aLoggerThatWasAwayIsStoppedToo() {
-    FakeRobot robot;
+    FakeLoggers robot;
     FakeLogger &here = robot.add("here"), &away = robot.add("away");
     Fleet fleet;
     for (const auto &logger : robot.loggers)
@@ -377,7 +377,7 @@ void TestRecordPanel::recordingsAreSortedByTheHeader() {
 
 /// A packet that the computer dropped is also missing: the counts are of several kinds and have no sum.
 void TestRecordPanel::lossesAreToldByTheirNames() {
-    FakeRobot robot;
+    FakeLoggers robot;
     FakeLogger &logger = robot.add("lidar");
     Fleet fleet;
     QVERIFY(fleet.add(logger.address().section("//", -1)).ok());

@@ -60,7 +60,7 @@ private:
         bool serialRecords() { return records(*clients.at(1)); }
 
         RobotProcesses real;
-        FakeRobot other;
+        FakeLoggers other;
         Fleet fleet;
         std::vector<std::unique_ptr<Client>> clients;
     };
@@ -71,7 +71,7 @@ private:
         for (const QString &logger : loggers)
             QTRY_VERIFY(text("amount").contains(logger));
     }
-    void open(Fleet &fleet, FakeRobot &robot) {
+    void open(Fleet &fleet, FakeLoggers &robot) {
         QStringList names;
         for (const auto &logger : robot.loggers) {
             QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
@@ -150,7 +150,7 @@ void TestRecordingEnd::aStopOfARobotThatIsRemoved() {
 
 /// Its link was gone as Stop was pressed, and others have begun another recording meanwhile.
 void TestRecordingEnd::whatWasBegunLaterGoesOn() {
-    FakeRobot robot;
+    FakeLoggers robot;
     FakeLogger &here = robot.add("here"), &away = robot.add("away");
     Fleet fleet;
     open(fleet, robot);
@@ -200,7 +200,7 @@ void TestRecordingEnd::aStartWhoseLinkBreaksIsTakenBack() {
 }
 
 void TestRecordingEnd::anotherClientEndsIt() {
-    FakeRobot robot;
+    FakeLoggers robot;
     robot.add("one");
     robot.add("two");
     Fleet fleet;
@@ -219,7 +219,7 @@ void TestRecordingEnd::anotherClientEndsIt() {
 }
 
 void TestRecordingEnd::aFullDiskEndsIt() {
-    FakeRobot robot;
+    FakeLoggers robot;
     FakeLogger &logger = robot.add("lidar");
     Fleet fleet;
     open(fleet, robot);
@@ -238,7 +238,7 @@ void TestRecordingEnd::aFullDiskEndsIt() {
 }
 
 void TestRecordingEnd::aFaultEndsIt() {
-    FakeRobot robot;
+    FakeLoggers robot;
     FakeLogger &logger = robot.add("lidar");
     Fleet fleet;
     open(fleet, robot);
@@ -254,7 +254,7 @@ void TestRecordingEnd::aFaultEndsIt() {
 
 /// In a dock that is not high the list gives way.
 void TestRecordingEnd::whatIsToldIsInView() {
-    FakeRobot robot;
+    FakeLoggers robot;
     Fleet fleet;
     robot.add("lidar");
     open(fleet, robot);

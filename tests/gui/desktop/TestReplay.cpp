@@ -413,7 +413,7 @@ void TestReplay::impossibleTimes() {
 }
 
 void TestReplay::twoOfOneNameReplay() {
-    FakeRobot robot;
+    FakeLoggers robot;
     Fleet fleet;
     for (int i = 0; i < 2; ++i) {
         const FakeLogger::Options options{false, true};

@@ -55,14 +55,14 @@ private:
         return !open_->window.isVisible();
     }
 
-    std::unique_ptr<FakeRobot> fakes_;
+    std::unique_ptr<FakeLoggers> fakes_;
     std::unique_ptr<TcpLink> link_; ///< to the first
     std::unique_ptr<OpenWindow> open_;
 };
 
 /// Two robots with a logger each; the first is chosen.
 void TestReplayEnds::init() {
-    fakes_ = std::make_unique<FakeRobot>();
+    fakes_ = std::make_unique<FakeLoggers>();
     open_ = std::make_unique<OpenWindow>();
     for (const char *const name : {"near", "far"}) {
         FakeLogger &logger = fakes_->add(name);

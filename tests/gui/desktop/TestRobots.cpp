@@ -2,6 +2,7 @@
 #include "gui/desktop/panels/DaemonsPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/FakeRobot.h"
 
 #include <QAbstractItemView>
 #include <QComboBox>
@@ -11,7 +12,7 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// Two robots on one host, each with a supervisor, motors and a simulated world, in one window.
+/// Two robots on one host, each with a supervisor and motors, in one window.
 class TestRobots : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -33,7 +34,8 @@ private Q_SLOTS:
 private:
     /// One of the robots, with an independent eye on its motors.
     struct One {
-        RobotProcesses processes;
+        FakeRobot motors;
+        RobotProcesses processes; ///< the supervisor
         Client eye;
         QString name, supervisor;
     };
@@ -51,9 +53,7 @@ private:
         QVERIFY(open_->fleet.add(one.supervisor));
     }
     Robot *robot(const One &one) const { return open_->fleet.robotAt(one.supervisor); }
-    static QString motorsOf(const One &one) {
-        return QString("127.0.0.1:%1").arg(one.processes.port("motorcontrol"));
-    }
+    static QString motorsOf(const One &one) { return one.motors.address(); }
     static QJsonObject state(One &one) {
         const auto told = one.eye.callAndWait("motor.state");
         return told ? told->toObject() : QJsonObject();
@@ -126,13 +126,11 @@ void TestRobots::init() {
     red_->name = "red";
     blue_->name = "blue";
     for (One *one : {red_.get(), blue_.get()}) {
-        one->processes.startMotors();
+        one->processes.add("motorcontrol", one->motors.port());
         one->eye.connectTo(motorsOf(*one));
     }
-    for (One *one : {red_.get(), blue_.get()}) {
-        QVERIFY(one->eye.waitConnected(std::chrono::milliseconds(10000)));
-        QTRY_VERIFY_WITH_TIMEOUT(state(*one)["ready"].toBool(), 20000);
-    }
+    for (One *one : {red_.get(), blue_.get()})
+        QVERIFY(one->eye.waitConnected());
     open_ = std::make_unique<OpenWindow>();
     QVERIFY(open_->show());
 }
@@ -181,8 +179,8 @@ void TestRobots::drivingOneNeverMovesTheOther() {
     QTest::keyRelease(&open_->window, Qt::Key_W);
     drive(*blue_);
     QVERIFY(speed(*red_) < 0.01);
-    red_->processes.kill("motorcontrol");
-    blue_->processes.kill("motorcontrol"); // nobody else is driven instead
+    red_->motors.end();
+    blue_->motors.end(); // nobody else is driven instead
     QTRY_VERIFY(!open_->drive.isPossible());
     QTest::keyRelease(&open_->window, Qt::Key_W);
 }
@@ -219,7 +217,7 @@ void TestRobots::panelsShowTheChosenOne() {
 void TestRobots::aSupervisorThatDiesLosesNobody() {
     openBoth();
     const auto daemons = robot(*red_)->daemons();
-    QCOMPARE(int(daemons.size()), 3);
+    QCOMPARE(int(daemons.size()), 2);
     Robot *const before = robot(*red_);
     red_->processes.kill("supervisor");
     QTRY_VERIFY(!before->supervisor());
@@ -266,7 +264,7 @@ void TestRobots::theSameWheelsAreDrivenAfterTheMove() {
 
 void TestRobots::aStopSurvivesTheMove() {
     addBothMotors();
-    red_->processes.signal("motorcontrol", SIGSTOP);
+    red_->motors.freeze();
     pressStop();
     QTRY_VERIFY(isStopped(*blue_)); // it is of the same set
     addSupervisor(*red_);
@@ -280,7 +278,7 @@ void TestRobots::aStopSurvivesTheMove() {
     QTest::qWait(300);
     QVERIFY(!banner().isEmpty());
     pressStop();
-    red_->processes.signal("motorcontrol", SIGCONT);
+    red_->motors.thaw();
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().phase() == StopPhase::Confirmed, 10000);
     QVERIFY(isStopped(*red_));
     OpenWindow::click(&open_->window, "release");

@@ -1,4 +1,5 @@
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/FakeRobot.h"
 
 #include <QLabel>
 #include <QTcpServer>
@@ -74,18 +75,16 @@ private:
     }
     void press() { QTest::mousePress(open_->window.findChild<QPushButton *>("stop"), Qt::LeftButton); }
 
-    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<FakeRobot> robot_;
     std::unique_ptr<OpenWindow> open_;
     std::unique_ptr<Client> client_; // an independent eye
 };
 
 void TestStopConfirmed::init() {
-    robot_ = std::make_unique<RobotProcesses>();
-    robot_->startMotors();
+    robot_ = std::make_unique<FakeRobot>();
     client_ = std::make_unique<Client>();
-    client_->connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+    client_->connectTo(robot_->address());
     QVERIFY(client_->waitConnected().ok());
-    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
 }
 
 void TestStopConfirmed::openWindow(quint16 port) {
@@ -94,7 +93,7 @@ void TestStopConfirmed::openWindow(quint16 port) {
         QVERIFY(open_->fleet.add(QString("127.0.0.1:%1").arg(port)).ok());
     QVERIFY(open_->show());
     if (port)
-        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stateAge().isFresh(), 10000);
 }
 
 void TestStopConfirmed::cleanup() {
@@ -104,7 +103,7 @@ void TestStopConfirmed::cleanup() {
 }
 
 void TestStopConfirmed::isConfirmedByAMeasurement() {
-    openWindow(robot_->port("motorcontrol"));
+    openWindow(robot_->port());
     QCOMPARE(button(), QString("STOP"));
     QCOMPARE(banner(), QString());
     driveOff();
@@ -133,9 +132,9 @@ void TestStopConfirmed::isConfirmedByAMeasurement() {
 }
 
 void TestStopConfirmed::isSaidAloudWhileFrozen() {
-    openWindow(robot_->port("motorcontrol"));
+    openWindow(robot_->port());
     driveOff();
-    robot_->signal("motorcontrol", SIGSTOP);
+    robot_->freeze();
     press();
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
     for (const char *part : {"NOT CONFIRMED by motorcontrol", "does not answer", "stops by itself after 1 s",
@@ -143,54 +142,54 @@ void TestStopConfirmed::isSaidAloudWhileFrozen() {
         QTRY_VERIFY2(banner().contains(part), qPrintable(banner()));
     QTest::qWait(4000); // it goes on for longer than a call waits
     QVERIFY2(open_->drive.stopping().isLate(), qPrintable(banner()));
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->thaw();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
     QVERIFY(state()["estop"].toBool());
-    robot_->signal("motorcontrol", SIGSTOP); // not known to stand any more
+    robot_->freeze(); // not known to stand any more
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 3000);
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->thaw();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
     QTest::keyRelease(&open_->window, Qt::Key_W);
 }
 
 void TestStopConfirmed::closingTheWindowAsksMeanwhile() {
-    openWindow(robot_->port("motorcontrol"));
-    robot_->signal("motorcontrol", SIGSTOP);
+    openWindow(robot_->port());
+    robot_->freeze();
     press();
     open_->window.close();
     QVERIFY(open_->window.isVisible());
     const auto *const notice = open_->window.findChild<QLabel *>("noticeBanner");
     QVERIFY2(notice->text().startsWith("STOP is not confirmed"), qPrintable(notice->text()));
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->thaw();
     QTRY_COMPARE_WITH_TIMEOUT(phase(), StopPhase::Confirmed, 10000);
     open_->window.close();
     QVERIFY(!open_->window.isVisible());
 
-    openWindow(robot_->port("motorcontrol"));
-    robot_->signal("motorcontrol", SIGSTOP);
+    openWindow(robot_->port());
+    robot_->freeze();
     press();
     open_->window.close();
     QVERIFY(open_->window.isVisible());
     open_->window.close(); // said twice
     QVERIFY(!open_->window.isVisible());
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->thaw();
 }
 
 void TestStopConfirmed::goesOutWhenTheRobotIsBack() {
-    openWindow(robot_->port("motorcontrol"));
-    robot_->kill("motorcontrol");
+    openWindow(robot_->port());
+    robot_->end();
     QTRY_VERIFY(!open_->drive.isPossible());
     press();
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
     QTRY_VERIFY2(banner().contains("no connection"), qPrintable(banner()));
     QCOMPARE(button(), QString("STOP pressed"));
-    robot_->startMotorControl();
+    robot_->start();
     QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 20000);
     QTRY_VERIFY(state()["estop"].toBool());
 }
 
 void TestStopConfirmed::goesOverANewConnection() {
-    Router router(robot_->port("motorcontrol"));
+    Router router(robot_->port());
     openWindow(router.serverPort());
     driveOff();
     router.forgetConnections();
@@ -204,13 +203,13 @@ void TestStopConfirmed::goesOutWhenARobotIsFound() {
     openWindow(0);
     press();
     QVERIFY2(banner().contains("REACHES NOBODY"), qPrintable(banner()));
-    QVERIFY(open_->fleet.add(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol"))).ok());
+    QVERIFY(open_->fleet.add(robot_->address()).ok());
     QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
     QVERIFY(state()["estop"].toBool());
 }
 
 void TestStopConfirmed::isOverWhenSomebodyReleases() {
-    openWindow(robot_->port("motorcontrol"));
+    openWindow(robot_->port());
     press();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
     QVERIFY(
@@ -226,14 +225,14 @@ void TestStopConfirmed::isOverWhenSomebodyReleases() {
 }
 
 void TestStopConfirmed::theStopOfAnotherIsWatched() {
-    openWindow(robot_->port("motorcontrol"));
+    openWindow(robot_->port());
     driveOff();
-    robot_->signal("simulator", SIGSTOP); // the controllers answer no more
+    robot_->setSilent(true); // the controllers answer no more
     QVERIFY(client_->callAndWait("motor.estop").ok());
     QTest::keyRelease(&open_->window, Qt::Key_W);
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 4000);
     QTRY_VERIFY2(banner().contains("NOT KNOWN TO STAND"), qPrintable(banner()));
-    robot_->signal("simulator", SIGCONT);
+    robot_->setSilent(false);
     QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
     QTRY_VERIFY2(banner().startsWith("STOPPED: emergency stop by"), qPrintable(banner()));
     OpenWindow::click(&open_->window, "release");
@@ -242,8 +241,8 @@ void TestStopConfirmed::theStopOfAnotherIsWatched() {
 }
 
 void TestStopConfirmed::pressedAgainItStaysLate() {
-    openWindow(robot_->port("motorcontrol"));
-    robot_->signal("motorcontrol", SIGSTOP);
+    openWindow(robot_->port());
+    robot_->freeze();
     press();
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
     for (int i = 0; i < 10; ++i) {
@@ -252,20 +251,21 @@ void TestStopConfirmed::pressedAgainItStaysLate() {
         QTest::qWait(50);
         QVERIFY(open_->drive.stopping().isLate());
     }
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->thaw();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
 }
 
 void TestStopConfirmed::aReleaseIsOfTheChosenRobot() {
-    openWindow(robot_->port("motorcontrol"));
-    RobotProcesses other;
-    other.startMotors();
-    const QString supervisor = QString("127.0.0.1:%1").arg(other.supervise("other"));
+    openWindow(robot_->port());
+    const FakeRobot other;
+    RobotProcesses processes;
+    processes.add("motorcontrol", other.port());
+    const QString supervisor = QString("127.0.0.1:%1").arg(processes.supervise("other"));
     QVERIFY(open_->fleet.add(supervisor).ok());
     QTRY_VERIFY_WITH_TIMEOUT(open_->fleet.robotAt(supervisor), 10000);
     Robot *const second = open_->fleet.robotAt(supervisor);
     QTRY_COMPARE_WITH_TIMEOUT(int(second->allWithMethod("motor.estop").size()), 1, 10000);
-    robot_->kill("motorcontrol");
+    robot_->end();
     QTRY_VERIFY(!open_->drive.isPossible());
     press();
     QTRY_VERIFY(open_->drive.stopping().isLate());
@@ -278,21 +278,21 @@ void TestStopConfirmed::aReleaseIsOfTheChosenRobot() {
     OpenWindow::click(&open_->window, "release");
     QTRY_VERIFY(phase() == StopPhase::None);
     QTRY_VERIFY2(banner().contains("NOT CONFIRMED"), qPrintable(banner())); // the first one still is not
-    robot_->startMotorControl();
+    robot_->start();
     QVERIFY(client_->waitConnected(std::chrono::milliseconds(10000)).ok());
     QTRY_VERIFY_WITH_TIMEOUT(state()["estop"].toBool(), 10000);
 }
 
 void TestStopConfirmed::aReleaseIsToldWhenItIsNotTaken() {
-    openWindow(robot_->port("motorcontrol"));
+    openWindow(robot_->port());
     press();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
-    robot_->signal("motorcontrol", SIGSTOP);
+    robot_->freeze();
     OpenWindow::click(&open_->window, "release");
     QTest::qWait(700);
     QVERIFY(phase() != StopPhase::None); // it has not answered
     QVERIFY(!banner().isEmpty());
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->thaw();
     QTRY_VERIFY(state().contains("estop"));
     QTest::qWait(1500);
     QCOMPARE(state()["estop"].toBool(), phase() != StopPhase::None); // the window tells what is

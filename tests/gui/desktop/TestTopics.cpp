@@ -4,6 +4,7 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/FakeRobot.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
 
@@ -12,7 +13,7 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// Topics of a robot in the simulator: their rate and age, their newest message, and what is plotted of them.
+/// Topics of a robot: their rate and age, their newest message, and what is plotted of them.
 class TestTopics : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -48,15 +49,14 @@ private:
     }
     QString head() const { return panel_->findChild<QLabel *>("messageHead")->text(); }
 
-    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<FakeRobot> robot_;
     std::unique_ptr<OpenWindow> window_;
     PlotsPanel *panel_ = nullptr;
 };
 
 void TestTopics::init() {
-    robot_ = std::make_unique<RobotProcesses>();
-    robot_->startMotors();
-    window_ = std::make_unique<OpenWindow>(*robot_);
+    robot_ = std::make_unique<FakeRobot>();
+    window_ = std::make_unique<OpenWindow>(robot_->address());
     QVERIFY(window_->show());
     panel_ = window_->panel<PlotsPanel>("plots");
 }
@@ -73,11 +73,11 @@ void TestTopics::rateAndAge() {
     QTRY_VERIFY_WITH_TIMEOUT(rate_hz() > 30 && rate_hz() < 60, 20000); // 50 Hz on a machine with time
     QVERIFY2(odometry->text(1).endsWith(" s"), qPrintable(odometry->text(1)));
     QCOMPARE(odometry->foreground(1), QBrush());
-    robot_->signal("motorcontrol", SIGSTOP);
+    robot_->setSilent(true);
     QTRY_VERIFY_WITH_TIMEOUT(odometry->foreground(1) != QBrush(), 5000); // grey
     QTRY_VERIFY2_WITH_TIMEOUT(odometry->text(1).startsWith("no data for "), qPrintable(odometry->text(1)),
                               8000);
-    robot_->signal("motorcontrol", SIGCONT);
+    robot_->setSilent(false);
     QTRY_VERIFY_WITH_TIMEOUT(odometry->text(1).contains(" Hz, "), 8000);
     // What nobody sees is not asked for.
     window_->panel<QWidget>("log");
@@ -106,9 +106,9 @@ void TestTopics::newestMessageAsATree() {
     QCOMPARE(at({"controllers", "0", "temperature_c"}).value(1), QString("°C"));
     QCOMPARE(at({"controllers", "0", "current_a", "1"}).value(1), QString("A"));
     QCOMPARE(at({"controllers", "0", "ready"}).value(0), QString("yes"));
-    robot_->signal("motorcontrol", SIGSTOP);
+    chooseMessage("odometry");
+    robot_->setSilent(true);
     QTRY_VERIFY_WITH_TIMEOUT(head().contains("no data for "), 10000);
-    robot_->signal("motorcontrol", SIGCONT);
 }
 
 // As large as messages may be, as fast as they come.

@@ -8,6 +8,7 @@ using namespace hermes::desktop;
 class TestTwoWindows : public QObject {
     Q_OBJECT
 private Q_SLOTS:
+    void initTestCase();
     void init();
     void theFirstKeeps();
     void theSecondTakesOver();
@@ -27,14 +28,25 @@ private:
 
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
+    QByteArray usual_; // what is kept as a window begins
 };
 
-void TestTwoWindows::init() {
+void TestTwoWindows::initTestCase() {
     folder_ = std::make_unique<QTemporaryDir>();
     file_ = folder_->filePath("new/gui.ini");
     const auto one = opened();
     QTest::qWait(1500); // until all is kept as a window begins with it
     one->window->close();
+    QFile file(file_);
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    usual_ = file.readAll();
+}
+
+void TestTwoWindows::init() {
+    folder_ = std::make_unique<QTemporaryDir>();
+    file_ = folder_->filePath("gui.ini");
+    QFile file(file_);
+    QVERIFY(file.open(QIODevice::WriteOnly) && file.write(usual_) > 0);
 }
 
 void TestTwoWindows::theFirstKeeps() {
