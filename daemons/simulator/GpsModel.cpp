@@ -8,14 +8,14 @@ namespace hermes::simulator {
 
 namespace {
 
-constexpr double degree = vectorlib::pi / 180;
+constexpr double perDegree = vectorlib::pi / 180; // radians
 constexpr std::int64_t second_ns = 1000000000;
 // WGS 84
 constexpr double equator = 6378137, eccentricity2 = 6.69437999014e-3;
 // Made up: a good view of the sky.
 constexpr int satellites = 9;
 constexpr double dilution = 0.9;
-constexpr double standing = 0.02; // m/s; below it the course is the robot's heading
+constexpr double slowest = 0.02; // m/s; below it the course is the robot's heading
 constexpr nmea::Decimals onTheLine{6, 2};
 
 } // namespace
@@ -55,12 +55,12 @@ std::string_view GpsModel::take(std::int64_t now_ns, const Pose2D &pose, const T
 }
 
 nmea::Position GpsModel::positionOf(double east, double north) const {
-    const double latitude = options_.origin.latitude_deg * degree;
+    const double latitude = options_.origin.latitude_deg * perDegree;
     const double w = std::sqrt(1 - eccentricity2 * std::sin(latitude) * std::sin(latitude));
     const double meridian = equator * (1 - eccentricity2) / (w * w * w) + options_.altitude;
     const double parallel = (equator / w + options_.altitude) * std::cos(latitude);
-    return {options_.origin.latitude_deg + north / meridian / degree,
-            std::remainder(options_.origin.longitude_deg + east / parallel / degree, 360)};
+    return {options_.origin.latitude_deg + north / meridian / perDegree,
+            std::remainder(options_.origin.longitude_deg + east / parallel / perDegree, 360)};
 }
 
 void GpsModel::fix(std::int64_t time_ns, const Pose2D &pose, const Twist2D &twist) {
@@ -78,8 +78,8 @@ void GpsModel::fix(std::int64_t time_ns, const Pose2D &pose, const Twist2D &twis
         rmc.position = gga.position = positionOf(east, north);
         rmc.speed = std::hypot(twist.vx, twist.vy);
         const double direction =
-            pose.theta + (*rmc.speed > standing ? std::atan2(twist.vy, twist.vx) : 0); // from east
-        const double course = std::remainder(90 - direction / degree, 360);
+            pose.theta + (*rmc.speed > slowest ? std::atan2(twist.vy, twist.vx) : 0); // from east
+        const double course = std::remainder(90 - direction / perDegree, 360);
         rmc.course_deg = course < 0 ? course + 360 : course;
         gga.quality = 1;
         gga.hdop = dilution;

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double longestGap = 0.010;          // seconds between the bytes of one packet
 constexpr double eepromTime = 0.005;          // until a written cell is acknowledged; seconds
-constexpr double tenths = 10;                 // of a volt, of a degree
 constexpr double warmth = 0.03, cooling = 60; // degrees for each A^2 at last, with this time constant (s)
 constexpr double hot = 85, tooHot = 100;      // data sheet: the current falls from 85 degrees, to none at 100
 

@@ -80,6 +80,8 @@ public:
     const Counts &counts() const { return counts_; }
 
 private:
+    static constexpr double fullDuty = 32767;
+    static constexpr double tenths = 10; // of a volt, of a degree
     using Request = roboclaw::Request;
     using Command = roboclaw::Command;
 

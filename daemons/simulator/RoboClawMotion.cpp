@@ -4,12 +4,6 @@ namespace hermes::simulator {
 
 using namespace roboclaw;
 
-namespace {
-
-constexpr double fullDuty = 32767;
-
-} // namespace
-
 // How the emulator obeys commands that turn motors.
 
 bool RoboClawEmulator::turnsMotors(Command command) {

@@ -9,9 +9,7 @@ using namespace roboclaw;
 
 namespace {
 
-constexpr double fullDuty = 32767;
 constexpr double fixedPoint = 65536; // of PID gains
-constexpr double tenths = 10;        // of a volt, of a degree
 constexpr double centiampere = 100;
 constexpr double logicVoltage = 5;
 constexpr double lowest = 6; // V, as the old commands for limits have it

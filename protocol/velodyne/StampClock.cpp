@@ -4,10 +4,9 @@ namespace hermes::velodyne {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1000000000;
-constexpr std::int64_t hour_ns = 3600 * second_ns;
+constexpr std::int64_t hour_ns = 3600000000000;
 /// A clock set anew, or a sensor started anew, shows as a jump of the offset beyond this.
-constexpr std::int64_t jump_ns = 60 * second_ns;
+constexpr std::int64_t jump_ns = 60000000000;
 
 } // namespace
 
