@@ -7,7 +7,7 @@ blocks.py PAGE... (docs/hermesctl.md), without one the blocks of all pages are c
 | sh | run by one bash for the whole page, in order; each command must succeed |
 | console | lines after "$ " are run as sh; the output must have the other lines: numbers may differ, "..." stands for anything |
 | python | run with docs/examples on PYTHONPATH |
-| cpp | compiled with vectorlib and run |
+| cpp | compiled with vectorlib of the build and run |
 | json | must be JSON, one value or one a line |
 | text, cmake, ini | shown only, unless a mark says more |
 
@@ -155,7 +155,7 @@ class Script:
         elif block.language == "cpp":
             source = self.write(f".blocks/{number}.cpp", block.text)
             self.shell(block, number, f"g++ -std=c++17 -Wall -Wextra -Werror -O1 -Ivectorlib/include $(pkg-config --cflags eigen3) "
-                                      f"{source} -o .blocks/{number}.run\n.blocks/{number}.run", output)
+                                      f"{source} build/release/vectorlib/libvectorlib.a -o .blocks/{number}.run\n.blocks/{number}.run", output)
         elif block.language == "console":
             for index, (command, output) in enumerate(commands(block.text)):
                 name = f".blocks/{number}-{index}"
