@@ -1,5 +1,7 @@
 #include "vectorlib/graph/DriveRefiner.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>

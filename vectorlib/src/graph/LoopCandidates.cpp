@@ -59,8 +59,9 @@ LoopCandidates::far(std::size_t sure, const std::vector<std::size_t> &except,
     const std::size_t last = scans_.size() - 1;
     const Eigen::Matrix2d widest = spreadSince(sure);
     const double farthest =
-        settings.farDeviations *
-        std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(widest).eigenvalues()[1]);
+        settings.farDeviations * std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>()
+                                               .computeDirect(widest, Eigen::EigenvaluesOnly)
+                                               .eigenvalues()[1]);
     if (!(farthest > settings.reach + settings.mostDrift))
         return std::nullopt;
     const Eigen::Matrix2d reach = Eigen::Matrix2d::Identity() * settings.reach * settings.reach;

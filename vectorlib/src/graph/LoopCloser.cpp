@@ -1,5 +1,7 @@
 #include "vectorlib/graph/LoopCloser.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
