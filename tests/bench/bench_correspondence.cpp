@@ -86,7 +86,8 @@ bool addPillars() {
         const auto pose = [&](std::size_t k) {
             return Pose2D{world->poses[k].x, world->poses[k].y, world->poses[k].theta};
         };
-        const hermes::experiments::ScanPair scans = hermes::experiments::scanPair(edges, pose(i), pose(i + 1), {});
+        const hermes::experiments::ScanPair scans =
+            hermes::experiments::scanPair(edges, pose(i), pose(i + 1), {});
         benchmark::RegisterBenchmark("search between two scans of pillars", [scans](benchmark::State &state) {
             searchScans(state, scans);
         })->Arg(int64_t(i));
