@@ -15,7 +15,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr qint64 largest = 1 << 20; // bytes; a window with all panels and a hundred plots has 20,000
+constexpr qint64 largestFile = 1 << 20; // bytes; a window with all panels and a hundred plots has 20,000
 constexpr int mostRobots = 200;
 
 QString tr(const char *text) {
@@ -61,14 +61,6 @@ bool isOurs(const QByteArray &text) {
     return hasGroup || !hasLine;
 }
 
-QString textOf(const QJsonObject &object) {
-    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
-}
-
-QJsonObject objectOf(const QVariant &text) {
-    return QJsonDocument::fromJson(text.toString().toUtf8()).object();
-}
-
 /// Keys and values in turn: a key of the file could not have all characters.
 QStringList listOf(const QMap<QString, QString> &pairs) {
     QStringList list;
@@ -110,6 +102,14 @@ QString nameOf(const QVariant &text) {
 
 } // namespace
 
+QString compactText(const QJsonObject &object) {
+    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
+}
+
+QJsonObject objectOf(const QVariant &text) {
+    return QJsonDocument::fromJson(text.toString().toUtf8()).object();
+}
+
 Layouts::Layouts(const QString &file)
     : file_(targetOf(file)) {
     read();
@@ -121,7 +121,7 @@ Layouts::Layouts(const QString &file)
 
 QByteArray Layouts::fingerprintOf(const QString &file) {
     QFile content(file);
-    return content.open(QIODevice::ReadOnly) ? hashOf(content.read(largest + 1)) : QByteArray();
+    return content.open(QIODevice::ReadOnly) ? hashOf(content.read(largestFile + 1)) : QByteArray();
 }
 
 void Layouts::read() {
@@ -136,9 +136,9 @@ void Layouts::read() {
     QFile content(file_);
     if (!content.open(QIODevice::ReadOnly))
         return refuse(tr("cannot be read: %1").arg(content.errorString()));
-    const QByteArray text = content.size() > largest ? QByteArray() : content.readAll();
+    const QByteArray text = content.size() > largestFile ? QByteArray() : content.readAll();
     fingerprint_ = hashOf(text);
-    if (content.size() > largest || !isOurs(text))
+    if (content.size() > largestFile || !isOurs(text))
         return refuse(tr("is damaged, or was not written by this program. It is left as it is"));
     QSettings file(file_, QSettings::IniFormat);
     if (file.status() != QSettings::NoError)
@@ -242,13 +242,14 @@ Result<void> Layouts::save() const {
     if (!written.open(QIODevice::ReadOnly))
         return failed;
     const qint64 size = written.size();
-    if (size > largest || !isOurs(written.readAll())) {
+    if (size > largestFile || !isOurs(written.readAll())) {
         written.remove();
         return Error(ErrorCode::InputOutput,
                      tr("The layout of the window and the robots are not kept any more: %1")
-                         .arg(size > largest ? tr("with buttons, plots and names it has %1, and may have %2.")
-                                                   .arg(sizeText(double(size)), sizeText(double(largest)))
-                                             : tr("a name or a value is none that can be kept.")));
+                         .arg(size > largestFile
+                                  ? tr("with buttons, plots and names it has %1, and may have %2.")
+                                        .arg(sizeText(double(size)), sizeText(double(largestFile)))
+                                  : tr("a name or a value is none that can be kept.")));
     }
     return std::rename(QFile::encodeName(fresh), QFile::encodeName(file_)) == 0 ? Result<void>() : failed;
 }
@@ -262,7 +263,7 @@ bool Layouts::write(const QString &path) const {
         file.setValue("geometry", layouts_[i].layout.geometry);
         file.setValue("state", layouts_[i].layout.state);
         file.setValue("check", checkOf(layouts_[i].layout));
-        file.setValue("plots", textOf(layouts_[i].layout.plots));
+        file.setValue("plots", compactText(layouts_[i].layout.plots));
     }
     file.endArray();
     file.setValue("window/layout", current_);

@@ -9,8 +9,13 @@
 #include <vector>
 
 class QSettings;
+class QVariant;
 
 namespace hermes::desktop {
+
+/// As it is kept in a file, and what is kept there.
+QString compactText(const QJsonObject &object);
+QJsonObject objectOf(const QVariant &text);
 
 /// What of the window is kept between runs, in an ini file: layouts by name, and the robots apart from them.
 /// A file that is no such one, or damaged, is left as it is: the window has its default then, and nothing is

@@ -41,14 +41,6 @@ constexpr QSize usualSize{1280, 720};
 constexpr int titleRoom = 40;                      // of a window's title, pixels
 constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
 
-QString textOf(const QJsonObject &object) {
-    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
-}
-
-QJsonObject objectFrom(const QString &text) {
-    return QJsonDocument::fromJson(text.toUtf8()).object();
-}
-
 /// A list or a tree, else a text, else what Tab leads to first.
 QWidget *mainWidgetOf(QWidget *panel) {
     if (QWidget *const own = panel->focusProxy())
@@ -147,11 +139,11 @@ void MainWindow::addKeys(TopBar &topBar) {
 /// What is kept between runs.
 void MainWindow::restoreAll() {
     auto &plotSets = findChild<PlotsPanel *>()->sets();
-    plotSets.setSets(objectFrom(layouts_.value("plotSets")));
+    plotSets.setSets(objectOf(layouts_.value("plotSets")));
     connect(&plotSets, &PlotSets::changed, this,
-            [this, &plotSets] { layouts_.setValue("plotSets", textOf(plotSets.sets())); });
+            [this, &plotSets] { layouts_.setValue("plotSets", compactText(plotSets.sets())); });
     restoreButtons();
-    map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
+    map_->setLayers(objectOf(layouts_.value("layers")).toVariantMap());
     showLayout();
     banners_->notify(
         QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
@@ -317,7 +309,7 @@ void MainWindow::keepAll() {
     layouts_.setLayout({saveGeometry(), saveState(), findChild<PlotsPanel *>()->state()});
     layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
-    layouts_.setValue("layers", textOf(QJsonObject::fromVariantMap(map_->layers())));
+    layouts_.setValue("layers", compactText(QJsonObject::fromVariantMap(map_->layers())));
     layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()});
 }
 

@@ -15,7 +15,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 30;
+constexpr int longestHolder = 30, longestPower = 60;
 
 /// The list of robots: its keys open it, for most of them drive elsewhere, and none of these is to choose
 /// another robot unseen.
@@ -164,7 +164,7 @@ void TopBar::updateDrive() {
         control_->tell(tr("nothing to drive"));
     else
         control_->tell(holder.isEmpty() ? tr("control free")
-                                        : tr("control: %1").arg(shortLine(holder, longestName)),
+                                        : tr("control: %1").arg(shortLine(holder, longestHolder)),
                        drive_.stateAge());
     release_->setVisible(drive_.isStopped());
     const StopControl &stopping = drive_.stopping();
@@ -187,7 +187,7 @@ void TopBar::showPower(WireView told) {
     ReadReport report;
     const auto power = readMessage<PowerMessage>(told, report);
     if (!power)
-        return power_->tell(shortLine(tr("power: %1").arg(report.text()), 2 * longestName), powerAge_);
+        return power_->tell(shortLine(tr("power: %1").arg(report.text()), longestPower), powerAge_);
     double volts = 0, amperes = 0, hottest = -300;
     for (const ControllerPower &controller : power->controllers) {
         if (!controller.ready)

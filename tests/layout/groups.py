@@ -17,11 +17,13 @@ BUILD = os.environ.get("HERMES_BUILD") or os.path.join(ROOT, "build", "release")
 SKIPPED = 77
 
 
-def targets():
-    """Of each target with several groups: their files. Groups with names of their own always stay as they are."""
+def targets(compiled):
+    """Of each target with several groups: their files. Groups with names of their own always stay as they are. Some that are not
+    compiled any more may lie in the folder too."""
     found = {}
     for group in sorted(glob.glob(os.path.join(glob.escape(BUILD), "**", "Unity", "unity_[0-9]*_cxx.cxx"), recursive=True)):
-        found.setdefault(os.path.dirname(group), []).append(os.path.realpath(group))
+        if (path := os.path.realpath(group)) in compiled:
+            found.setdefault(os.path.dirname(path), []).append(path)
     return [groups for groups in found.values() if len(groups) > 1]
 
 
@@ -48,9 +50,7 @@ def main():
     with open(os.path.join(BUILD, "compile_commands.json"), encoding="utf-8") as file:
         commands = {os.path.realpath(entry["file"]): entry for entry in json.load(file)}
     errors, count = [], 0
-    for groups in targets():
-        if groups[0] not in commands:  # of an earlier build in this folder
-            continue
+    for groups in targets(commands):
         entry = commands[groups[0]]
         words, folder = without_object(entry["command"]), entry["directory"]
         if count == 0 and not complaint(words, folder, "namespace { const int twice = 1; }\nnamespace { const int twice = 2; }\n"):

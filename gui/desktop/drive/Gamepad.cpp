@@ -9,10 +9,10 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 40;
+constexpr int longestPadName = 40;
 constexpr int mostEvents = 1000; // of one turn: a broken device is not to hold the window
 
-constexpr std::array<SDL_GameControllerAxis, gamepadAxes> axes{
+constexpr std::array<SDL_GameControllerAxis, gamepadAxes> stickAxes{
     SDL_CONTROLLER_AXIS_LEFTX, SDL_CONTROLLER_AXIS_LEFTY, SDL_CONTROLLER_AXIS_RIGHTX};
 
 } // namespace
@@ -64,7 +64,7 @@ void Gamepad::open(int device) {
         return;
     SDL_Joystick *const joystick = SDL_GameControllerGetJoystick(pad_);
     device_ = SDL_JoystickInstanceID(joystick);
-    name_ = shortLine(QString::fromUtf8(SDL_GameControllerName(pad_)), longestName);
+    name_ = shortLine(QString::fromUtf8(SDL_GameControllerName(pad_)), longestPadName);
     std::array<char, 33> text{};
     SDL_JoystickGetGUIDString(SDL_JoystickGetGUID(joystick), text.data(), int(text.size()));
     kind_ = QString::fromLatin1(text.data());
@@ -88,7 +88,7 @@ void Gamepad::close() {
 void Gamepad::read() {
     GamepadSticks sticks;
     for (std::size_t i = 0; i < gamepadAxes; ++i)
-        sticks[i] = std::max(-1.0, SDL_GameControllerGetAxis(pad_, axes[i]) / 32767.0);
+        sticks[i] = std::max(-1.0, SDL_GameControllerGetAxis(pad_, stickAxes[i]) / 32767.0);
     const bool isHeld = SDL_GameControllerGetButton(pad_, SDL_CONTROLLER_BUTTON_LEFTSHOULDER) != 0;
     if (sticks == sticks_ && isHeld == isDeadManHeld_)
         return;

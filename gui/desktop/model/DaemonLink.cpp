@@ -12,7 +12,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 40;
+constexpr int longestTold = 40;
 constexpr double usualRate_hz = 100;
 
 int severity(const HealthItem &item) {
@@ -54,7 +54,7 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
 
 QString DaemonLink::name() const {
     for (const QString &told : {info_.name, supervisedName_})
-        if (const QString name = shortLine(told, longestName); !name.isEmpty())
+        if (const QString name = shortLine(told, longestTold); !name.isEmpty())
             return name;
     for (const QString &known : daemonNames())
         if (defaultPort(known) == port())
@@ -114,7 +114,7 @@ QString DaemonLink::conditionWord() const {
     const Condition now = condition();
     if (now == Condition::Unreachable)
         return isSilent() ? tr("no answer for %1 s").arg(0.001 * latency_ms(), 0, 'f', 0) : tr("unreachable");
-    const QString state = shortLine(status_.state, longestName);
+    const QString state = shortLine(status_.state, longestTold);
     if (now == Condition::Warning && state != "degraded")
         return tr("warning");
     if (now == Condition::Fault && state != "fault")

@@ -8,7 +8,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestText = 300, longestName = 30;
+constexpr int longestEvent = 300, longestItem = 30;
 
 Event::Level levelOf(const QString &word) {
     return word == "error" ? Event::Level::Error : Event::Level::Warning;
@@ -86,7 +86,7 @@ void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
     events_.goesOn(key, Event::Level::Error, nameOf(daemon),
                    daemon.isSilent()
                        ? tr("It is connected, but does not answer")
-                       : tr("No connection: %1").arg(shortLine(inPlainWords(whyAway(daemon)), longestText)));
+                       : tr("No connection: %1").arg(shortLine(inPlainWords(whyAway(daemon)), longestEvent)));
 }
 
 void EventWatch::lookAtHealth(const DaemonLink &daemon) {
@@ -97,8 +97,8 @@ void EventWatch::lookAtHealth(const DaemonLink &daemon) {
     for (const HealthItem &item : daemon.status().health) {
         if (item.level == "ok" || now.size() == mostItems)
             continue;
-        const QString key = keyOf(daemon, "health " + shortLine(item.name, longestName));
-        const QString text = shortLine(inPlainWords(item.name + ": " + item.message), longestText);
+        const QString key = keyOf(daemon, "health " + shortLine(item.name, longestItem));
+        const QString text = shortLine(inPlainWords(item.name + ": " + item.message), longestEvent);
         events_.goesOn(key, levelOf(item.level), nameOf(daemon), text, text.contains(ownName()));
         now.append(key);
     }
@@ -115,7 +115,7 @@ void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isP
     if (!isAlarming && (!isOfStop(record) || record.text.contains(ownName())))
         return; // what was done from this window needs no note
     const auto level = isAlarming ? levelOf(record.level) : Event::Level::Info;
-    const QString text = shortLine(inPlainWords(record.source + ": " + record.text), longestText);
+    const QString text = shortLine(inPlainWords(record.source + ": " + record.text), longestEvent);
     if (isPast)
         events_.happenedBefore(level, nameOf(*daemon), text, record.stamp);
     else

@@ -8,12 +8,6 @@
 #include <algorithm>
 
 namespace hermes::desktop {
-namespace {
-
-constexpr int longestName = 30;
-
-} // namespace
-
 Fleet::Fleet(QObject *parent)
     : QObject(parent) {
     changes_.setSingleShot(true);
@@ -126,7 +120,7 @@ void Fleet::setNames(const QMap<QString, QString> &names) {
 }
 
 void Fleet::rename(Robot &robot, const QString &name) {
-    const QString given = shortLine(name.trimmed(), longestName);
+    const QString given = shortLine(name.trimmed(), Robot::longestName);
     if (given.isEmpty())
         names_.remove(robot.address());
     else

@@ -8,7 +8,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestPlace = 200, longestTitle = 80;
+constexpr int longestPlace = 200, longestStepTitle = 80;
 
 QString text(const QJsonValue &value, int longest) {
     return shortLine(value.toString(), longest);
@@ -53,20 +53,20 @@ QString MacroStep::problem() const {
     const int bytes = compact(QJsonDocument(params)).size();
     if (bytes > mostParams)
         return QObject::tr("The parameters of %1 have %2 bytes; a button keeps %3 at most.")
-            .arg(shortLine(title(), longestTitle))
+            .arg(shortLine(title(), longestStepTitle))
             .arg(bytes)
             .arg(mostParams);
     for (const QString &name : {robot, daemon, method})
         if (text(name, longestPlace) != name)
             return QObject::tr("%1 has a name of %2 characters; a button keeps one line of %3 at most.")
-                .arg(shortLine(name, longestTitle))
+                .arg(shortLine(name, longestStepTitle))
                 .arg(name.size())
                 .arg(longestPlace);
     const QJsonArray kept{Macro{{}, {*this}}.toJson()};
     if (QJsonDocument::fromJson(compact(QJsonDocument(kept))).isNull())
         return QObject::tr("The parameters of %1 have too many lists in lists; a button keeps 1000 in each "
                            "other at most.")
-            .arg(shortLine(title(), longestTitle));
+            .arg(shortLine(title(), longestStepTitle));
     return {};
 }
 

@@ -12,7 +12,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr std::chrono::seconds longest{10};
+constexpr std::chrono::seconds longestSearch{10};
 constexpr int mostDaemons = 50;
 
 QString program() {
@@ -54,7 +54,7 @@ void NetworkSearch::start() {
     if (isRunning())
         return;
     process_.start(program(), {"list", "--network", "--json"});
-    limit_.start(longest);
+    limit_.start(longestSearch);
 }
 
 void NetworkSearch::finish(int status) {

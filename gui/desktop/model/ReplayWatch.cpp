@@ -6,7 +6,6 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 60;
 constexpr int mostNames = 3;
 constexpr std::chrono::milliseconds period{250};
 constexpr std::size_t othersTurns = 8;       // of the period, between two questions to a robot not chosen

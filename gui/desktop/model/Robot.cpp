@@ -8,7 +8,6 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 30;
 constexpr std::size_t mostProcesses = 100; // of one supervisor
 
 } // namespace

@@ -15,6 +15,8 @@ namespace hermes::desktop {
 class Robot : public QObject {
     Q_OBJECT
 public:
+    static constexpr int longestName = 30;
+
     /// supervisor: null for the daemons that none names.
     Robot(const QString &host, const QString &address, DaemonLink *supervisor, QObject *parent = nullptr);
     ~Robot() override;

@@ -8,7 +8,7 @@ namespace {
 
 /// Longer lists are no set of numbers to choose from: a scan has thousands.
 constexpr int longestList = 16;
-constexpr int deepest = 20; // of schemas
+constexpr int deepestSchema = 20;
 
 QString inner(const QString &prefix, const QString &name) {
     return prefix.isEmpty() ? name : prefix + '.' + name;
@@ -50,7 +50,7 @@ struct SchemaWalk {
     QStringList paths;
 
     void see(const QJsonObject &schema, const QString &prefix, int depth) {
-        if (paths.size() >= most || depth > deepest)
+        if (paths.size() >= most || depth > deepestSchema)
             return;
         if (isOfType(schema, "number") || isOfType(schema, "integer") || isOfType(schema, "boolean"))
             paths.append(prefix);
@@ -71,7 +71,7 @@ bool hasLongList(const QJsonObject &schema, int depth) {
     constexpr int longList = 1000;
     const QJsonObject items = schema["items"].toObject();
     const bool isList = isOfType(schema, "array") && !isOfType(items, "string"); // texts are few
-    if (depth > deepest || (isList && schema["maxItems"].toInt(longList + 1) > longList))
+    if (depth > deepestSchema || (isList && schema["maxItems"].toInt(longList + 1) > longList))
         return true;
     const QJsonObject members = schema["properties"].toObject();
     for (const QJsonValue &member : members)
@@ -126,7 +126,7 @@ QStringList numericPaths(const QJsonObject &schema, int most, UnknownLists lists
     return walk.paths;
 }
 
-WireView valueAt(WireView message, const QString &path) {
+WireView messageValueAt(WireView message, const QString &path) {
     if (path.isEmpty())
         return message;
     for (const QString &name : path.split('.')) {

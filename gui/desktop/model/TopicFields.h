@@ -41,6 +41,6 @@ QStringList numericPaths(WireView message, int most);
 enum class UnknownLists { None, One };
 QStringList numericPaths(const QJsonObject &schema, int most, UnknownLists lists);
 /// The value at such a path; undefined where there is none.
-WireView valueAt(WireView message, const QString &path);
+WireView messageValueAt(WireView message, const QString &path);
 
 } // namespace hermes::desktop

@@ -106,7 +106,7 @@ void TopicSampler::take(const TopicId &topic, const TopicUpdate &update) {
     for (auto &[field, samples] : fields_) {
         if (TopicId(field.address, field.topic) != topic)
             continue;
-        const WireView value = valueAt(update.data, field.path);
+        const WireView value = messageValueAt(update.data, field.path);
         const double number =
             value.kind() == WireView::Kind::Boolean ? double(value.boolean()) : value.number();
         if (std::abs(number) <= largest)

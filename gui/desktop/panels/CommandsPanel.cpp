@@ -23,7 +23,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 80, longestLine = 500, longestAnswer = 100000, mostMethods = 1000;
+constexpr int longestMethod = 80, longestLine = 500, longestAnswer = 100000, mostMethods = 1000;
 
 QString text(const QJsonValue &value) {
     if (value.isObject())
@@ -231,7 +231,7 @@ void CommandsPanel::listMethods() {
                 ++unlisted;
                 continue;
             }
-            auto *const item = new QListWidgetItem(shortLine(name, longestName), methods_);
+            auto *const item = new QListWidgetItem(shortLine(name, longestMethod), methods_);
             item->setData(Qt::UserRole, name);
             item->setToolTip(toolTipOf(method["summary"].toString()));
             if (name == method_)

@@ -10,10 +10,10 @@
 namespace hermes::desktop {
 namespace {
 
-enum Column { NameColumn, StateColumn };
+enum DaemonColumn { NameColumn, StateColumn };
 constexpr int conditionRole = Qt::UserRole + 1; // whose icon and colour stand there: to set them costs
 
-constexpr int longestName = 60, longestWord = 20, mostHealthItems = 50, iconRoom = 34;
+constexpr int longestWord = 20, mostHealthItems = 50, iconRoom = 34;
 
 Condition conditionOf(const QString &level) {
     return level == "ok" ? Condition::Ready : level == "error" ? Condition::Fault : Condition::Warning;
@@ -28,7 +28,7 @@ void setText(QTreeWidgetItem &item, const QString &name, const QString &state, C
         item.setIcon(StateColumn, theme::icon(condition));
         item.setForeground(StateColumn, theme::colour(condition));
     }
-    for (const Column column : {NameColumn, StateColumn})
+    for (const DaemonColumn column : {NameColumn, StateColumn})
         item.setToolTip(column, toolTipOf(toolTip));
 }
 

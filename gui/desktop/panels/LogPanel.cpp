@@ -20,7 +20,7 @@ namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
 constexpr int usualLevel = 1;
-constexpr int longestText = 500, nameColumn = 24;
+constexpr int longestRecord = 500, nameColumn = 24;
 
 QBrush colourOf(int level) {
     return level == 3   ? QBrush(theme::colour(Condition::Fault))
@@ -73,7 +73,7 @@ void LogPanel::add(const DaemonLink *daemon, const LogMessage &record) {
     const int level = levels.indexOf(record.level);
     const Record made{timeOf(record.stamp) ? record.stamp : stampNow(), log_.nameOf(*daemon),
                       level < 0 ? usualLevel : level,
-                      shortLine(record.source + ": " + record.text, longestText)};
+                      shortLine(record.source + ": " + record.text, longestRecord)};
     isUnsorted_ = isUnsorted_ || (!records_.empty() && made.stamp < records_.back().stamp);
     records_.push_back(made);
     ++newRecords_;

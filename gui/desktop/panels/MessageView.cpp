@@ -11,10 +11,10 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int mostRows = 400, mostOfOne = 40, deepest = 8, longestText = 120;
+constexpr int mostRows = 400, mostOfOne = 40, deepestShown = 8, longestShown = 120;
 constexpr double rate_hz = 10, heavyRate_hz = 2;
 
-QString numberText(WireView value) {
+QString wireNumberText(WireView value) {
     constexpr double largestWhole = 9007199254740992; // 2^53
     const double number = value.number();
     if (number == std::floor(number) && std::abs(number) < largestWhole)
@@ -26,11 +26,11 @@ QString numberText(WireView value) {
 QString textOf(WireView value) {
     switch (value.kind()) {
     case WireView::Kind::Number:
-        return numberText(value);
+        return wireNumberText(value);
     case WireView::Kind::Boolean:
         return value.boolean() ? QObject::tr("yes") : QObject::tr("no");
     case WireView::Kind::Text:
-        return shortLine(value.text(), longestText);
+        return shortLine(value.text(), longestShown);
     case WireView::Kind::Array:
         return QObject::tr("%1 in a list").arg(value.size());
     case WireView::Kind::Object:
@@ -103,7 +103,7 @@ void MessageView::take(const TopicUpdate &update) {
     if (isFirst)
         new QTreeWidgetItem(tree_);
     QTreeWidgetItem *const root = tree_->topLevelItem(0);
-    setText(*root, 0, shortLine(topic_, longestText));
+    setText(*root, 0, shortLine(topic_, longestShown));
     fill(root, update.data, schema_, 0);
     root->setExpanded(isFirst || root->isExpanded());
 }
@@ -124,7 +124,7 @@ void MessageView::fill(QTreeWidgetItem *item, WireView value, const QJsonObject 
 
 void MessageView::fillChildren(QTreeWidgetItem *item, WireView value, const QJsonObject &schema, int depth) {
     std::vector<std::pair<QString, WireView>> inner;
-    const std::size_t all = depth < deepest ? value.size() : 0;
+    const std::size_t all = depth < deepestShown ? value.size() : 0;
     if (value.kind() == WireView::Kind::Array)
         for (std::size_t i = 0; i < std::min<std::size_t>(all, mostOfOne); ++i)
             inner.emplace_back(QString::number(i), value[i]);
@@ -138,7 +138,7 @@ void MessageView::fillChildren(QTreeWidgetItem *item, WireView value, const QJso
     for (int i = 0; i < count; ++i) {
         QTreeWidgetItem *const child = rowAt(*item, i);
         const auto &[name, member] = inner[std::size_t(i)];
-        setText(*child, 0, shortLine(name, longestText));
+        setText(*child, 0, shortLine(name, longestShown));
         fill(child, member, schemaAt(schema, name), depth + 1);
     }
     if (isCut) {
@@ -162,7 +162,7 @@ void MessageView::showAge() {
         tree_->setPalette(colours);
     if (!daemon_)
         return head_->setText(tr("Choose a topic on the left to see its newest message."));
-    const QString title = tr("%1 of %2").arg(shortLine(topic_, longestText), daemon_->name());
+    const QString title = tr("%1 of %2").arg(shortLine(topic_, longestShown), daemon_->name());
     if (!meter_ || meter_->text().isEmpty())
         return head_->setText(tr("%1: nothing has come as yet").arg(title));
     const auto time = timeOf(stamp_);

@@ -9,8 +9,6 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 60;
-
 std::pair<Robot *, DaemonLink *> daemonOf(const Fleet &fleet, const FieldId &field) {
     for (const auto &robot : fleet.robots())
         for (DaemonLink *daemon : robot->daemons())

@@ -30,7 +30,7 @@ protected:
     }
 };
 
-constexpr int mostSuggestions = 6, mostFields = 4, mostSeen = 60, longestText = 48;
+constexpr int mostSuggestions = 6, mostSuggestedFields = 4, mostSeen = 60, longestSuggestion = 48;
 
 /// What operators look at first.
 const QStringList units{"m/s", "rad/s", "V", "A", "°C", "m", "rad", "Hz"};
@@ -45,7 +45,7 @@ QString leaf(const QString &path) {
 
 /// A few numbers together say more than one alone; of many none stands out.
 int rank(std::size_t count) {
-    return count > std::size_t(mostFields) ? 2 : count == 1 ? 1 : 0;
+    return count > std::size_t(mostSuggestedFields) ? 2 : count == 1 ? 1 : 0;
 }
 
 } // namespace
@@ -89,8 +89,8 @@ std::vector<PlotSuggestions::Suggestion> PlotSuggestions::find() const {
     }
     std::vector<Suggestion> all;
     for (auto &[unit, suggestion] : best) {
-        if (int(suggestion.fields.size()) > mostFields)
-            suggestion.fields.resize(mostFields);
+        if (int(suggestion.fields.size()) > mostSuggestedFields)
+            suggestion.fields.resize(mostSuggestedFields);
         QStringList names;
         for (const FieldId &field : suggestion.fields)
             if (!names.contains(leaf(field.path)))
@@ -121,8 +121,8 @@ void PlotSuggestions::refresh() {
         delete item;
     }
     for (std::size_t i = 0; i < suggestions.size(); ++i) {
-        auto *const button = new NarrowButton(theme::icon("plot"),
-                                              shortLine(suggestions[i].text, longestText).replace('&', "&&"));
+        auto *const button = new NarrowButton(
+            theme::icon("plot"), shortLine(suggestions[i].text, longestSuggestion).replace('&', "&&"));
         button->setObjectName("suggestion");
         button->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // a long text widens no panel
         button->setToolTip(toolTipOf(tr("Plots %1").arg(suggestions[i].text)));

@@ -15,12 +15,6 @@
 #include <algorithm>
 
 namespace hermes::desktop {
-namespace {
-
-constexpr int longestName = 60;
-
-} // namespace
-
 RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)

@@ -6,8 +6,6 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 60;
-
 /// As a sidecar has it.
 QString reasonText(const QString &ended) {
     return ended == "free space" ? QObject::tr("the disk was full")

@@ -18,7 +18,6 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 60;
 constexpr double speeds[]{0.25, 0.5, 1, 2, 5, 10};
 constexpr double justPassed_s = 1; // a second press goes to the mark before that
 

@@ -13,11 +13,10 @@
 namespace hermes::desktop {
 namespace {
 
-enum Column { Name, Date, Duration, Size };
+enum SessionColumn { Name, Date, Duration, Size };
 constexpr int indexRole = Qt::UserRole;     // of the name: which session
 constexpr int valueRole = Qt::UserRole + 1; // of the others: what they are sorted by
-constexpr int longestName = 60;
-constexpr int roomyWidth = 420; // pixels
+constexpr int roomyWidth = 420;             // pixels
 
 class Row : public QTreeWidgetItem {
 public:
@@ -72,7 +71,7 @@ QString dateText(double stamp, bool hasRoom) {
                               (isThisYear ? QString("d MMM") : "d MMM yyyy") + (hasRoom ? " HH:mm" : ""));
 }
 
-QString toolTipOf(const RecordedSession &session) {
+QString sessionToolTip(const RecordedSession &session) {
     const auto start = timeOf(session.start);
     QStringList lines{start ? QLocale().toString(*start, QLocale::ShortFormat)
                             : SessionTable::tr("at an impossible time: %1").arg(session.start)};
@@ -80,7 +79,7 @@ QString toolTipOf(const RecordedSession &session) {
         lines.append(SessionTable::tr("%1: %2, %3")
                          .arg(part.member.name, countsText(part.entry["counts"]),
                               part.fault().isEmpty() ? SessionTable::tr("complete") : part.fault()));
-    return desktop::toolTipOf(lines.join('\n'));
+    return toolTipOf(lines.join('\n'));
 }
 
 } // namespace
@@ -180,9 +179,9 @@ void SessionTable::fill(QTreeWidgetItem &item, const RecordedSession &session) c
     row.setValue(Duration, duration_s, session.goesOn() ? tr("goes on") : durationText(duration_s));
     // Of one that goes on it is what was known when it began.
     row.setValue(Size, session.bytes(), session.goesOn() ? QString() : sizeText(session.bytes()));
-    for (const Column column : {Name, Date, Duration, Size})
-        row.setToolTip(column, toolTipOf(session));
-    for (const Column column : {Duration, Size})
+    for (const SessionColumn column : {Name, Date, Duration, Size})
+        row.setToolTip(column, sessionToolTip(session));
+    for (const SessionColumn column : {Duration, Size})
         row.setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
 }
 

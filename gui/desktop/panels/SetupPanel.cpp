@@ -22,7 +22,7 @@ namespace hermes::desktop {
 namespace {
 
 enum ChangeColumn { SettingColumn, NowColumn, NewColumn };
-constexpr int mostRows = 500;
+constexpr int mostFindings = 500;
 
 QTreeWidget *makeTable(const QString &name, const QStringList &header) {
     auto *const table = new QTreeWidget;
@@ -45,7 +45,7 @@ QTreeWidgetItem *rowOf(const QStringList &texts) {
 }
 
 /// What a search has found, in words.
-QString spoken(const QString &kind) {
+QString spokenKind(const QString &kind) {
     static const QHash<QString, QString> words{
         {"roboclaw", SetupPanel::tr("motors")},        {"nmea", SetupPanel::tr("GPS receiver")},
         {"talker", SetupPanel::tr("unknown, talks")},  {"other", SetupPanel::tr("unknown, answers")},
@@ -157,7 +157,7 @@ void SetupPanel::follow() {
         "settings.get", {{"path", "setup.folder"}}, this,
         [this](const Result<QJsonValue> &folder) { folder_ = folder ? folder->toString() : QString(); });
     call<QStringList>("setup.samples", {}, [this](const QStringList &names) {
-        for (const QString &name : names.mid(0, mostRows))
+        for (const QString &name : names.mid(0, mostFindings))
             samples_->addItem(tr("Begin with the sample %1").arg(shortLine(name, 40)), name);
     });
 }
@@ -216,8 +216,8 @@ void SetupPanel::find() {
 void SetupPanel::showFound(const Findings &found) {
     found_->clear();
     for (QStringList &row : rowsOf(found, tr("the tick \"Ask silent lines\"")))
-        if (found_->topLevelItemCount() < mostRows) {
-            row.front() = spoken(row.front());
+        if (found_->topLevelItemCount() < mostFindings) {
+            row.front() = spokenKind(row.front());
             found_->addTopLevelItem(rowOf(row));
         }
     found_->resizeColumnToContents(1);
@@ -257,7 +257,7 @@ void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings,
     QString last;
     int rows = 0;
     for (const SettingChange &change : changes) {
-        if (++rows > mostRows)
+        if (++rows > mostFindings)
             break;
         if (change.daemon != last) {
             if (file)

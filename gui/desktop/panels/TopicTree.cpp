@@ -10,7 +10,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestName = 60, mostTopics = 200, mostFields = 200;
+constexpr int mostTopics = 200, mostFields = 200;
 constexpr std::size_t mostMeasured = 60; // of the 100 subscriptions that a daemon grants
 
 enum Role { AddressRole = Qt::UserRole, TopicRole, PathRole, DaemonRole, DescriptionRole, HeavyRole };

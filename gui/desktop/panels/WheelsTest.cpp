@@ -14,7 +14,7 @@
 namespace hermes::desktop {
 namespace {
 
-QString spoken(QString wheel) {
+QString spokenWheel(QString wheel) {
     return wheel.replace('_', ' ');
 }
 
@@ -38,7 +38,7 @@ WheelsTest::WheelsTest(Fleet &fleet, QWidget *parent)
     for (const QString &wheel : wheelNames())
         for (const bool isBackward : {false, true})
             seenChoice_->addItem(
-                tr("%1 turned %2").arg(spoken(wheel), isBackward ? tr("backward") : tr("forward")),
+                tr("%1 turned %2").arg(spokenWheel(wheel), isBackward ? tr("backward") : tr("forward")),
                 QStringList{wheel, isBackward ? "b" : ""});
     seenChoice_->addItem(tr("none turned"), QStringList{"", ""});
 
@@ -107,7 +107,7 @@ void WheelsTest::begin() {
 }
 
 void WheelsTest::turnNext() {
-    message_->tell(tr("%1 is told to turn forward").arg(spoken(wheel_)));
+    message_->tell(tr("%1 is told to turn forward").arg(spokenWheel(wheel_)));
     turn_.begin(wheel_, [this](const Result<double> &measured) { onTurned(measured); });
     updateButtons();
 }
@@ -115,7 +115,7 @@ void WheelsTest::turnNext() {
 void WheelsTest::onTurned(const Result<double> &measured) {
     if (isUnderWay() && measured) {
         message_->tell(tr("%1 was told to turn forward; its encoder tells %2 rad/s. What turned?")
-                           .arg(spoken(wheel_), shortNumber(*measured, 2)));
+                           .arg(spokenWheel(wheel_), shortNumber(*measured, 2)));
         seenChoice_->setCurrentIndex(2 * wheelNames().indexOf(wheel_));
     } else if (isUnderWay()) {
         giveUp(measured.error().message);

@@ -7,13 +7,13 @@ namespace hermes::desktop {
 namespace {
 
 constexpr float opening_deg = 45; // from the bottom of the view to its top
-constexpr double nearest_m = 0.5, farthest_m = 2000;
+constexpr double nearestEye_m = 0.5, farthestEye_m = 2000;
 
 } // namespace
 
 void CloudCamera::reset(double reach_m) {
     *this = {};
-    distance_m_ = qBound(4.0, 1.9 * reach_m, farthest_m);
+    distance_m_ = qBound(4.0, 1.9 * reach_m, farthestEye_m);
 }
 
 void CloudCamera::orbit(double turn_deg, double lift_deg) {
@@ -26,11 +26,11 @@ void CloudCamera::pan(QPointF way) {
     const QVector3D onScreen(float(way.x() * height_m), float(way.y() * height_m), 0);
     point_ -= rotation().transposed().mapVector(onScreen);
     for (int axis = 0; axis < 3; ++axis)
-        point_[axis] = qBound(float(-farthest_m), point_[axis], float(farthest_m));
+        point_[axis] = qBound(float(-farthestEye_m), point_[axis], float(farthestEye_m));
 }
 
 void CloudCamera::zoom(double factor) {
-    distance_m_ = qBound(nearest_m, distance_m_ / factor, farthest_m);
+    distance_m_ = qBound(nearestEye_m, distance_m_ / factor, farthestEye_m);
 }
 
 /// From the sensor's axes to right, up and towards the eye; ahead is up in a view from above.

@@ -26,7 +26,7 @@ QPointF between(const QPointF &one, const QPointF &other, double stamp) {
 }
 
 /// The samples in one column of pixels.
-class Column {
+class PixelColumn {
 public:
     void take(const QPointF &point) {
         if (count_ == 0)
@@ -67,7 +67,7 @@ double ChartFrame::y(double value) const {
 
 QVector<QPolygonF> curveLines(const Samples &samples, const ChartFrame &frame) {
     QVector<QPolygonF> lines(1);
-    Column column;
+    PixelColumn column;
     const auto take = [&](const QPointF &sample) {
         const QPointF point(frame.x(sample.x()), frame.y(sample.y()));
         if (!column.holds(std::floor(point.x())))

@@ -6,7 +6,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr double largest = 1e16; // of a range
+constexpr double largestRange = 1e16; // of a range
 
 /// How often a step fits between two values, counted from 0.
 double countOf(double least, double most, double step) {
@@ -37,7 +37,7 @@ void ValueAxis::zoom(double factor, double share) {
     const double fixed = least_ + share * (most_ - least_);
     // No finer than numbers are, no wider than they are kept.
     const double finest = 1e-12 * std::max({std::abs(least_), std::abs(most_), 1e-6});
-    const double range = std::clamp((most_ - least_) / factor, finest, largest);
+    const double range = std::clamp((most_ - least_) / factor, finest, largestRange);
     least_ = fixed - share * range;
     most_ = least_ + range;
     isAutomatic_ = false;
@@ -45,7 +45,7 @@ void ValueAxis::zoom(double factor, double share) {
 
 void ValueAxis::pan(double share) {
     const double way = share * (most_ - least_);
-    if (std::abs(least_ + way) > largest || std::abs(most_ + way) > largest)
+    if (std::abs(least_ + way) > largestRange || std::abs(most_ + way) > largestRange)
         return;
     least_ += way;
     most_ += way;

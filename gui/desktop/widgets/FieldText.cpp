@@ -14,7 +14,7 @@
 namespace hermes::desktop {
 namespace {
 
-QString tr(const char *text) {
+QString fieldTr(const char *text) {
     return QCoreApplication::translate("FieldText", text);
 }
 
@@ -47,18 +47,18 @@ QString limitsOf(const QJsonObject &schema) {
     const QString unit = schema["unit"].toString();
     const QString lower = amountText(least.toDouble(), unit), upper = amountText(most.toDouble(), unit);
     if (least.isDouble() && most.isDouble())
-        return tr("%1 to %2").arg(lower, upper);
+        return fieldTr("%1 to %2").arg(lower, upper);
     if (least.isDouble())
-        return tr("at least %1").arg(lower);
-    return most.isDouble() ? tr("at most %1").arg(upper) : QString();
+        return fieldTr("at least %1").arg(lower);
+    return most.isDouble() ? fieldTr("at most %1").arg(upper) : QString();
 }
 
 QString explanation(const QString &path, const QJsonObject &schema) {
     QStringList lines{schema["description"].toString(), path + ": " + expectation(schema)};
     if (schema.contains("default"))
-        lines.append(tr("default %1").arg(shown(schema["default"])));
+        lines.append(fieldTr("default %1").arg(shown(schema["default"])));
     if (schema["x-applies"].toString() == "restart")
-        lines.append(tr("has effect after a restart"));
+        lines.append(fieldTr("has effect after a restart"));
     return lines.join('\n');
 }
 
@@ -71,13 +71,13 @@ QString faultText(const Faults &faults, const QString &path, const QJsonObject &
         for (const QString &part : fault->first.mid(path.size() + 1).split('.')) {
             bool isRow = false;
             const int row = part.toInt(&isRow);
-            place.append(isRow ? tr("row %1").arg(row + 1) : part);
+            place.append(isRow ? fieldTr("row %1").arg(row + 1) : part);
         }
-        return tr("%1: expected %2").arg(place.join(", "), fault->second);
+        return fieldTr("%1: expected %2").arg(place.join(", "), fault->second);
     }
     const QString description = schema["description"].toString();
     const bool isPattern = schema.contains("pattern") && fault->second == expectation(schema);
-    return tr("expected %1").arg(isPattern && !description.isEmpty() ? description : fault->second);
+    return fieldTr("expected %1").arg(isPattern && !description.isEmpty() ? description : fault->second);
 }
 
 QString numberText(double value) {
@@ -109,7 +109,8 @@ QString summaryOf(const QJsonValue &value) {
     if (value.isString())
         return shortLine(value.toString(), 40);
     if (value.isArray())
-        return value.toArray().size() == 1 ? tr("1 entry") : tr("%1 entries").arg(value.toArray().size());
+        return value.toArray().size() == 1 ? fieldTr("1 entry")
+                                           : fieldTr("%1 entries").arg(value.toArray().size());
     if (!value.isObject())
         return value.isUndefined() || value.isNull() ? QString() : shortLine(jsonText(value), 40);
     const QJsonObject object = value.toObject();
@@ -122,7 +123,7 @@ QString summaryOf(const QJsonValue &value) {
     for (auto member = object.begin(); member != object.end() && parts.size() < mostParts; ++member)
         if (!isNamed || !names.contains(member.key()))
             parts.append(shortLine(member.key(), 20) + ": " +
-                         (member->isObject() ? tr("%1 values").arg(member->toObject().size())
+                         (member->isObject() ? fieldTr("%1 values").arg(member->toObject().size())
                                              : summaryOf(member.value())));
     return shortLine(parts.join(", "), 160);
 }

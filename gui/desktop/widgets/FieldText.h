@@ -11,6 +11,16 @@ namespace hermes::desktop {
 
 constexpr int longestTitle = 60, longestUnit = 20, longestNote = 160;
 
+/// Of a form or table of values.
+enum FieldColumn {
+    TitleColumn,
+    EditorColumn,
+    UnitColumn,
+    NoteColumn,
+    DescriptionColumn,
+    RemoveColumn = DescriptionColumn
+};
+
 /// The title, or words made of the path: "safety.command_timeout_s" in "s" reads "command timeout".
 QString titleOf(const QString &path, const QJsonObject &schema);
 /// "m/s²" of "m/s^2"; short.

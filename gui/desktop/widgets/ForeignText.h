@@ -8,6 +8,8 @@ namespace hermes::desktop {
 
 // What daemons say is foreign: it may be a megabyte long, hold control characters or look like HTML.
 
+constexpr int longestName = 60; // of a recording, a topic, a mark
+
 /// As one line without control characters, cut where it is longer than somebody reads.
 QString shortLine(const QString &text, int longest = 200);
 /// The same with its lines kept.

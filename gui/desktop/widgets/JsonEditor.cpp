@@ -15,7 +15,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestText = 100000, longestLine = 2000, lines = 6;
+constexpr int longestJson = 100000, longestJsonLine = 2000, shownLines = 6;
 
 QString indented(const QJsonValue &value) {
     if (value.isObject())
@@ -27,10 +27,11 @@ QString indented(const QJsonValue &value) {
 
 /// Qt takes long for a line that has no end.
 bool isShowable(const QString &text) {
-    if (text.size() > longestText)
+    if (text.size() > longestJson)
         return false;
     const auto all = text.splitRef('\n');
-    return std::none_of(all.begin(), all.end(), [](const auto &line) { return line.size() > longestLine; });
+    return std::none_of(all.begin(), all.end(),
+                        [](const auto &line) { return line.size() > longestJsonLine; });
 }
 
 } // namespace
@@ -61,7 +62,7 @@ void JsonEditor::setValue(const QJsonValue &value) {
         text_ = new QPlainTextEdit;
         text_->setFont(theme::fixedFont());
         text_->setTabChangesFocus(true);
-        text_->setFixedHeight(lines * text_->fontMetrics().lineSpacing() + 12);
+        text_->setFixedHeight(shownLines * text_->fontMetrics().lineSpacing() + 12);
         connect(text_, &QPlainTextEdit::textChanged, this, &ValueEditor::edited);
         show(text_);
     }

@@ -18,7 +18,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestText = 10000;
+constexpr int longestEdited = 10000;
 
 /// One that has the format, to be seen where nothing is typed; empty: the format is not known here.
 QString exampleOf(const QString &format) {
@@ -128,9 +128,9 @@ QJsonValue LineEditor::typed() const {
 
 void LineEditor::setValue(const QJsonValue &value) {
     given_ = value;
-    const QString text = countValues(value, longestText) > longestText ? QString() : textOf(value);
+    const QString text = countValues(value, longestEdited) > longestEdited ? QString() : textOf(value);
     const bool isLong =
-        text.size() > longestText || (text.isEmpty() && value.isArray() && !value.toArray().isEmpty());
+        text.size() > longestEdited || (text.isEmpty() && value.isArray() && !value.toArray().isEmpty());
     line_->setReadOnly(isLong);
     const QString shown = isLong ? tr("too long to be edited here: %1").arg(shortLine(text)) : text;
     if (line_->text() != shown)

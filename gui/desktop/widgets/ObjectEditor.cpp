@@ -15,9 +15,7 @@
 namespace hermes::desktop {
 namespace {
 
-enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn, RemoveColumn };
-
-constexpr int mostFields = 100;
+constexpr int mostMembers = 100;
 
 /// Its keys are not only those that the schema names.
 bool isOpen(const QJsonObject &schema) {
@@ -94,7 +92,7 @@ void ObjectEditor::setValue(const QJsonValue &value) {
     isGiven_ = !value.isUndefined();
     QStringList keys, shown;
     for (auto property = properties_.begin(); property != properties_.end(); ++property)
-        if (keys.size() < mostFields && (isRequired(property.key()) || object.contains(property.key())))
+        if (keys.size() < mostMembers && (isRequired(property.key()) || object.contains(property.key())))
             keys.append(property.key());
     for (auto member = object.begin(); member != object.end(); ++member)
         if (!properties_.contains(member.key()))
@@ -228,7 +226,7 @@ void ObjectEditor::offer() {
     bool hasOptional = false;
     for (auto property = properties_.begin(); property != properties_.end(); ++property) {
         hasOptional = hasOptional || !isRequired(property.key());
-        if (find(property.key()) || absent_->actions().size() >= mostFields)
+        if (find(property.key()) || absent_->actions().size() >= mostMembers)
             continue;
         const QString title = shortLine(titleOf(property.key(), property->toObject()), longestTitle);
         QAction *const action = absent_->addAction(QString(title).replace('&', "&&"));
@@ -238,7 +236,7 @@ void ObjectEditor::offer() {
     absent_->setToolTipsVisible(true);
     field_->setVisible(hasOptional);
     field_->setEnabled(!absent_->isEmpty());
-    free_->setEnabled(int(rows_.size()) < mostFields);
+    free_->setEnabled(int(rows_.size()) < mostMembers);
     const QWidgetList order = focusOrder();
     setFocusProxy(order.isEmpty() ? nullptr : order.constFirst());
 }

@@ -16,8 +16,6 @@
 namespace hermes::desktop {
 namespace {
 
-enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn, DescriptionColumn };
-
 constexpr int roomy = 700; // pixels: there is room for descriptions
 
 constexpr int mostSteps = 10000; // of a check, which runs with each key

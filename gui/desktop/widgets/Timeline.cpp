@@ -19,7 +19,7 @@ namespace {
 
 constexpr int radius = 6, lineWidth = 4, margin = radius + 3, markHeight = 7; // pixels
 constexpr int nearMark = 4;                                                   // pixels
-constexpr int mostNamed = 5, longestName = 60;
+constexpr int mostNamed = 5;
 constexpr double beforeEnd_s = 0.2; // what is taken: at its very end the replay would be over
 
 } // namespace
