@@ -4,12 +4,14 @@
 #include "common/Role.h"
 #include "common/Time.h"
 #include "common/interface/TlsInterface.h"
+#include "common/platform/Sockets.h"
 #include "common/tls/KeyFolder.h"
 
 #include <QDateTime>
 #include <QFileInfo>
 #include <QSslSocket>
 #include <algorithm>
+#include <poll.h>
 #include <sys/socket.h>
 
 namespace hermes {
@@ -18,38 +20,27 @@ namespace {
 const QString serverSource = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
 constexpr std::size_t mostHandshakes = 16; // at the same time, then the oldest goes
-constexpr int handshakesAtOnce = 1;        // to begin a handshake takes a millisecond
+constexpr int goneAtOnce = 30;             // a millisecond, as one handshake takes to begin
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
-} // namespace
+/// Whether the peer has closed the connection, also when it said something before.
+bool hasGone(sockets::Socket descriptor) {
+    pollfd connection{int(descriptor), POLLRDHUP, 0};
+    return ::poll(&connection, 1, 0) > 0;
+}
 
-/// Yields sockets that are not encrypted as yet.
-class TlsServerInterface::Server : public QTcpServer {
-protected:
-    void incomingConnection(qintptr descriptor) override {
-        auto *socket = new QSslSocket(this);
-        socket->setSocketDescriptor(descriptor);
-        addPendingConnection(socket);
-    }
-};
+} // namespace
 
 TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
     : Listener(parent)
     , url_(address)
-    , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual()))
-    , server_(std::make_unique<Server>()) {
-    // As TcpServerInterface: peers who come faster than they are taken must not keep the event loop here.
-    server_->setMaxPendingConnections(handshakesAtOnce);
-    connect(server_.get(), &QTcpServer::newConnection, this, &TlsServerInterface::takePeers,
-            Qt::QueuedConnection);
+    , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual())) {
     revokedTimer_.setInterval(revokedPeriod);
     connect(&revokedTimer_, &QTimer::timeout, this, [this] {
         lookAtRevoked();
         closeBad();
     });
 }
-
-TlsServerInterface::~TlsServerInterface() = default;
 
 Result<void> TlsServerInterface::listen() {
     const auto cannot = [this](const QString &why) {
@@ -73,9 +64,12 @@ Result<void> TlsServerInterface::listen() {
                                                                      : url_.host);
     if (host.isNull())
         return cannot(QStringLiteral("\"%1\" is not an IP address").arg(url_.host));
-    if (!server_->listen(host, url_.port))
-        return cannot(server_->errorString());
-    ::listen(int(server_->socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
+    if (!server_.listen(host, url_.port))
+        return cannot(server_.errorString());
+    server_.pauseAccepting();                             // Qt would take all who wait
+    ::listen(int(server_.socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
+    arrivals_ = std::make_unique<QSocketNotifier>(server_.socketDescriptor(), QSocketNotifier::Read);
+    connect(arrivals_.get(), &QSocketNotifier::activated, this, &TlsServerInterface::takePeers);
     revokedTimer_.start();
     constexpr double soon_s = 30.0 * 24 * 3600;
     if (const double left_s = toPeer(keys_.localCertificate()).until - stampNow(); left_s < soon_s)
@@ -88,7 +82,8 @@ Result<void> TlsServerInterface::listen() {
 }
 
 void TlsServerInterface::close() {
-    server_->close();
+    arrivals_.reset();
+    server_.close();
     revokedTimer_.stop();
     for (QSslSocket *socket : std::exchange(handshakes_, {}))
         socket->deleteLater();
@@ -96,20 +91,32 @@ void TlsServerInterface::close() {
 
 QString TlsServerInterface::address() const {
     InterfaceUrl actual = url_;
-    if (server_->isListening())
-        actual.port = server_->serverPort();
+    if (server_.isListening())
+        actual.port = server_.serverPort();
     return actual.toString();
 }
 
+// One who has come to stay at a time. Those who have gone cost hardly anything: a storm of strangers leaves
+// thousands in the queue, and a true client behind them does not wait for their handshakes.
 void TlsServerInterface::takePeers() {
-    while (auto *socket = qobject_cast<QSslSocket *>(server_->nextPendingConnection()))
-        begin(socket);
+    for (int i = 0; i < goneAtOnce; ++i) {
+        QHostAddress from;
+        const auto descriptor = sockets::accept(
+            server_.socketDescriptor(), [&from](const sockaddr *address) { from.setAddress(address); });
+        if (descriptor == sockets::none)
+            return;
+        const bool gone = hasGone(descriptor);
+        if (!gone && !isScarce(descriptor))
+            return begin(descriptor);
+        sockets::close(descriptor);
+        if (gone)
+            countRefused(from, QStringLiteral("it had gone before its handshake"));
+    }
 }
 
-void TlsServerInterface::begin(QSslSocket *socket) {
-    if (socket->state() != QAbstractSocket::ConnectedState || isScarce(socket->socketDescriptor()))
-        return delete socket;
-    socket->setParent(this);
+void TlsServerInterface::begin(qintptr descriptor) {
+    auto *socket = new QSslSocket(this);
+    socket->setSocketDescriptor(descriptor);
     socket->setSslConfiguration(keys_);
     connect(socket, &QSslSocket::encrypted, this, [this, socket] { finish(socket); });
     connect(socket, &QAbstractSocket::errorOccurred, this,
@@ -147,16 +154,21 @@ void TlsServerInterface::finish(QSslSocket *socket) {
 
 void TlsServerInterface::refuse(QSslSocket *socket, const QString &why) {
     handshakes_.remove(socket);
-    ++refused_;
-    if (const double now = monotonicNow(); now - refusedTold_ > 1) { // many may come
-        refusedTold_ = now;
-        logWarning(serverSource, QStringLiteral("%1: a client at %2 is refused: %3; %4 in all")
-                                     .arg(address(), socket->peerAddress().toString(), why)
-                                     .arg(refused_));
-    }
+    countRefused(socket->peerAddress(), why);
     socket->disconnect(this);
     socket->abort();
     socket->deleteLater();
+}
+
+void TlsServerInterface::countRefused(const QHostAddress &from, const QString &why) {
+    ++refused_;
+    const double now = monotonicNow();
+    if (now - refusedTold_ < 1) // many may come
+        return;
+    refusedTold_ = now;
+    logWarning(serverSource, QStringLiteral("%1: a client at %2 is refused: %3; %4 in all")
+                                 .arg(address(), from.toString(), why)
+                                 .arg(refused_));
 }
 
 void TlsServerInterface::lookAtRevoked() {

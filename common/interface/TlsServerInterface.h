@@ -3,11 +3,14 @@
 #include "common/interface/InterfaceUrl.h"
 #include "common/interface/Listener.h"
 
+#include <QHostAddress>
 #include <QSet>
+#include <QSocketNotifier>
 #include <QSslConfiguration>
 #include <QTcpServer>
 #include <QTimer>
 #include <list>
+#include <memory>
 
 class QSslSocket;
 
@@ -22,7 +25,6 @@ class TlsServerInterface : public Listener {
     Q_OBJECT
 public:
     TlsServerInterface(const InterfaceUrl &address, QObject *parent);
-    ~TlsServerInterface() override;
 
     /// Error also when the keys are not as they must be (KeyFolder).
     Result<void> listen() override;
@@ -30,18 +32,18 @@ public:
     QString address() const override;
 
 private:
-    class Server;
-
     void takePeers();
-    void begin(QSslSocket *socket);
+    void begin(qintptr descriptor);
     void finish(QSslSocket *socket);
     void refuse(QSslSocket *socket, const QString &why);
+    void countRefused(const QHostAddress &from, const QString &why);
     void lookAtRevoked();
     void closeBad();
 
     const InterfaceUrl url_;
     const QString folder_;
-    std::unique_ptr<Server> server_;
+    QTcpServer server_; // its peers are taken here
+    std::unique_ptr<QSocketNotifier> arrivals_;
     QSslConfiguration keys_;
     QSet<QByteArray> revoked_;
     QString revokedState_; // of the file, as last read

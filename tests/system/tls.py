@@ -4,6 +4,7 @@ stop half way: each is refused with the reason in the log, and others are served
 import json
 import os
 import shutil
+import signal
 import socket
 import ssl
 import subprocess
@@ -17,6 +18,7 @@ from support import BINARIES, Daemon, Process, free_port, wait_for
 
 CTL = os.path.join(BINARIES, "hermesctl")
 NOT_AUTHORISED = -32001
+HALF_GREETING = bytes([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc])
 
 
 def keys(folder, *words, status=0):
@@ -108,7 +110,7 @@ def check_half_handshakes(process, port, folder):
     """100 that say nothing, or half a greeting: others come in meanwhile, these are closed."""
     silent = [socket.create_connection(("127.0.0.1", port), 10) for _ in range(100)]
     for connection in silent[::2]:
-        connection.sendall(bytes([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc]))
+        connection.sendall(HALF_GREETING)
     begun = time.monotonic()
     with Client(port, context_of(issued(folder, "anna"))) as anna:
         anna.call("daemon.info")
@@ -127,13 +129,31 @@ def check_half_handshakes(process, port, folder):
     return took
 
 
+def check_gone(process, port, folder):
+    """No handshake is begun with strangers who have gone: whoever waits behind a thousand of them comes in."""
+    def is_served():
+        os.kill(process.process.pid, signal.SIGSTOP)
+        try:
+            for _ in range(1000):
+                with socket.create_connection(("127.0.0.1", port), 10) as gone:
+                    gone.sendall(HALF_GREETING)
+            context = context_of(issued(folder, "anna"))
+            late = context.wrap_socket(socket.create_connection(("127.0.0.1", port), 10), do_handshake_on_connect=False)
+        finally:
+            os.kill(process.process.pid, signal.SIGCONT)
+        with late:
+            late.do_handshake()
+        return True
+    refused_alone(process, "it had gone before its handshake", is_served)
+
+
 STORM = """import socket, sys, time
 end = time.monotonic() + 3
 while time.monotonic() < end:
     connections = []
     for _ in range(50):
         connections.append(socket.create_connection(("127.0.0.1", int(sys.argv[1]))))
-        connections[-1].sendall(bytes([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc]))
+        connections[-1].sendall(bytes.fromhex(sys.argv[2]))
     for connection in connections:
         connection.close()
 """
@@ -141,7 +161,7 @@ while time.monotonic() < end:
 
 def check_storm(process, port):
     """Strangers who connect as fast as they can hold nobody up."""
-    storm = [subprocess.Popen([sys.executable, "-c", STORM, str(port)], stderr=subprocess.DEVNULL) for _ in range(2)]
+    storm = [subprocess.Popen([sys.executable, "-c", STORM, str(port), HALF_GREETING.hex()], stderr=subprocess.DEVNULL) for _ in range(2)]
     worst = 0
     with Daemon(port=process.port) as friend:
         while any(one.poll() is None for one in storm):
@@ -372,6 +392,7 @@ def main():
                 check_strangers(process, port, folder, foreign, expired)
                 check_roles(port, folder)
                 beside = check_half_handshakes(process, port, folder)
+                check_gone(process, port, folder)
                 worst = check_storm(process, port)
                 check_hermesctl(port, folder)
                 check_unreachable_list(folder, scratch)
