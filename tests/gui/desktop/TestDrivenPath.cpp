@@ -123,7 +123,8 @@ void TestDrivenPath::pointsThatNobodyCanTellApart() {
         QVERIFY2(piece.size() > 20 && piece.size() < 30, qPrintable(QString::number(piece.size())));
 }
 
-// 700 m of circles, one upon the other: three such ways are drawn ten times a second, for less than 10 ms.
+// 700 m of circles, one upon the other: such ways are drawn ten times a second, in far less time than Qt
+// needs for all their points.
 void TestDrivenPath::anHourOfCirclesIsDrawnFast() {
     QPolygonF way; // metres
     for (int i = 0; i < 35000; ++i)
@@ -131,19 +132,25 @@ void TestDrivenPath::anHourOfCirclesIsDrawnFast() {
     QImage image(1280, 720, QImage::Format_RGB32);
     image.fill(Qt::white);
     QPainter painter(&image);
-    const auto draw_ms = [&](Qt::PenStyle style) {
+    const auto draw_ms = [](const auto &draw) {
         double least = 1e9;
         for (int i = 0; i < 20; ++i) {
             const double before = threadTime_ms();
-            paintWay(painter, way, {}, QTransform(60, 0, 0, -60, 640, 360), image.size(),
-                     QPen(Qt::red, 1.5, style));
+            draw();
             least = std::min(least, threadTime_ms() - before);
         }
         return least;
     };
-    const double all = draw_ms(Qt::SolidLine) + draw_ms(Qt::DashLine) + draw_ms(Qt::DotLine);
-    qInfo("figure three ways of 700 m: %.1f ms of the processor", all);
-    QVERIFY2(all < 10 * slowness, qPrintable(QString::number(all)));
+    const QTransform place(60, 0, 0, -60, 640, 360);
+    double ours = 0, plain = 0;
+    for (const Qt::PenStyle style : {Qt::SolidLine, Qt::DashLine, Qt::DotLine}) {
+        const QPen pen(Qt::red, 1.5, style);
+        ours += draw_ms([&] { paintWay(painter, way, {}, place, image.size(), pen); });
+        painter.setPen(pen);
+        plain += draw_ms([&] { painter.drawPolyline(place.map(way)); });
+    }
+    qInfo("figure three ways of 700 m: %.1f ms of the processor, by Qt alone %.1f ms", ours, plain);
+    QVERIFY2(ours < 0.7 * plain, qPrintable(QString("%1 of %2").arg(ours).arg(plain)));
     painter.end();
     const QColor drawn = image.pixelColor(640 + 54, 360);
     QVERIFY2(drawn.red() > 200 && drawn.green() < 200, qPrintable(drawn.name()));
