@@ -152,7 +152,7 @@ void TestFrozenDaemons::oneInTurn() {
     for (auto value = atOnce.begin(); value != atOnce.end(); ++value)
         if (value->looksAlive && changes[value.key()] >= 6)
             still.insert(value.key());
-    while (frozen.elapsed() < 3000) {
+    while (frozen.elapsed() < 5000) {
         QTest::qWait(100);
         const Values now = values();
         for (auto value = now.begin(); value != now.end(); ++value) {
