@@ -52,6 +52,11 @@ class Pictures(unittest.TestCase):
     def left(self):
         return {path.name: path.read_bytes() for path in pathlib.Path(self.stem).parent.iterdir() if path.suffix != ".json"}
 
+    def test_what_cannot_be_written_is_told(self):
+        os.mkdir(self.stem + "-p.svg.part")  # a file of this name cannot be opened
+        told = self.draw(plots=[plot_of([curve([[1, 2], [2, 3]])])], status=1)
+        self.assertRegex(told, r"^hermes-experiments: .*e-p\.svg cannot be written: Is a directory\n$")
+
     def test_every_kind_is_drawn_the_same_each_time(self):
         figures = {"plots": [plot_of([curve([[1, 2], [2, 3]], band=[[1, 3], [2, 4]])])], "surfaces": [SURFACE], "spaces": [SPACE]}
         self.assertEqual(self.draw(**figures), "")

@@ -106,8 +106,14 @@ def draw(stem, kind, given, formats):
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=2, frameon=False)
     for name in formats:
-        figure.savefig(f"{stem}.{name}.part", format=name, bbox_inches="tight", pad_inches=0.3, **FORMATS[name])
-        os.replace(f"{stem}.{name}.part", f"{stem}.{name}")
+        part = f"{stem}.{name}.part"
+        try:
+            figure.savefig(part, format=name, bbox_inches="tight", pad_inches=0.3, **FORMATS[name])
+            os.replace(part, f"{stem}.{name}")
+        except OSError as error:
+            if os.path.isfile(part):
+                os.remove(part)
+            sys.exit(f"hermes-experiments: {stem}.{name} cannot be written: {error.strerror}")
 
 
 def told(all_of_them, as_json):
