@@ -49,6 +49,8 @@ class Runs:
         shown = "hermes-vector " + " ".join("LOG" if w.startswith("{") else w.lstrip("@") for w in command.split())
         if shown not in self.commands:
             self.commands.append(shown)
+        if words[0] in ("experiment", "report") and not os.path.exists(program := os.path.join(BUILD, "bin", "hermes-experiments")):
+            raise Missing(program)
         ran = subprocess.run([os.path.join(BUILD, "bin", "hermes-vector"), *words], capture_output=True, text=True, check=False)
         if ran.returncode:
             raise SystemExit(f"hermes-vector {command}: {ran.stderr}")

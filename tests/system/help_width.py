@@ -10,7 +10,7 @@ import subprocess
 import termios
 import unittest
 
-from support import BINARIES, SLOWNESS
+from support import BINARIES, SLOWNESS, vector_commands
 
 PROGRAMS = sorted(glob.glob(os.path.join(BINARIES, "hermes*")))
 QUIET = {"QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8"}
@@ -48,8 +48,7 @@ def commands():
     for program in PROGRAMS:
         yield [program]
         if program.endswith("hermes-vector"):
-            listed = help_of([program], 10000).split("Subcommands:")[1]
-            for name in re.findall(r"^ {2}([a-z][a-z-]*) ", listed, re.MULTILINE):
+            for name in vector_commands(help_of([program], 10000)):
                 yield [program, name]
 
 

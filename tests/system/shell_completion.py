@@ -11,7 +11,7 @@ import tempfile
 import time
 import unittest
 
-from support import BINARIES, BUILD, SLOWNESS
+from support import BINARIES, BUILD, EXPERIMENTS, SLOWNESS, vector_commands
 
 DAEMONS = [f"hermes-{name}" for name in ("supervisor", "motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger",
                                          "scanmatcher", "simulator")]
@@ -43,7 +43,7 @@ def choices_of(help_text):
             for option, values in re.findall(r"^ {2}(--[\w-]+) \S+:(?:.*\bOR )?\{([^}]*)\}", help_text, re.MULTILINE)}
 
 
-COMMANDS = re.findall(r"^ {2}([a-z][a-z-]*) ", help_of("hermes-vector").split("Subcommands:")[1], re.MULTILINE)
+COMMANDS = vector_commands(help_of("hermes-vector"))
 
 
 class Completion(unittest.TestCase):
@@ -70,7 +70,7 @@ class Bash(Completion):
 
     def test_commands(self):
         self.assertGreater(len(COMMANDS), 8)
-        self.assertEqual(self.offered("hermes-vector", ""), sorted([*COMMANDS, "--help", "--version"]))
+        self.assertEqual(self.offered("hermes-vector", ""), sorted({*COMMANDS, "experiment", "report", "--help", "--version"}))
         self.assertEqual(self.offered("hermes-vector", "reg"), ["register"])
 
     def test_options(self):
@@ -96,6 +96,7 @@ class Bash(Completion):
         self.assertGreater(found, 8)
         self.assertEqual(self.offered("hermes-vector", "match", "--method", ""), ["finder", "global", "relations"])
 
+    @unittest.skipUnless(EXPERIMENTS, "hermes-experiments is not built")
     def test_names_of_experiments_and_worlds(self):
         names = re.search(r"NAME TEXT:\{([^}]*)\}", help_of("hermes-vector", "experiment"))[1].split(",")
         self.assertEqual(self.offered("hermes-vector", "experiment", ""), sorted(names))
@@ -108,7 +109,7 @@ class Bash(Completion):
     def test_files(self):
         everything = sorted(os.listdir(self.folder))
         for words in (["match", ""], ["match", "--map", ""], ["match", "one.csv", ""], ["match", "--svg", ""], ["map", "--out", ""],
-                      ["experiment", "--log", ""], ["experiment", "--out", ""]):
+                      *([["experiment", "--log", ""], ["experiment", "--out", ""]] if EXPERIMENTS else [])):
             self.assertEqual(self.offered("hermes-vector", *words), everything, words)
         self.assertEqual(self.offered("hermes-vector", "match", "--svg", "=", "sc"), ["scan of today.csv", "scans"])
         self.assertEqual(self.offered("hermes-motorcontrol", "--config", "se"), ["settings.json"])
@@ -188,10 +189,10 @@ class Zsh(Completion):
                            ("hermes-vector match --svg=sett\t", ["match", "--svg=settings.json"]),
                            ("hermes-vector ring --model vl\t--lase\t", ["ring", "--model", "vlp16", "--laser"]),
                            ("hermes-vector map-m\t--he\t", ["map-merge", "--help"]),
-                           ("hermes-vector experiment free-h\t", ["experiment", "free-home"]),
-                           ("hermes-vector experiment --out sca\t", ["experiment", "--out", "scans"]),
-                           ("hermes-vector report quad\t", ["report", "quadratic"]),
-                           ("hermes-vector match --sigma sett\t", ["match", "--sigma", "sett"])):
+                           ("hermes-vector match --sigma sett\t", ["match", "--sigma", "sett"]),
+                           *(EXPERIMENTS and (("hermes-vector experiment free-h\t", ["experiment", "free-home"]),
+                                              ("hermes-vector experiment --out sca\t", ["experiment", "--out", "scans"]),
+                                              ("hermes-vector report quad\t", ["report", "quadratic"])) or ())):
             with self.subTest(keys):
                 self.assertEqual(self.typed(keys), said)
 

@@ -1,6 +1,7 @@
 """What tests of whole systems share: where the programs are, the modules that start and ask them, waiting, a serial port."""
 import json
 import os
+import re
 import socket
 import sys
 import time
@@ -11,6 +12,7 @@ SOURCE = os.environ.get("HERMES_SOURCE", os.path.abspath(os.path.join(os.path.di
 BUILD = os.environ.get("HERMES_BUILD", os.path.join(SOURCE, "build", "release"))
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(BUILD, "bin"))
 DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
+EXPERIMENTS = os.path.exists(os.path.join(BINARIES, "hermes-experiments"))  # ./check builds it with --all
 # How many times slower and larger this build is than those for which limits are written: as tests/support/Patience.h.
 SLOWNESS = 5 if {"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys() else 1
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
@@ -26,6 +28,12 @@ def wait_for(what, condition, limit_s=60):
             return value
         assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
         time.sleep(0.01)
+
+
+def vector_commands(help_text):
+    """The commands that hermes-vector --help lists and that can be run: two of them are hermes-experiments'."""
+    listed = re.findall(r"^ {2}([a-z][a-z-]*) ", help_text.split("Subcommands:")[1], re.MULTILINE)
+    return [name for name in listed if EXPERIMENTS or name not in ("experiment", "report")]
 
 
 def simulated_hall(folder):
