@@ -1,9 +1,9 @@
 #include "common/daemon/Audit.h"
 
 #include "common/Time.h"
+#include "common/files/Folder.h"
 #include "protocol/wire/JsonText.h"
 
-#include <QDir>
 #include <QJsonArray>
 #include <chrono>
 
@@ -60,12 +60,7 @@ Audit::Audit(QObject *parent)
 }
 
 QString Audit::usualFolder() {
-    const QString service = qEnvironmentVariable("STATE_DIRECTORY").section(QLatin1Char(':'), 0, 0);
-    if (!service.isEmpty())
-        return service + QStringLiteral("/audit");
-    const QString state = qEnvironmentVariable("XDG_STATE_HOME");
-    return (state.isEmpty() ? QDir::homePath() + QStringLiteral("/.local/state") : state) +
-           QStringLiteral("/hermes/audit");
+    return stateFolder() + QStringLiteral("/audit");
 }
 
 void Audit::open(const QString &folder, const QString &name, qint64 bytes, int files) {

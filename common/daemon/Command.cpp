@@ -4,6 +4,7 @@
 #include "common/schema/Angles.h"
 #include "protocol/wire/FieldTable.h"
 
+#include <algorithm>
 #include <exception>
 
 namespace hermes {
@@ -118,19 +119,31 @@ QJsonObject Command::paramsSchema() const {
     return objectSchema(properties, required);
 }
 
+QJsonObject Command::fitting(const QJsonObject &named) const {
+    QJsonObject fit;
+    for (const Field &field : fields_) {
+        const QJsonValue value = named.value(field.name());
+        const bool isPlain = !value.isUndefined() && !value.isArray() && !value.isObject();
+        if (isPlain && validator_->check(QJsonObject{{field.name(), value}}).empty())
+            fit.insert(field.name(), value);
+    }
+    return fit;
+}
+
 Result<QJsonObject> Command::accept(const QJsonValue &params) const {
     QJsonObject named = params.toObject();
     const QJsonArray positional = params.toArray();
-    if (positional.size() > int(fields_.size())) {
+    if (positional.size() > int(fields_.size()) && !isUrgent()) {
         return invalidParams({{QStringLiteral("[%1]").arg(fields_.size()), positional.at(int(fields_.size())),
                                QStringLiteral("at most %1 parameters").arg(fields_.size())}});
     }
-    for (int i = 0; i < positional.size(); ++i)
+    for (int i = 0; i < std::min(positional.size(), int(fields_.size())); ++i)
         named.insert(fields_[size_t(i)].name(), positional.at(i));
     if (!validator_)
         validator_ = std::make_shared<const SchemaValidator>(paramsSchema());
-    const auto violations = validator_->check(named);
-    if (!violations.empty())
+    if (isUrgent())
+        named = fitting(named);
+    else if (const auto violations = validator_->check(named); !violations.empty())
         return invalidParams(violations);
     for (const Field &field : fields_) {
         if (!field.defaultValue().isUndefined() && !named.contains(field.name()))

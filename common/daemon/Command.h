@@ -56,7 +56,8 @@ public:
     Command &with(const QString &keyword, const QJsonValue &value);
     /// `x-role`: who may call it; without a word, operators.
     Command &needs(Role role);
-    /// `x-urgent`: a stop. Goes before all other work, and a place is kept for clients that call it.
+    /// `x-urgent`: a stop. Goes before all other work, a place is kept for clients that call it, and it is
+    /// never refused for its form: a parameter that does not fit counts as not given.
     Command &urgent();
     /// `x-fresh`: not carried out when it was received before the program had stood still.
     Command &fresh();
@@ -91,6 +92,8 @@ private:
     static QString urgentKey() { return QStringLiteral("x-urgent"); }
     static QString freshKey() { return QStringLiteral("x-fresh"); }
     Result<QJsonObject> accept(const QJsonValue &params) const;
+    /// Those of a stop's parameters that are as they should be.
+    QJsonObject fitting(const QJsonObject &named) const;
     QJsonObject paramsSchema() const;
     Error notFor(const Call &call, Role needed, const QString &what) const;
     std::optional<Error> refusal(const Call &call) const;

@@ -34,6 +34,14 @@ void countValues(const QJsonValue &value, int &left) {
     }
 }
 
+/// That it names; empty where there is none.
+QString methodOf(const RpcMessage &message) {
+    if (const auto *request = std::get_if<RpcRequest>(&message))
+        return request->method;
+    const auto *invalid = std::get_if<RpcInvalid>(&message);
+    return invalid ? invalid->method : QString();
+}
+
 /// Of a client on this computer.
 QString userText(const Peer &peer) {
     if (peer.place != Peer::Place::Computer)
@@ -136,8 +144,7 @@ void Session::becomeFresh() {
 }
 
 bool Session::isUrgent(const RpcMessage &message) const {
-    const auto *request = std::get_if<RpcRequest>(&message);
-    const Command *command = request ? commands_.find(request->method) : nullptr;
+    const Command *command = commands_.find(methodOf(message));
     return command && command->isUrgent();
 }
 
@@ -155,8 +162,7 @@ QString Session::urgentName(const QByteArray &frame, const QStringList &had) con
     const CodecItem item = channel_->codec().read({frame, std::nullopt});
     const RpcMessage message =
         item.message.isObject() ? readFrame(item.message).messages.front() : RpcMessage();
-    const auto *request = std::get_if<RpcRequest>(&message);
-    return isUrgent(message) && !had.contains(request->method) ? request->method : QString();
+    return isUrgent(message) && !had.contains(methodOf(message)) ? methodOf(message) : QString();
 }
 
 void Session::receive(const QJsonValue &value) {
@@ -290,6 +296,8 @@ void Session::process(const RpcMessage &message, const Arrival &arrived, const A
     if (const auto *request = std::get_if<RpcRequest>(&message)) {
         run(*request, arrived, answer);
     } else if (const auto *invalid = std::get_if<RpcInvalid>(&message)) {
+        if (isUrgent(message)) // a stop is never refused for its form
+            return run({invalid->id, invalid->method, {}}, arrived, answer);
         ++counts_.errors;
         answer(makeError(invalid->id, invalid->error));
     } else {
@@ -311,7 +319,7 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
     if (command && command->needsFresh() && isBeforeStop(request.id))
         return Error(ErrorCode::NotReady,
                      QStringLiteral("by its id this is older than a stop that has come: it is void"));
-    if (!command)
+    if (!command || command->isUrgent())
         return std::nullopt;
     const int most = commands_.urgent().isEmpty() ? command->mostValues() : mostValuesBesideUrgent;
     int left = most;

@@ -23,4 +23,13 @@ Result<void> makeFolder(const QString &path) {
                  QJsonObject{{QStringLiteral("path"), path}});
 }
 
+QString stateFolder() {
+    const QString service = qEnvironmentVariable("STATE_DIRECTORY").section(QLatin1Char(':'), 0, 0);
+    if (!service.isEmpty())
+        return service;
+    const QString state = qEnvironmentVariable("XDG_STATE_HOME");
+    return (state.isEmpty() ? QDir::homePath() + QStringLiteral("/.local/state") : state) +
+           QStringLiteral("/hermes");
+}
+
 } // namespace hermes

@@ -83,6 +83,7 @@ void DriveEngine::judgeObedience() {
     }
     if (std::exchange(resets_, drive_.resets()) == drive_.resets())
         return;
+    faults_.forgetWheels();
     for (const auto &controller : controllers_) // whatever has latched again by what was read before
         controller->release();
 }
@@ -105,7 +106,7 @@ void DriveEngine::trackWheels(double now) {
     telemetry_.moved = motion.has_value();
     if (!motion) {
         if (now - telemetry_.mono > MotorController::lostAfter_s)
-            faults_.forgetWheels();
+            faults_.skipWheels();
         return;
     }
     telemetry_.mono = motion->time;

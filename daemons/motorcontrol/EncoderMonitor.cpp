@@ -1,10 +1,20 @@
 #include "daemons/motorcontrol/EncoderMonitor.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hermes::motorcontrol {
 
+namespace {
+
+constexpr double longestPause_s = 0.25; // between two readings; after more the controller is lost
+constexpr double forgetting = 0.02;    // of the time in which nothing shows how the wheel follows
+
+} // namespace
+
 EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measured) const {
+    if (measured >= slowest_ - settings_.moving && measured <= fastest_ + settings_.moving)
+        return Mismatch::None;
     const bool told = std::abs(commanded) >= settings_.commanded;
     const bool moves = !(std::abs(measured) < settings_.moving); // also when it is no number
     if (told && !moves)
@@ -13,18 +23,22 @@ EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measur
         return Mismatch::MovesBackwards;
     // Also of a slow command: a control of the velocity that runs away, as with an encoder that counts
     // backward.
-    if (std::abs(measured - commanded) > std::abs(commanded) + settings_.commanded && commanded != 0)
+    if (!(std::abs(measured - commanded) <= std::abs(commanded) + settings_.commanded) && commanded != 0)
         return commanded * measured < 0 ? Mismatch::MovesBackwards : Mismatch::MovesTooFast;
     return commanded == 0 && moves ? Mismatch::MovesUncommanded : Mismatch::None;
 }
 
 EncoderMonitor::Mismatch EncoderMonitor::judge(double commanded, double measured, double now) {
+    const double step = last_ > 0 ? std::clamp(now - last_, 0.0, longestPause_s) : 0;
+    const double braked = last_ > 0 ? settings_.deceleration * step : HUGE_VAL;
+    last_ = now;
+    slowest_ = std::min(commanded, slowest_ + braked);
+    fastest_ = std::max(commanded, fastest_ - braked);
     const Mismatch found = compare(commanded, measured);
-    if (found != lasting_) {
-        lasting_ = found;
-        since_ = now;
-    }
-    return now - since_ >= settings_.hold_s ? found : Mismatch::None;
+    const bool follows = std::abs(commanded) >= settings_.commanded && std::abs(measured) >= settings_.moving;
+    const double share = found != Mismatch::None ? 1 : follows ? -1 : -forgetting;
+    unexplained_s_ = std::max(0.0, unexplained_s_ + share * step);
+    return unexplained_s_ >= settings_.hold_s ? found : Mismatch::None;
 }
 
 const char *toText(EncoderMonitor::Mismatch mismatch) {

@@ -88,9 +88,14 @@ std::array<QString, wheelCount> FaultWatch::judgeWheels(const WheelValues &setPo
     return texts;
 }
 
+void FaultWatch::skipWheels() {
+    for (EncoderMonitor &encoder : encoders_)
+        encoder.skip();
+}
+
 void FaultWatch::forgetWheels() {
     for (EncoderMonitor &encoder : encoders_)
-        encoder.reset();
+        encoder.forget();
 }
 
 } // namespace hermes::motorcontrol

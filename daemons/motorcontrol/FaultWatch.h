@@ -19,6 +19,8 @@ public:
     std::array<QString, wheelCount> judgeWheels(const WheelValues &setPoint, const WheelValues &speeds,
                                                 Drive &drive, double now);
     /// The wheels were not watched for a while.
+    void skipWheels();
+    /// Somebody has released the faults.
     void forgetWheels();
 
 private:

@@ -74,11 +74,35 @@ Result<void> MotorControl::start() {
     connect(&thread_, &QThread::finished, loop_, &QObject::deleteLater);
     thread_.setObjectName("drive");
     thread_.start();
+    restoreStop();
     Result<void> outcome;
     QMetaObject::invokeMethod(
         loop_, [&] { outcome = loop_->start(); }, Qt::BlockingQueuedConnection);
     health().expectEvery("cycle", std::chrono::seconds(1));
     return outcome;
+}
+
+void MotorControl::restoreStop() {
+    QStringList listen, lines;
+    for (const QJsonValue &address : settings().value("listen").toArray())
+        listen.append(address.toString());
+    for (const ControllerAddress &controller : active_.controllers)
+        lines.append(controller.url);
+    latchFile_.setPlace(listen, lines);
+    const auto reason = latchFile_.read();
+    if (!reason)
+        return;
+    logWarning("stop", *reason + ", before this program was started; it stays until motor.reset_estop");
+    QMetaObject::invokeMethod(
+        loop_, [this, &reason] { loop_->drive().fault(Drive::emergencyCause, *reason); },
+        Qt::BlockingQueuedConnection);
+}
+
+void MotorControl::keepStop() {
+    const auto kept = latchFile_.write(told_.latch.has(Drive::emergencyCause)
+                                           ? std::optional(told_.latch.reason(Drive::emergencyCause))
+                                           : std::nullopt);
+    unkept_ = kept ? QString() : kept.error().message;
 }
 
 void MotorControl::stop() {
@@ -185,7 +209,11 @@ void MotorControl::show(const Telemetry &telemetry) {
         loggedHalt_ != reason) // a latched one is told as health
         logInfo("stop", loggedHalt_ = reason);
     const bool isNewLatch = telemetry.latch.isSet() != told_.latch.isSet();
+    const bool isNewStop =
+        telemetry.latch.reason(Drive::emergencyCause) != told_.latch.reason(Drive::emergencyCause);
     told_ = telemetry;
+    if (isNewStop)
+        keepStop();
     if (isNewLatch)
         tellStop(); // at once; all else of health waits for the next cycles
     answerStops();

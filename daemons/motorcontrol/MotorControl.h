@@ -3,6 +3,7 @@
 #include "common/daemon/Daemon.h"
 #include "common/daemon/PastFaults.h"
 #include "daemons/motorcontrol/DriveLoop.h"
+#include "daemons/motorcontrol/LatchFile.h"
 #include "daemons/motorcontrol/MotorMessages.h"
 
 #include <QThread>
@@ -50,6 +51,9 @@ private:
     void takeReports();
     void answerJobs(std::size_t count);
     void show(const Telemetry &telemetry);
+    /// The emergency stop of before the start.
+    void restoreStop();
+    void keepStop();
     void updateHealth();
     void tellControllers();
     void tellMeasures();
@@ -65,6 +69,8 @@ private:
     DriveLoop *loop_ = nullptr; // lives in thread_
     MotorSettings active_;      // what the loop works with
     Telemetry told_;
+    LatchFile latchFile_;
+    QString unkept_; ///< why the emergency stop is not in the file
     QString loggedHalt_; ///< the last that is in the log
     struct WaitingStop {
         Reply reply;

@@ -119,7 +119,9 @@ void MotorControl::tellStop() {
     const bool lost = !isReady() && !allStand(told_); // while it brakes it is ready
     if (lost)
         texts.append(standingOf(told_).all.text);
-    health().set("stop", latched || lost ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "),
+    if (!unkept_.isEmpty())
+        texts.append(unkept_);
+    health().set("stop", latched || lost || !unkept_.isEmpty() ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "),
                  asJson(causes).toObject());
     const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));
     setState(fault ? DaemonState::Fault : isReady() && !latched ? DaemonState::Running : DaemonState::Ready);

@@ -12,6 +12,10 @@ namespace hermes::motorcontrol {
 namespace {
 
 constexpr double rounding_v = 1e-9; // of differences of decimal fractions
+// Speeds of the rim in m/s: what may count as standing, and be given up to friction.
+constexpr double standingRim = 0.05, frictionRim = 0.1;
+constexpr double leastCounts = 2;   // a second, of a wheel that turns: one may be jitter
+constexpr double longestHold_s = 1; // beyond braking
 
 Field positive(const char *name, const char *description, const char *unit, double least, double most,
                double initial) {
@@ -147,6 +151,36 @@ bool isLine(const QString &url) {
                       (parsed->scheme == "tcp" && !parsed->host.isEmpty() && parsed->port != 0));
 }
 
+// What watches the wheels sees each motion that matters, in time, and takes no braking for a fault
+// (docs/safety.md).
+void checkWatch(const std::function<double(const QString &)> &number,
+                const std::function<void(bool, const QString &, const QString &)> &require) {
+    const double radius = number("frame.wheel_radius_m"), moving = number("faults.encoder_moving_rad_s");
+    require(
+        moving * radius <= standingRim, "faults.encoder_moving_rad_s",
+        QString("at most %1 rad/s: %2 m/s at the rim").arg(standingRim / radius, 0, 'g', 3).arg(standingRim));
+    require(
+        number("faults.encoder_commanded_rad_s") * radius <= frictionRim, "faults.encoder_commanded_rad_s",
+        QString("at most %1 rad/s: %2 m/s at the rim").arg(frictionRim / radius, 0, 'g', 3).arg(frictionRim));
+    require(moving * number("frame.counts_per_turn") >= 4 * vectorlib::pi * leastCounts,
+            "frame.counts_per_turn",
+            QString("at least %1: with fewer nothing shows within a second whether a wheel turns with "
+                    "faults.encoder_moving_rad_s")
+                .arg(4 * vectorlib::pi * leastCounts / moving, 0, 'g', 3));
+    // motor.wheels may ask for all that the motors give.
+    const double braking = number("motion.motor_share") * number("pid.qpps") /
+                           number("frame.counts_per_turn") * 2 * vectorlib::pi * radius /
+                           number("safety.deceleration");
+    const double hold = number("faults.encoder_hold_s");
+    require(hold >= braking, "faults.encoder_hold_s",
+            QString("at least the %1 s that braking from the largest speed of a wheel takes")
+                .arg(braking, 0, 'g', 3));
+    require(hold <= braking + longestHold_s, "faults.encoder_hold_s",
+            QString("at most %1 s: %2 s more than braking takes")
+                .arg(braking + longestHold_s, 0, 'g', 3)
+                .arg(longestHold_s));
+}
+
 } // namespace
 
 void declareMotorSettings(const std::function<void(const Field &)> &declare) {
@@ -187,16 +221,7 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
             "at least faults.temperature_warning_c");
     require(number("faults.encoder_moving_rad_s") <= number("faults.encoder_commanded_rad_s"),
             "faults.encoder_moving_rad_s", "at most faults.encoder_commanded_rad_s");
-    // Braking from full speed is no fault of an encoder.
-    const double rimSpeed = number("motion.motor_share") * number("pid.qpps") /
-                            number("frame.counts_per_turn") * 2 * vectorlib::pi *
-                            number("frame.wheel_radius_m");
-    const double twistSpeed =
-        number("motion.vx") + number("motion.vy") +
-        (number("frame.half_base_m") + number("frame.half_track_m")) * number("motion.omega");
-    const double braking = std::min(rimSpeed, twistSpeed) / number("safety.deceleration");
-    require(number("faults.encoder_hold_s") >= braking, "faults.encoder_hold_s",
-            QString("at least the %1 s that braking from the largest speed takes").arg(braking, 0, 'g', 3));
+    checkWatch(number, require);
     return wrong;
 }
 
@@ -232,7 +257,8 @@ MotorSettings MotorSettings::from(const Settings &settings) {
     s.current = {number("faults.current_warning_a"), number("faults.current_a"), hold};
     s.temperature = {number("faults.temperature_warning_c"), number("faults.temperature_c"), hold};
     s.encoder = {number("faults.encoder_commanded_rad_s"), number("faults.encoder_moving_rad_s"),
-                 number("faults.encoder_hold_s")};
+                 number("faults.encoder_hold_s"),
+                 s.emergencyDeceleration / s.wheelRadius / 2}; // motors lag behind
     s.gauge = {number("battery.capacity_ah"), number("battery.full_v"), number("battery.empty_v"),
                number("battery.idle_a"), number("battery.reserve")};
     s.batteryWarning_s = number("battery.warning_s");

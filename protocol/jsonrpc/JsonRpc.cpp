@@ -23,7 +23,8 @@ bool isId(const QJsonValue &value) {
 
 RpcInvalid invalid(const QJsonValue &id, const QString &why) {
     return {isId(id) ? id : QJsonValue(),
-            RpcError(ErrorCode::InvalidRequest, QStringLiteral("invalid request: ") + why)};
+            RpcError(ErrorCode::InvalidRequest, QStringLiteral("invalid request: ") + why),
+            {}};
 }
 
 RpcMessage readRequest(const QJsonObject &object, const QJsonValue &id) {
@@ -54,7 +55,7 @@ RpcMessage readResponse(const QJsonObject &object, const QJsonValue &id) {
     return response;
 }
 
-RpcMessage readMessage(const QJsonValue &value) {
+RpcMessage readWhole(const QJsonValue &value) {
     if (!value.isObject())
         return invalid(QJsonValue(), QStringLiteral("a message is a JSON object"));
     const QJsonObject object = value.toObject();
@@ -69,6 +70,13 @@ RpcMessage readMessage(const QJsonValue &value) {
     if (object.contains(resultKey) || object.contains(errorKey))
         return readResponse(object, id);
     return invalid(id, QStringLiteral("\"method\" is missing"));
+}
+
+RpcMessage readMessage(const QJsonValue &value) {
+    RpcMessage message = readWhole(value);
+    if (auto *wrong = std::get_if<RpcInvalid>(&message))
+        wrong->method = value.toObject().value(methodKey).toString();
+    return message;
 }
 
 } // namespace

@@ -30,6 +30,7 @@ struct RpcResponse {
 struct RpcInvalid {
     QJsonValue id;
     RpcError error;
+    QString method; ///< that it names; empty where none can be read
 };
 
 using RpcMessage = std::variant<RpcRequest, RpcResponse, RpcInvalid>;

@@ -17,10 +17,18 @@ public:
             return QJsonValue();
         }));
         addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return worked; }));
-        addCommand(Command("freeze", "Stops, too").urgent().handler([this](const Call &) { return worked; }));
+        addCommand(Command("freeze", "Stops, too")
+                       .param(Field::number("wait_s", "").range(0, 10).byDefault(1))
+                       .param(Field::text("client", "").with("maxLength", 5).byDefault("nobody"))
+                       .urgent()
+                       .handler([this](const Call &call) -> Result<QJsonValue> {
+                           taken = call.params;
+                           return QJsonValue(worked);
+                       }));
         addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
     }
     int worked = 0;
+    QJsonObject taken; // by freeze
 };
 
 QByteArray batchOf(int count, const QString &method, bool notifications = false) {
@@ -45,6 +53,8 @@ private Q_SLOTS:
     void goesBeforeWhatItsClientAskedBefore();
     void oneOfEachKindGoesBefore();
     void nameMayBeWrittenWithEscapes();
+    void isNeverRefusedForItsForm_data();
+    void isNeverRefusedForItsForm();
     void hasAPlaceWhenAllAreTaken();
     void silentClientsGiveWay();
     void refusalIsReadWhateverWasSent();
@@ -111,6 +121,43 @@ void TestUrgent::nameMayBeWrittenWithEscapes() {
     QTRY_VERIFY(daemon->worked > 0);
     other.send(R"({"jsonrpc":"2.0","id":1,"method":"h\u0061lt"})");
     QVERIFY(other.message()["result"].toInt() < 500);
+}
+
+void TestUrgent::isNeverRefusedForItsForm_data() {
+    QTest::addColumn<QByteArray>("request");
+    QTest::addColumn<QByteArray>("taken");
+    const auto row = [](const char *name, const QByteArray &params, const char *taken) {
+        QTest::newRow(name) << R"({"jsonrpc":"2.0","id":1,"method":"freeze","params":)" + params + '}'
+                            << QByteArray(taken);
+    };
+    const char *const nothing = R"({"wait_s":1,"client":"nobody"})";
+    row("too large", R"({"wait_s":20,"client":"anna"})", R"({"wait_s":1,"client":"anna"})");
+    row("of another kind", R"({"wait_s":"1s"})", nothing);
+    row("too long", R"({"client":"ANNNNA","wait_s":2})", R"({"wait_s":2,"client":"nobody"})");
+    row("unknown", R"({"reason":"fire","wait_s":0})", R"({"wait_s":0,"client":"nobody"})");
+    row("null", R"({"wait_s":null,"client":null})", nothing);
+    row("by position, too many", R"([3, "eva", 4, 5])", R"({"wait_s":3,"client":"eva"})");
+    row("no object", R"("now")", nothing);
+    row("many values", '[' + QByteArray("0,").repeated(2000) + "0]", R"({"wait_s":0,"client":"nobody"})");
+    row("deep", R"({"client":{"client":[[[]]]}})", nothing);
+    QTest::newRow("no version") << QByteArray(R"({"id":1,"method":"freeze"})") << QByteArray(nothing);
+    QTest::newRow("another version") << QByteArray(R"({"jsonrpc":2.0,"id":1,"method":"freeze"})")
+                                     << QByteArray(nothing);
+    QTest::newRow("a bad id") << QByteArray(R"({"jsonrpc":"2.0","id":[1],"method":"freeze"})")
+                              << QByteArray(nothing);
+}
+
+void TestUrgent::isNeverRefusedForItsForm() {
+    QFETCH(QByteArray, request);
+    QFETCH(QByteArray, taken);
+    RawClient client(address());
+    client.send(request);
+    QVERIFY(client.message().contains("result"));
+    QCOMPARE(daemon->taken, QJsonDocument::fromJson(taken).object());
+    client.send('[' + request + ']'); // in a batch, too
+    daemon->taken = {};
+    QVERIFY(QJsonDocument::fromJson(client.line()).array()[0].toObject().contains("result"));
+    QCOMPARE(daemon->taken, QJsonDocument::fromJson(taken).object());
 }
 
 void TestUrgent::hasAPlaceWhenAllAreTaken() {

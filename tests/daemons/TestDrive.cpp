@@ -12,6 +12,8 @@
 #include <memory>
 
 Q_DECLARE_METATYPE(std::function<void(hermes::motorcontrol::Drive &)>)
+Q_DECLARE_METATYPE(std::function<double(double)>)
+Q_DECLARE_METATYPE(std::function<double(double, double)>)
 
 using namespace hermes;
 using namespace hermes::motorcontrol;
@@ -52,6 +54,8 @@ private Q_SLOTS:
     void encoderMismatch_data();
     void encoderMismatch();
     void encoderMismatchNeedsTime();
+    void encoderMismatchAddsUp_data();
+    void encoderMismatchAddsUp();
 
 private:
     Error refusal(const Result<void> &result);
@@ -303,6 +307,19 @@ void TestDrive::thresholdNeedsTime() {
     QVERIFY(current.judge(notANumber, 0) == Threshold::Level::Fault);
 }
 
+// When a fault is found in so many seconds, told and measured by their time.
+template <typename At>
+static std::optional<double> faultAfter(EncoderMonitor &monitor, At at, double seconds = 2) {
+    static double begin = 1;
+    const double since = std::exchange(begin, begin + seconds);
+    for (double t = 0; t < seconds; t += 0.02) {
+        const auto [told, measured] = at(t);
+        if (monitor.judge(told, measured, since + t) != Mismatch::None)
+            return t;
+    }
+    return std::nullopt;
+}
+
 void TestDrive::encoderMismatch_data() {
     QTest::addColumn<double>("commanded");
     QTest::addColumn<double>("measured");
@@ -324,20 +341,68 @@ void TestDrive::encoderMismatch() {
     QFETCH(double, commanded);
     QFETCH(double, measured);
     EncoderMonitor monitor;
-    monitor.judge(commanded, measured, 0);
-    QTEST(int(monitor.judge(commanded, measured, 0.5)), "expected");
+    Mismatch found = Mismatch::None;
+    for (int i = 0; i <= 30; ++i)
+        found = monitor.judge(commanded, measured, 1 + 0.02 * i);
+    QTEST(int(found), "expected");
 }
 
 void TestDrive::encoderMismatchNeedsTime() {
     EncoderMonitor monitor;
-    for (double now = 0; now < 0.25; now += 0.02)
-        QVERIFY(monitor.judge(0, 10 - 40 * now, now) == Mismatch::None); // brakes
-    QVERIFY(monitor.judge(0, 0, 0.26) == Mismatch::None);
-    QVERIFY(monitor.judge(0, 1, 0.6) == Mismatch::None);
-    QVERIFY(monitor.judge(0, 1, 1) == Mismatch::None);
-    monitor.reset();
-    QVERIFY(monitor.judge(0, 1, 1.2) == Mismatch::None);
-    QVERIFY(monitor.judge(0, 1, 1.71) == Mismatch::MovesUncommanded);
+    QVERIFY(!faultAfter(monitor, [](double) { return std::pair(10.0, 10.0); }));
+    QVERIFY(
+        !faultAfter(monitor, [](double t) { return std::pair(0.0, std::max(0.0, 10 - 40 * t)); })); // brakes
+    const auto after = faultAfter(monitor, [](double) { return std::pair(0.0, 1.0); });
+    QVERIFY(after && *after > 0.45 && *after < 0.55);
+    monitor.skip();
+    QVERIFY(monitor.judge(0, 1, 100) == Mismatch::MovesUncommanded); // what has added up stays
+    QVERIFY(
+        !faultAfter(monitor, [](double) { return std::pair(5.0, 5.0); })); // seen to follow, it counts anew
+    QVERIFY(monitor.judge(0, 5, 110.3) == Mismatch::None);
+}
+
+// Whatever is commanded meanwhile, the time of what no command explains adds up.
+void TestDrive::encoderMismatchAddsUp_data() {
+    using Told = std::function<double(double)>;
+    using Measured = std::function<double(double, double)>; // time, told
+    QTest::addColumn<Told>("told");
+    QTest::addColumn<Measured>("measured");
+    QTest::addColumn<double>("latest"); // 0: no fault at all
+    const auto taps = [](double on, double off, double speed) {
+        return Told([=](double t) { return std::fmod(t, on + off) < on ? speed : 0; });
+    };
+    const Told toAndFro = [](double t) { return std::fmod(t, 0.7) < 0.35 ? 2.0 : -2.0; };
+    const Measured runsAway = [](double, double) { return -28.0; },
+                   stands = [](double, double) { return 0.0; };
+    // As a motor follows: late, and with the ramp of its controller.
+    const auto follows = [] {
+        return Measured([speed = 0.0, last = 0.0](double t, double told) mutable {
+            const double step = 40 * (t - std::exchange(last, t));
+            return speed += std::clamp(told - speed, -step, step);
+        });
+    };
+    QTest::newRow("backward, to and fro") << toAndFro << runsAway << 0.7;
+    QTest::newRow("backward, tapped") << taps(0.4, 0.4, 2) << runsAway << 0.7;
+    QTest::newRow("backward, tapped fast") << taps(0.06, 0.06, 2) << runsAway << 0.7;
+    QTest::newRow("stands, tapped") << taps(0.4, 0.4, 2) << stands << 1.3;
+    QTest::newRow("stands, to and fro") << toAndFro << stands << 0.8;
+    QTest::newRow("stands, tapped seldom") << taps(0.3, 2, 2) << stands << 5.0;
+    QTest::newRow("follows, to and fro") << toAndFro << follows() << 0.0;
+    QTest::newRow("follows, tapped") << taps(0.1, 0.1, 5) << follows() << 0.0;
+    QTest::newRow("follows, full speed and stops") << taps(1, 1, 20) << follows() << 0.0;
+}
+
+void TestDrive::encoderMismatchAddsUp() {
+    using Told = std::function<double(double)>;
+    using Measured = std::function<double(double, double)>;
+    QFETCH(Told, told);
+    QFETCH(Measured, measured);
+    QFETCH(double, latest);
+    EncoderMonitor monitor;
+    const auto after = faultAfter(
+        monitor, [&](double t) { return std::pair(told(t), measured(t, told(t))); }, 20);
+    QCOMPARE(after.has_value(), latest > 0);
+    QVERIFY2(!after || *after < latest, qPrintable(QString::number(after.value_or(0))));
 }
 
 QTEST_GUILESS_MAIN(TestDrive)

@@ -362,6 +362,18 @@ void TestMotorControl::settingsAreCheckedAgainstEachOther_data() {
     QTest::newRow("thresholds crossed") << QStringList{"faults.battery_v=24"} << "faults.battery_v";
     QTest::newRow("encoder fault while braking")
         << QStringList{"safety.deceleration=1"} << "faults.encoder_hold_s";
+    QTest::newRow("motor.wheels is faster than any twist")
+        << QStringList{"motion.vx=0.1", "motion.vy=0.1", "motion.omega=0.1", "safety.deceleration=2"}
+        << "faults.encoder_hold_s";
+    QTest::newRow("a fault that comes too late")
+        << QStringList{"faults.encoder_hold_s=5"} << "faults.encoder_hold_s";
+    QTest::newRow("turning counts as standing")
+        << QStringList{"faults.encoder_moving_rad_s=0.9", "faults.encoder_commanded_rad_s=0.9"}
+        << "faults.encoder_moving_rad_s";
+    QTest::newRow("standing may be a command")
+        << QStringList{"faults.encoder_commanded_rad_s=5"} << "faults.encoder_commanded_rad_s";
+    QTest::newRow("an encoder that shows no turning")
+        << QStringList{"frame.counts_per_turn=50", "pid.qpps=150"} << "frame.counts_per_turn";
 }
 
 void TestMotorControl::settingsAreCheckedAgainstEachOther() {

@@ -197,8 +197,17 @@ Case Case::draw(std::uint64_t seed) {
         }
     }
     c.faults = possible(c.faults, c.duration);
+    if (dice.chance(0.4)) {
+        c.steering = dice.of<std::string>({"to and fro", "taps"});
+        c.steerPeriod = dice.between(0.05, 1, 0.05);
+    }
     std::sort(c.steps.begin(), c.steps.end(), [](const Step &a, const Step &b) { return a.time < b.time; });
     return c;
+}
+
+double Case::steered(double time) const {
+    const bool other = !steering.empty() && time < duration && int(time / steerPeriod) % 2 != 0;
+    return !other ? 1 : steering == "taps" ? 0 : -1;
 }
 
 std::string Case::script() const {
@@ -213,12 +222,13 @@ std::string Case::script() const {
         lines.emplace(
             s.time, (s.action.rfind("the ", 0) == 0 || s.action.rfind("emer", 0) == 0 ? "" : "the client ") +
                         s.action + " (" + number(s.amount) + " s)");
-    std::string text = "  " + std::string(twoLines ? "two lines" : "one line") + ", firmware " + firmware +
-                       ", drives " + number(vx) + " m/s, " + number(vy) + " m/s, " + number(omega) +
-                       " rad/s, lease " + number(lease_s) + " s" + (resets ? ", resets faults" : "") +
-                       (stamps ? ", stamps" : "") + (movesAtFirst ? ", wheels turn already" : "") +
-                       "\n  settings " +
-                       QJsonDocument(settings).toJson(QJsonDocument::Compact).toStdString() + "\n";
+    std::string text =
+        "  " + std::string(twoLines ? "two lines" : "one line") + ", firmware " + firmware + ", drives " +
+        number(vx) + " m/s, " + number(vy) + " m/s, " + number(omega) + " rad/s, " +
+        (steering.empty() ? "" : steering + " every " + number(steerPeriod) + " s, ") + "lease " +
+        number(lease_s) + " s" + (resets ? ", resets faults" : "") + (stamps ? ", stamps" : "") +
+        (movesAtFirst ? ", wheels turn already" : "") + "\n  settings " +
+        QJsonDocument(settings).toJson(QJsonDocument::Compact).toStdString() + "\n";
     for (const auto &[time, line] : lines) {
         char stamp[32];
         std::snprintf(stamp, sizeof stamp, "  %5.2f s  ", time);

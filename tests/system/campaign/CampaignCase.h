@@ -35,6 +35,8 @@ struct Case {
     bool stamps = false;       ///< it tells when a command was made
     std::string firmware = "4.2.8";
     double vx = 0.5, vy = 0, omega = 0;
+    std::string steering;   ///< "" drives on; "to and fro", or "taps": every other period it tells to stand
+    double steerPeriod = 0; ///< seconds
     double lease_s = 1;
     QJsonObject settings; ///< those that are not the default
     std::vector<Fault> faults;
@@ -43,7 +45,9 @@ struct Case {
 
     /// The same for the same seed.
     static Case draw(std::uint64_t seed);
-    bool isUndisturbed() const { return faults.empty() && steps.empty(); }
+    bool isUndisturbed() const { return faults.empty() && steps.empty() && steering.empty(); }
+    /// Times the velocity, at that time of the case.
+    double steered(double time) const;
     /// For people: one line a thing that happens, in their order.
     std::string script() const;
 };

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdarg>
+#include <utility>
 
 namespace campaign {
 
@@ -25,9 +26,10 @@ std::string controllerName(int number) {
 
 } // namespace
 
-void StandJudge::configure(double deceleration, double commandTimeout_s) {
+void StandJudge::configure(double deceleration, double commandTimeout_s, double hold_s) {
     deceleration_ = deceleration;
     commandTimeout_ = commandTimeout_s;
+    hold_ = hold_s;
 }
 
 void StandJudge::begin(const Fault &fault) {
@@ -40,6 +42,7 @@ void StandJudge::begin(const Fault &fault) {
 
 void StandJudge::end(const Fault &fault) {
     active_.erase({fault.device, fault.kind});
+    ranAway_ = {}; // it is seen to follow again
     if (fault.kind == "swapped")
         exchanged_ = time();
     if (justified_ || (fault.kind != "deaf" && fault.kind != "pulled"))
@@ -197,6 +200,7 @@ void StandJudge::watch() {
     if (justified_ && now >= until_)
         endJustification("no command came");
     watchGuard();
+    watchRunaways(now - last_);
     stalledFor_ += stalledSince_ ? now - last_ : 0;
     last_ = now;
     if (justified_)
@@ -206,7 +210,7 @@ void StandJudge::watch() {
         if (disobedientSince(controller))
             disobeyed_[std::size_t(controller)] = now;
         const bool creeps = now < disobeyed_[std::size_t(controller)] + reaction &&
-                            now < deadline_[std::size_t(controller)] + creepingSeen;
+                            now < std::max(deadline_[std::size_t(controller)], reconfigured_) + creepingSeen;
         const double limit = creeps ? creeping : standing;
         for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
             if (rim(wheel) <= limit)
@@ -245,6 +249,18 @@ void StandJudge::watchGuard() {
         if (seconds > unguarded)
             fail(controllerName(controller) +
                  print(" is ready without a time-out of its own at %.2f s", time()));
+    }
+}
+
+void StandJudge::watchRunaways(double step) {
+    if (std::exchange(resets_, robot_.engine.drive().resets()) != robot_.engine.drive().resets())
+        ranAway_ = {};
+    for (int wheel = 0; wheel < 4 && justified_ && !stalledSince_; ++wheel) {
+        double &seconds = ranAway_[std::size_t(wheel)];
+        seconds += rim(wheel) > runaway ? step : 0;
+        if (seconds > hold_ + reaction + seeing(wheel / 2) / 2)
+            fail(print("%s was faster than any command for %.2f s until %.2f s, and it is no fault",
+                       wheelNames[wheel], seconds, time()));
     }
 }
 

@@ -25,10 +25,12 @@ public:
 
     /// The robot now brakes with this (m/s^2), a command is good for so long, a wheel that turns without
     /// being told to is a fault after hold.
-    void configure(double deceleration, double commandTimeout_s);
+    void configure(double deceleration, double commandTimeout_s, double hold_s);
     void begin(const Fault &fault);
     void end(const Fault &fault);
     void setStalled(bool stalled);
+    /// What is seen of slow motions begins anew.
+    void reconfigure() { reconfigured_ = time(); }
 
     /// A command that was made then was accepted.
     void justify(double made);
@@ -56,6 +58,7 @@ private:
     static constexpr double longestSilence =
         0.6;                               // of a line, between two attempts to stop what does not confirm
     static constexpr double rolling = 1.2; // without power
+    static constexpr double runaway = 1.6; // m/s at the rim: no case tells a wheel to be so fast
     static constexpr double lost = 0.5;    // not heard for so long, a controller has been noticed
     static constexpr double unguarded =
         3; // without its time-out a controller may be driven no longer than that
@@ -73,14 +76,16 @@ private:
     void extend(int controller);
     std::optional<int> lostController() const;
     void watchGuard();
+    /// Wheels far faster than any command, while the robot may drive.
+    void watchRunaways(double step);
     void fail(const std::string &what);
 
     VirtualRobot &robot_;
     double start_;
-    double deceleration_ = 4, commandTimeout_ = 0.25;
+    double deceleration_ = 4, commandTimeout_ = 0.25, hold_ = 0.7;
     std::map<std::pair<std::string, std::string>, double> active_; // since when
     std::optional<double> stalledSince_;
-    double resumed_ = 0;
+    double resumed_ = 0, reconfigured_ = 0;
     double exchanged_ = 0;  // when the controllers last exchanged their addresses
     double stalledFor_ = 0; // since the justification ended: time in which nobody can see what a wheel does
 
@@ -91,6 +96,8 @@ private:
     std::string why_ = "nobody has driven yet";
     std::string excuse_ = "obeys";
     std::array<double, 2> deadline_{}, unguardedFor_{}, disobeyed_{-1, -1};
+    std::array<double, 4> ranAway_{}; // for so long in all
+    quint64 resets_ = 0;              // of the faults, seen
     std::string failure_;
     std::set<std::string> beyond_;
     std::map<std::string, double> slowest_;

@@ -67,7 +67,8 @@ public:
         , settings_(settingsOf(c))
         , robot_(settings_, drivetrainOf(c))
         , judge_(robot_, start) {
-        judge_.configure(settings_.emergencyDeceleration, settings_.drive.commandTimeout_s);
+        judge_.configure(settings_.emergencyDeceleration, settings_.drive.commandTimeout_s,
+                         settings_.encoder.hold_s);
         if (c.movesAtFirst) {
             for (int i = 0; i < 4; ++i)
                 robot_.robot.wheel(i).driveSpeed(20000);
@@ -144,7 +145,8 @@ private:
                 return robot_.obey();
             judge_.endJustification("the control was acquired anew");
         }
-        const Twist2D twist{case_.vx, case_.vy, case_.omega};
+        const double share = case_.steered(made);
+        const Twist2D twist{case_.vx * share, case_.vy * share, case_.omega * share};
         const double age = case_.stamps ? time() - made : 0;
         if (drive.driveTwist(client_, twist, age, now))
             judge_.justify(case_.stamps ? made : time()); // without a stamp it is good from when it comes
@@ -198,6 +200,7 @@ private:
         const double timeout = std::ceil(step.amount * 2.5) / 10; // 0.1 to 0.5 s
         const MotorSettings changed = settingsOf(case_, {{"timeout_s", timeout}});
         robot_.engine.configure(changed);
+        judge_.reconfigure();
     }
     /// Whether the client sends nothing then, for what it does while the process stands still.
     bool isSilentAt(double when) const {
