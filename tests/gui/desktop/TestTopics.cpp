@@ -107,6 +107,7 @@ void TestTopics::newestMessageAsATree() {
     QCOMPARE(at({"controllers", "0", "current_a", "1"}).value(1), QString("A"));
     QCOMPARE(at({"controllers", "0", "ready"}).value(0), QString("yes"));
     chooseMessage("odometry");
+    QTRY_VERIFY2(head().startsWith("odometry of ") && head().contains(" Hz, "), qPrintable(head()));
     robot_->setSilent(true);
     QTRY_VERIFY_WITH_TIMEOUT(head().contains("no data for "), 10000);
 }
