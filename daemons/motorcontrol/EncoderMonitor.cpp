@@ -8,7 +8,7 @@ namespace hermes::motorcontrol {
 namespace {
 
 constexpr double longestPause_s = 0.25; // between two readings; after more the controller is lost
-constexpr double forgetting = 0.02;    // of the time in which nothing shows how the wheel follows
+constexpr double forgetting = 0.02;     // of the time in which nothing shows how the wheel follows
 
 } // namespace
 

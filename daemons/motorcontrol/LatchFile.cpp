@@ -55,9 +55,10 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
     const QString folder = QFileInfo(path_).path();
     if (!reason) {
         if (!QFile::remove(path_) && QFile::exists(path_))
-            return Error(ErrorCode::InputOutput, QString("%1 cannot be removed: %2; the next start latches the "
-                                                         "emergency stop again")
-                                                     .arg(path_, std::strerror(errno)));
+            return Error(ErrorCode::InputOutput,
+                         QString("%1 cannot be removed: %2; the next start latches the "
+                                 "emergency stop again")
+                             .arg(path_, std::strerror(errno)));
         disk_.start([folder] { syncFolder(folder); });
         return {};
     }

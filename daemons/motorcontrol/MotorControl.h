@@ -70,7 +70,7 @@ private:
     MotorSettings active_;      // what the loop works with
     Telemetry told_;
     LatchFile latchFile_;
-    QString unkept_; ///< why the emergency stop is not in the file
+    QString unkept_;     ///< why the emergency stop is not in the file
     QString loggedHalt_; ///< the last that is in the log
     struct WaitingStop {
         Reply reply;

@@ -121,8 +121,8 @@ void MotorControl::tellStop() {
         texts.append(standingOf(told_).all.text);
     if (!unkept_.isEmpty())
         texts.append(unkept_);
-    health().set("stop", latched || lost || !unkept_.isEmpty() ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "),
-                 asJson(causes).toObject());
+    health().set("stop", latched || lost || !unkept_.isEmpty() ? HealthLevel::Failed : HealthLevel::Ok,
+                 texts.join("; "), asJson(causes).toObject());
     const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));
     setState(fault ? DaemonState::Fault : isReady() && !latched ? DaemonState::Running : DaemonState::Ready);
 }
