@@ -205,7 +205,7 @@ void TestReadable::whatDrivesIsInSight() {
     Client other;
     other.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
     QTRY_VERIFY(other.isConnected());
-    const QJsonObject anna{{"client", "anna on laptop7"}};
+    QJsonObject anna{{"client", "anna on laptop7"}};
     QVERIFY(other.callAndWait("motor.estop", anna).ok());
     QTRY_VERIFY_WITH_TIMEOUT(open.drive.isStopped(), 10000);
     auto *const banner = open.window.findChild<QToolBar *>("stopLine");
@@ -213,6 +213,7 @@ void TestReadable::whatDrivesIsInSight() {
     QCOMPARE(open.window.size(), QSize(1024, 600)); // with a banner, too
     QVERIFY(other.callAndWait("motor.reset_estop", anna).ok());
     QTRY_VERIFY_WITH_TIMEOUT(!banner->isVisible(), 10000);
+    anna["timeout_s"] = 60; // she does not drive
     QVERIFY(other.callAndWait("control.acquire", anna).ok());
     auto *const takeOver = open.window.findChild<QWidget *>("takeOver");
     QTRY_VERIFY_WITH_TIMEOUT(takeOver->isVisible(), 10000);
