@@ -27,6 +27,8 @@ public:
     /// Ends a lease that has run out; gives the name of who held it.
     std::optional<QString> expire(double now);
 
+    /// Who holds it; 0: nobody.
+    quint64 client() const { return holder_ ? holder_->client : 0; }
     bool isHeldBy(quint64 client) const { return holder_ && holder_->client == client; }
     LeaseState state(double now) const;
 

@@ -111,10 +111,45 @@ void Drive::stop(quint64 client, const QString &who) {
     halt("stopped by " + who);
 }
 
-void Drive::emergencyStop(const QString &who) {
-    latch_.set(emergencyCause, "emergency stop by " + who);
+void Drive::emergencyStop(quint64 client, const QString &who, double now) {
+    const bool isNew = latch_.set(emergencyCause, "emergency stop by " + who);
+    presser_ = isNew || client == presser_ ? client : 0;
+    if (isNew)
+        stopped_ = lease_.isHeldBy(client) ? 0 : lease_.client();
+    pressed_ = now;
     lease_.revoke();
     halt(latch_.reason(emergencyCause));
+}
+
+void Drive::restoreStop(const QString &reason, double now) {
+    fault(emergencyCause, reason);
+    presser_ = stopped_ = 0;
+    pressed_ = now;
+}
+
+Result<void> Drive::mayReset(quint64 client, bool isConfirmed, double now) const {
+    if (!latch_.has(emergencyCause))
+        return {};
+    const QString reason = latch_.reason(emergencyCause);
+    const double left = pressed_ + holdOff_s - now;
+    if (left > 0)
+        return Error(ErrorCode::NotReady,
+                     QString("%1: it was pressed %2 s ago, expected at least %3 s before it is released")
+                         .arg(reason)
+                         .arg(holdOff_s - left, 0, 'f', 2)
+                         .arg(holdOff_s),
+                     QJsonObject{{"retry_after_s", left}});
+    if (client == presser_ && client != 0)
+        return {};
+    if (client == stopped_ && client != 0)
+        return Error(ErrorCode::NotReady,
+                     reason + ": it stopped this client, expected another one that releases it");
+    if (isConfirmed)
+        return {};
+    return Error(ErrorCode::NotReady,
+                 reason + ": not by this client alone, expected a person who has looked at the robot and "
+                          "confirms, with confirm=true",
+                 QJsonObject{{"confirm", true}});
 }
 
 void Drive::resetEmergencyStop(const QString &who) {

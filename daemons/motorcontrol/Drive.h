@@ -32,7 +32,14 @@ public:
     Result<void> driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now);
     /// Anyone may stop. Ends the lease unless the client holds it.
     void stop(quint64 client, const QString &who);
-    void emergencyStop(const QString &who);
+    /// who: as others are to know it. The client is the one that may release it.
+    void emergencyStop(quint64 client, const QString &who, double now);
+    /// One of before the start: only a person may release it.
+    void restoreStop(const QString &reason, double now);
+    /// Whether this client may release the emergency stop. Within holdOff_s of the last press nobody may,
+    /// then who alone pressed it, or for whom a person has confirmed; never one that was driving when another
+    /// pressed it. Error: NotReady, with data.retry_after_s or data.confirm where that would help.
+    Result<void> mayReset(quint64 client, bool isConfirmed, double now) const;
     /// Releases the emergency stop and the faults. What still is wrong latches again.
     /// who: as others are to know it; empty: nobody says.
     void resetEmergencyStop(const QString &who = {});
@@ -68,6 +75,7 @@ public:
     const QString &haltReason() const { return haltReason_; }
 
     static constexpr const char *emergencyCause = "estop";
+    static constexpr double holdOff_s = 2; ///< after a press
 
 private:
     Result<void> mayMove(double age_s) const;
@@ -81,6 +89,9 @@ private:
     WheelValues target_{}, setPoint_{};
     QString notReady_ = "the controllers have not answered yet";
     QString haltReason_;
+    /// Of the emergency stop. 0: several pressed it, or nobody that is known; nobody drove.
+    quint64 presser_ = 0, stopped_ = 0;
+    double pressed_ = 0; // the last time
     quint64 resets_ = 0;
     double lastStep_ = 0;
 };

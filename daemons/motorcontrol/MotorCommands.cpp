@@ -136,15 +136,29 @@ void MotorControl::declareMotorCommands() {
         stopCommand("motor.estop",
                     "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; "
                     "anyone may. No substitute for a hard-wired device",
-                    [](const Call &call, Drive &drive) { drive.emergencyStop(callerName(call)); }));
+                    [](const Call &call, Drive &drive) {
+                        drive.emergencyStop(call.client, callerName(call), monotonicNow());
+                    }));
     addCommand(freshLoopCommand(
                    "motor.reset_estop",
-                   "Releases the emergency stop and latched faults; the robot stays where it is until a "
-                   "client acquires the control and drives",
+                   "Releases the emergency stop and latched faults, once the wheels stand; the robot stays "
+                   "where it is until a client acquires the control and drives. An emergency stop is "
+                   "released 2 s after the last press at the earliest, by the client that alone pressed it, "
+                   "or when a person confirms; never by one that was driving when another pressed it",
                    [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                       const auto may =
+                           loop.drive().mayReset(call.client, call.flag("confirm"), monotonicNow());
+                       if (!may)
+                           return may.error();
+                       if (const QString turning = turningOf(loop.telemetry()); !turning.isEmpty())
+                           return Error(ErrorCode::NotReady,
+                                        turning + ", expected wheels that stand before it is released");
                        loop.drive().resetEmergencyStop(callerName(call));
                        return QJsonValue();
                    })
+                   .param(Field::boolean("confirm", "A person has looked at the robot, and lets it move "
+                                                    "again")
+                              .byDefault(false))
                    .param(clientField()));
     addCommand(
         hermes::Command("motor.state",

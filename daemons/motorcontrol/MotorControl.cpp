@@ -94,7 +94,7 @@ void MotorControl::restoreStop() {
         return;
     logWarning("stop", *reason + ", before this program was started; it stays until motor.reset_estop");
     QMetaObject::invokeMethod(
-        loop_, [this, &reason] { loop_->drive().fault(Drive::emergencyCause, *reason); },
+        loop_, [this, &reason] { loop_->drive().restoreStop(*reason, monotonicNow()); },
         Qt::BlockingQueuedConnection);
 }
 

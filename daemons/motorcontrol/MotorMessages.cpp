@@ -29,6 +29,14 @@ bool allStand(const Telemetry &t) {
     return std::all_of(t.controllers.begin(), t.controllers.end(), [](const auto &c) { return c.stands; });
 }
 
+QString turningOf(const Telemetry &t) {
+    QStringList names;
+    for (const Telemetry::Controller &c : t.controllers)
+        if (c.ready && !c.stands)
+            names.append(c.name);
+    return names.isEmpty() ? QString() : "wheels of " + names.join(" and ") + " turn, or were not read since";
+}
+
 OdometryMessage odometryOf(const Telemetry &t) {
     return {t.pose, t.twist, t.covariance, t.mono};
 }

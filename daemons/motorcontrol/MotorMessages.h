@@ -61,6 +61,8 @@ CycleState cycleOf(const Telemetry &telemetry);
 Standing standingOf(const Telemetry &telemetry);
 /// Whether every controller has confirmed that it stands.
 bool allStand(const Telemetry &telemetry);
+/// Which controllers answer and are not known to stand; empty when none.
+QString turningOf(const Telemetry &telemetry);
 
 const Fields<WheelMessage> &fieldsOf(Of<WheelMessage>);
 const Fields<WheelsMessage> &fieldsOf(Of<WheelsMessage>);

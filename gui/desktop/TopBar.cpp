@@ -169,6 +169,7 @@ void TopBar::updateDrive() {
     release_->setVisible(drive_.isStopped());
     const StopControl &stopping = drive_.stopping();
     const bool isOnItsWay = stopping.phase() == StopPhase::Pressed || stopping.phase() == StopPhase::Sent;
+    release_->setText(drive_.isReleaseAsked() ? tr("&Release?") : tr("&Release"));
     release_->setEnabled(!isOnItsWay || stopping.isLate()); // a stop that comes after its release holds
     stop_->setText(StopBanner::wordOf(drive_));
     const QString colours =

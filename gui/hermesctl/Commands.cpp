@@ -8,7 +8,9 @@
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Markdown.h"
 #include "gui/hermesctl/NetworkBrowser.h"
+#include "gui/hermesctl/Output.h"
 #include "gui/hermesctl/PatientCall.h"
+#include "gui/hermesctl/Question.h"
 #include "gui/hermesctl/Table.h"
 #include "gui/hermesctl/Waiting.h"
 #include "gui/hermesctl/WrongItems.h"
@@ -20,6 +22,7 @@
 #include <QEventLoop>
 #include <QJsonArray>
 #include <QJsonDocument>
+#include <QTimer>
 #include <functional>
 
 namespace hermes::ctl {
@@ -64,6 +67,34 @@ void noteAngles(Client &client, const QString &method, const QJsonObject &values
     if (const auto description = client.callAndWait(method))
         for (const QString &text : beyondTurn(schemaOf(*description), values))
             note(text);
+}
+
+/// A refusal may tell when the same is taken, which is waited for, or that a person has to confirm, who is
+/// asked.
+Result<QJsonValue> askAgain(Client &client, const Arguments &arguments, const QString &method,
+                            QJsonObject params) {
+    constexpr double longest_s = 5;
+    for (int waits = 0;; ++waits) {
+        // Urgent: where a line damages much, a stop is not to wait for a repeat.
+        const auto result = ask(client, arguments, method, params, Client::Repeats::AtOnce);
+        if (result)
+            return result;
+        const Error &error = result.error();
+        const double wait_s = error.data[QStringLiteral("retry_after_s")].toDouble();
+        if (wait_s > 0 && wait_s <= longest_s && waits < 2 && !arguments.timeoutIsGiven) {
+            note(QStringLiteral("%1; tried again in %2 s").arg(error.message).arg(wait_s, 0, 'f', 1));
+            QEventLoop pause;
+            QTimer::singleShot(int(wait_s * 1000) + 1, &pause, &QEventLoop::quit);
+            pause.exec();
+        } else if (error.data[QStringLiteral("confirm")].toBool() && canAsk() &&
+                   !params.contains(QStringLiteral("confirm"))) {
+            if (!isConfirmed(printable(error.message) + QStringLiteral(". Do you confirm?")))
+                return error;
+            params.insert(QStringLiteral("confirm"), true);
+        } else {
+            return error;
+        }
+    }
 }
 
 QString logLine(WireView record) {
@@ -225,8 +256,7 @@ Result<void> call(Client &client, const Arguments &arguments) {
     const auto params = assignments(arguments.words.mid(2));
     if (!params)
         return params.error();
-    // Urgent: where a line damages much, a stop is not to wait for a repeat.
-    const auto result = ask(client, arguments, arguments.words.at(1), *params, Client::Repeats::AtOnce);
+    const auto result = askAgain(client, arguments, arguments.words.at(1), *params);
     if (!result)
         return result.error();
     printLine(pretty(*result));

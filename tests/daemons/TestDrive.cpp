@@ -20,7 +20,7 @@ using namespace hermes::motorcontrol;
 
 namespace {
 
-constexpr quint64 anna = 1, bert = 2;
+constexpr quint64 anna = 1, bert = 2, carl = 3;
 const WheelValues still{};
 const double notANumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -46,6 +46,7 @@ private Q_SLOTS:
     void commandTimeOutStopsButKeepsTheLease();
     void stopOfAnotherEndsTheLease();
     void emergencyStopIsLatched();
+    void onlyWhoPressedOrAPersonReleases();
     void faultsAreLatchedAndNamed();
     void notReadyRefusesAndRecovers();
     void oldCommandsAreRefused();
@@ -173,7 +174,7 @@ void TestDrive::takingOverIsAskedFor() {
     drive_->clientGone(anna); // is of no account any more
     QVERIFY(drive_->driveTwist(bert, {0.5, 0, 0}, 0, 0.2).ok());
     QVERIFY(drive_->step(0.3) != still);
-    drive_->emergencyStop("anna");
+    drive_->emergencyStop(anna, "anna", 0.3);
     QVERIFY(refusal(drive_->takeOver(anna, "anna", 1, 0.3)).is(ErrorCode::NotReady));
 }
 
@@ -197,7 +198,7 @@ void TestDrive::stopsAtOnce_data() {
     using Event = std::function<void(Drive &)>;
     QTest::newRow("motor.stop") << Event([](Drive &d) { d.stop(anna, "anna"); });
     QTest::newRow("motor.stop of another") << Event([](Drive &d) { d.stop(bert, "bert"); });
-    QTest::newRow("motor.estop") << Event([](Drive &d) { d.emergencyStop("bert"); });
+    QTest::newRow("motor.estop") << Event([](Drive &d) { d.emergencyStop(bert, "bert", 1); });
     QTest::newRow("client gone") << Event([](Drive &d) { d.clientGone(anna); });
     QTest::newRow("control.release") << Event([](Drive &d) { d.release(anna); });
     QTest::newRow("fault") << Event([](Drive &d) { d.fault("battery", "low"); });
@@ -236,8 +237,8 @@ void TestDrive::stopOfAnotherEndsTheLease() {
 
 void TestDrive::emergencyStopIsLatched() {
     QVERIFY(drive_->acquire(anna, "anna", 1, 0).ok());
-    drive_->emergencyStop("bert");
-    drive_->emergencyStop("carl");
+    drive_->emergencyStop(bert, "bert", 0);
+    drive_->emergencyStop(carl, "carl", 0);
     const Error error = refusal(drive_->driveTwist(anna, {0.5, 0, 0}, 0, 0));
     QVERIFY(error.is(ErrorCode::NotReady));
     QCOMPARE(error.message, QString("emergency stop by bert; motor.reset_estop releases it"));
@@ -247,6 +248,37 @@ void TestDrive::emergencyStopIsLatched() {
     QVERIFY(refusal(drive_->driveTwist(anna, {0.5, 0, 0}, 0, 0.1)).is(ErrorCode::ControlHeld));
     QVERIFY(drive_->acquire(anna, "anna", 1, 0.1).ok());
     QVERIFY(drive_->driveTwist(anna, {0.5, 0, 0}, 0, 0.1).ok());
+}
+
+// By rule, not by case: whoever pressed, drove and asks, in each order, is refused unless it alone pressed,
+// or a person has confirmed and it was not driving when another pressed; and nobody is heard within the
+// hold-off.
+void TestDrive::onlyWhoPressedOrAPersonReleases() {
+    const std::array clients{anna, bert, carl};
+    for (quint64 driver : clients)
+        for (quint64 first : clients)
+            for (quint64 second : {quint64(0), anna, bert, carl})
+                for (quint64 asks : clients)
+                    for (bool confirmed : {false, true}) {
+                        init();
+                        QVERIFY(drive_->mayReset(asks, false, 0).ok()); // nothing to release
+                        QVERIFY(drive_->acquire(driver, "driver", 10, 0).ok());
+                        drive_->emergencyStop(first, "first", 1);
+                        if (second)
+                            drive_->emergencyStop(second, "second", 2);
+                        const double free = (second ? 2 : 1) + Drive::holdOff_s;
+                        const Error early = refusal(drive_->mayReset(asks, confirmed, free - 0.5));
+                        QCOMPARE(early.data["retry_after_s"].toDouble(), 0.5);
+                        const bool alone = asks == first && (second == 0 || second == first);
+                        const bool wasStopped = asks == driver && driver != first;
+                        QCOMPARE(drive_->mayReset(asks, confirmed, free + 0.01).ok(),
+                                 alone || (confirmed && !wasStopped));
+                    }
+    init();
+    drive_->restoreStop("emergency stop of before", 5);
+    QVERIFY(refusal(drive_->mayReset(anna, true, 6)).is(ErrorCode::NotReady));
+    QVERIFY(refusal(drive_->mayReset(anna, false, 8)).data["confirm"].toBool());
+    QVERIFY(drive_->mayReset(anna, true, 8).ok());
 }
 
 void TestDrive::faultsAreLatchedAndNamed() {

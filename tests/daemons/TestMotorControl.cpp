@@ -290,7 +290,8 @@ void TestMotorControl::emergencyStopLatches() {
     QCOMPARE(failure("control.acquire").code, int(ErrorCode::NotReady));
     QTRY_VERIFY(rig_->fastest() < 10);
     QTRY_COMPARE(call("daemon.status")["state"].toString(), QString("degraded"));
-    call("motor.reset_estop");
+    QVERIFY(failure("motor.reset_estop").data["retry_after_s"].toDouble() > 0);
+    QVERIFY(releaseStop(*client_));
     passCycles(5);
     QVERIFY(rig_->fastest() < 10);
     QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::ControlHeld));
@@ -407,3 +408,4 @@ void TestMotorControl::aTenthOfAVoltIsEnough() {
 
 QTEST_GUILESS_MAIN(TestMotorControl)
 #include "TestMotorControl.moc"
+#include "tests/support/ReleaseStop.h"

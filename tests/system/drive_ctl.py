@@ -16,7 +16,7 @@ import time
 import unittest
 from unittest import mock
 
-from support import BINARIES, Process, free_port, simulated_hall, wait_for
+from support import BINARIES, Process, free_port, simulated_hall, release, wait_for
 
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 TOO_LATE = -32004  # on a busy machine the simulated controllers may answer too late; the robot has halted
@@ -89,7 +89,7 @@ class Drive(unittest.TestCase):
 
     def setUp(self):
         wait_for("ready", lambda: self.motors.call("motor.state")["ready"])
-        self.motors.call("motor.reset_estop")
+        release(self.motors)
         wait_for("free control", lambda: not self.motors.call("control.state")["held"])
 
     def faults(self):

@@ -13,7 +13,7 @@ import time
 import unittest
 from unittest import mock
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, Process, free_port, release, wait_for
 import drive  # of docs/examples
 
 PROGRAM = os.path.join(SOURCE, "docs", "examples", "drive.py")
@@ -79,19 +79,11 @@ class DriveTest(unittest.TestCase):
         cls.motors = cls.motor_process.connect()
 
     def setUp(self):
-        wait_for("the release of what is latched", self.released)
+        release(self.motors)
         wait_for("readiness of the controllers", lambda: self.motors.call("motor.state")["ready"])
         wait_for("standstill", self.stands)
         self.simulator.call("sim.place", x=0, y=0, theta=0)
         self.motors.call("odometry.reset")
-
-    def released(self):
-        try:
-            self.motors.call("motor.reset_estop")
-        except DaemonError as error:  # a busy machine: what came meanwhile is void
-            assert "stood still" in str(error), error
-            return False
-        return True
 
     def place(self):
         pose = self.simulator.call("sim.state")["pose"]
@@ -135,7 +127,7 @@ class DriveTest(unittest.TestCase):
         status, _, err = self.end(self.run_program("2,0"))
         self.assertEqual(status, 1)
         self.assertIn("emergency stop", err)
-        self.motors.call("motor.reset_estop")
+        release(self.motors)
         status, _, err = self.end(self.run_program("--speed", "5", "2,0"))
         self.assertEqual(status, 1)
         self.assertIn("expected a number from -1 to 1 m/s", err)

@@ -13,7 +13,7 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, DaemonError, Process, free_port, wait_for
+from support import BINARIES, DaemonError, Process, free_port, release, wait_for
 
 LIMIT_S = 0.6
 SPEED = 0.5  # m/s
@@ -70,7 +70,7 @@ def is_ready(motors):
 
 def trial(simulator, motors, fault, devices, ending, drives_on_s):
     """Seconds from the last accepted command, or the emergency stop, until all wheels stood for good."""
-    motors.call("motor.reset_estop")
+    release(motors)
     wait_for("readiness", lambda: is_ready(motors), 20)
     motors.call("control.acquire", timeout_s=10)
     drive = Drive(motors)

@@ -13,7 +13,7 @@ import time
 import tty
 import unittest
 
-from support import BINARIES, SOURCE, DaemonError, Process, SerialPort, free_port, wait_for
+from support import BINARIES, SOURCE, DaemonError, Process, SerialPort, free_port, release, wait_for
 
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 SAMPLES = os.path.join(SOURCE, "deploy", "settings")
@@ -390,7 +390,7 @@ class Setup(unittest.TestCase):
                 ("What turned?", "frb"), ("What turned?", ""), ("Write these settings?", "y")])
             if status == 0:
                 break
-            motors.call("motor.reset_estop")
+            release(motors)
         self.assertEqual(status, 0, shown)
         self.assertRegex(shown, r"its encoder tells (0\.9|1\.0)\d rad/s")
         self.assertEqual(self.file("motorcontrol"), {"wheels": {

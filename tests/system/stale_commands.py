@@ -9,11 +9,10 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, SOURCE, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Process, free_port, release, wait_for
 from tls import issued, keys
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
-NOT_READY = -32005
 CARRIERS, ENDS, STOPS = ("tcp", "unix", "tls"), ("kill", "freeze"), (None, "motor.stop", "motor.estop")
 LIMIT_S = 0.45  # safety.command_timeout_s and the time of braking from 0.3 m/s, and 0.125 s
 
@@ -61,18 +60,6 @@ def turned_for(simulator, since):
         assert last < since + 20, "the wheels turn without end"
         time.sleep(0.003)
     return last - since
-
-
-def release(motors):
-    """Where the machine has stalled the motor control refuses it, once."""
-    def is_done():
-        try:
-            motors.call("motor.reset_estop")
-        except DaemonError as error:
-            assert error.code == NOT_READY, error
-            return False
-        return True
-    wait_for("the release", is_done, 10)
 
 
 def trial(simulator, motors, client_line, stop):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""An emergency stop beside all that may befall a daemon at once: behind a reply of 1 MB on its own connection, beside clients that
-repeat the dearest command and clients that flood, on a full disk, over TCP, the Unix socket and TLS. HERMES_TRIALS stops (8) of each
-kind. Two times are taken, both from before the stop is sent: until its reply has come, and until both controllers were told to stand,
-as seen on their line."""
+"""A stop beside all that may befall a daemon at once: behind a reply of 1 MB on its own connection, beside clients that repeat the
+dearest command and clients that flood, on a full disk, over TCP, the Unix socket and TLS. HERMES_TRIALS stops (8) of each kind, by
+motor.stop: it goes the way of motor.estop, and the robot may drive again at once. Two times are taken, both from before the stop is
+sent: until its reply has come, and until both controllers were told to stand, as seen on their line."""
 import contextlib
 import ctypes
 import math
@@ -79,7 +79,6 @@ class Stand:
             try:
                 self.driver.call("motor.drive", vx=self.direction * SPEED)
             except DaemonError:  # it brakes still, or another's stop has taken the control
-                self.driver.call("motor.reset_estop")
                 self.driver.call("control.acquire", client="driver", timeout_s=30)
             return all(self.tap.moves.values())
         self.direction = -self.direction
@@ -113,7 +112,7 @@ def stop_behind(stand, caller, asked, lines, pace):
     caller.number += 1
     mark = b'"id":%d' % (10**9 + caller.number)
     begun = time.monotonic()
-    caller.send(request("motor.estop", 10**9 + caller.number))
+    caller.send(request("motor.stop", 10**9 + caller.number))
     if pace == 0:
         zero = stand.told_zero(begun)
         before = caller.read_until(mark)

@@ -4,7 +4,7 @@ import glob
 import os
 import tempfile
 
-from support import BINARIES, DaemonError, Process, free_port, simulated_hall, wait_for
+from support import BINARIES, DaemonError, Process, free_port, simulated_hall, release, wait_for
 
 
 def started(folder, port, link):
@@ -40,7 +40,7 @@ def main():
             assert is_refused(), "the robot drives though an emergency stop was latched when its motor control ended"
             files = glob.glob(os.path.join(folder, "hermes", "estop", "*"))
             assert len(files) == 1, files
-        motor.call("motor.reset_estop")
+        release(motor)
         assert not glob.glob(os.path.join(folder, "hermes", "estop", "*")), "the released stop is kept"
         process.process.kill()
         process.process.wait()

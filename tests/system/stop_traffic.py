@@ -16,7 +16,7 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, SLOWNESS, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for
+from support import BINARIES, SLOWNESS, Daemon, DaemonError, Process, free_port, simulated_hall, release, wait_for
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "20"))
 LIMIT_S, SHARE = 0.020 * SLOWNESS, 0.99 if TRIALS >= 100 else 0.8  # a few trials say little about the last percent
@@ -213,7 +213,7 @@ def check_hang_up(driven, simulator):
         motors.call("motor.drive", vx=0.3)
         return simulator.call("sim.state")["twist"]["vx"] > 0.2
     with driven.connect() as motors:
-        motors.call("motor.reset_estop")
+        release(motors)
         motors.call("control.acquire", client="test", timeout_s=5)
         wait_for("motion", goes, 10)
         driven.process.send_signal(signal.SIGHUP)

@@ -30,6 +30,18 @@ def wait_for(what, condition, limit_s=60):
         time.sleep(0.01)
 
 
+def release(motors, limit_s=10):
+    """Ends an emergency stop as a person does who confirms: once the motor control allows it."""
+    def is_done():
+        try:
+            motors.call("motor.reset_estop", confirm=True)
+        except DaemonError as error:
+            assert error.code == -32005, error  # too early, the wheels turn, or what came meanwhile is void
+            return False
+        return True
+    wait_for("release", is_done, limit_s)
+
+
 def vector_commands(help_text):
     """The commands that hermes-vector --help lists and that can be run: two of them are hermes-experiments'."""
     listed = re.findall(r"^ {2}([a-z][a-z-]*) ", help_text.split("Subcommands:")[1], re.MULTILINE)

@@ -42,9 +42,11 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
             poll(); // what else holds the robot
         Q_EMIT changed();
     });
+    connect(&confirmation_, &SecondPress::changed, this, &DriveControl::changed);
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, [this] {
         isBlindMeant_ = false; // that was said of another
+        confirmation_.forget();
         follow();
         onReplay();
     });
@@ -326,6 +328,7 @@ void DriveControl::stop() {
     commanded_ = {};
     isDriving_ = false;
     inputs_.needRest();
+    confirmation_.forget();
     stop_.press();
     Q_EMIT stopPressed();
     Q_EMIT changed();
@@ -333,6 +336,8 @@ void DriveControl::stop() {
 
 void DriveControl::release() {
     inputs_.needRest();
+    if (stop_.isOfOthers() && hold_.latched.contains("estop") && !confirmation_.press())
+        return;
     stop_.release();
     if (!motors_ || stop_.phase() != StopPhase::None)
         return; // whose lines ask for it

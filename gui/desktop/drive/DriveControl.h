@@ -6,6 +6,7 @@
 #include "gui/desktop/model/Freshness.h"
 #include "gui/desktop/model/ReplayWatch.h"
 #include "gui/desktop/model/TopicFeed.h"
+#include "gui/desktop/widgets/SecondPress.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"
 
@@ -44,8 +45,10 @@ public:
     /// Ends driving softly; the control is given back.
     void yieldControl();
     void halt();
-    /// Ends the emergency stop and latched faults.
+    /// Ends the emergency stop and latched faults. A stop that was not pressed here is ended by the second
+    /// call only, within five seconds.
     void release();
+    bool isReleaseAsked() const { return confirmation_.isAwaited(); }
     /// Takes the control from whoever holds it.
     void takeOver() { acquire(true); }
 
@@ -122,6 +125,7 @@ private:
     QTimer timer_, pollTimer_;
     QTimer letGo_; ///< since nothing is held
     DriveInputs inputs_;
+    SecondPress confirmation_;
     QElapsedTimer ticked_;   ///< the last turn of the timer
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;

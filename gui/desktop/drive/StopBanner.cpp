@@ -51,6 +51,8 @@ void StopBanner::update() {
         text = drive_.stopping().phase() == StopPhase::Confirmed ? tr("STOPPED") : tr("The robot brakes");
         text += reason.isEmpty() ? QString() : ": " + reason;
     }
+    if (drive_.isReleaseAsked())
+        text = tr("Not stopped from here: look at the robot, then press Release once more. ") + text;
     tell(inPlainWords(text), styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();

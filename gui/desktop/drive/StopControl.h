@@ -30,6 +30,8 @@ public:
     bool isOnItsWay() const;
     /// A STOP for this robot was pressed here, and is not released as yet.
     bool isPressedFor(const Robot &robot) const { return pressed_.contains(&robot); }
+    /// The chosen robot is held by a STOP that was pressed elsewhere, or before this program was started.
+    bool isOfOthers() const { return phase() != StopPhase::None && !pressed_.contains(fleet_.robot()); }
     /// What the operator has to know now; empty: nothing.
     QString text() const;
 

@@ -18,6 +18,7 @@ constexpr int oftenUpTo = 60, seldom = 10;
 constexpr qint64 firstRenewal_ms = 1000, lastRenewal_ms = 8000, deaf_ms = 1000, lookEach_ms = 100,
                  lookWhenConfirmed_ms = 500, lookWhenFree_ms = 1000;
 constexpr qint64 overtaken_ms = 1000;
+constexpr double longestWait_s = 3; // that a robot may ask for before it is released
 constexpr std::chrono::milliseconds lookTimeout{500};
 
 double seconds(const QElapsedTimer &timer) {
@@ -136,12 +137,22 @@ void StopLine::release() {
         if (!guard || guard->press_ != press)
             return;
         if (done)
-            guard->forget();
-        else if (--*waiting == 0)
-            guard->notReleased(tr("its release was refused: %1").arg(shortLine(done.error().message)));
+            return guard->forget();
+        if (--*waiting > 0)
+            return;
+        const double wait_s = done.error().data["retry_after_s"].toDouble();
+        if (!(wait_s > 0 && wait_s <= longestWait_s))
+            return guard->notReleased(tr("its release was refused: %1").arg(shortLine(done.error().message)));
+        QTimer::singleShot(int(wait_s * 1000) + 1, guard, [guard, press] {
+            if (guard->press_ == press && guard->isReleasing_)
+                guard->release();
+        });
     };
+    QJsonObject wanted = params("motor.reset_estop");
+    if (daemon_ && daemon_->takes("motor.reset_estop", "confirm"))
+        wanted.insert("confirm", true); // by whoever sits here; the second connection has never driven
     for (Client *const client : clients)
-        client->call("motor.reset_estop", params("motor.reset_estop"), released);
+        client->call("motor.reset_estop", wanted, released);
     Q_EMIT changed();
 }
 

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/model/Macro.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QJsonDocument>
 #include <QLabel>
@@ -29,7 +30,7 @@ protected:
         window_.reset();
         drive_.reset();
         fleet_.reset();
-        client_->callAndWait("motor.reset_estop");
+        releaseStop(*client_);
         client_.reset();
     }
     void open(const QJsonArray &buttons = {}) {

@@ -256,7 +256,7 @@ void TestDrivePanel::aReleaseByAnotherIsSeen() {
     QTRY_COMPARE(find<QLabel>("problem")->text(),
                  QString("Stopped: emergency stop by anna on laptop7. Release it above."));
     QCOMPARE(find<QLabel>("control")->text(), QString("Control: free"));
-    QVERIFY(client_->callAndWait("motor.reset_estop").ok());
+    QVERIFY(releaseStop(*client_));
     QTRY_VERIFY(find<QLabel>("problem")->text().isEmpty() || !find<QLabel>("problem")->isVisible());
     find<QPushButton>("stop")->pressed();
     QTRY_COMPARE(find<QLabel>("problem")->text(),
@@ -461,3 +461,4 @@ void TestDrivePanel::theBatteryIsTold() {
 
 QTEST_MAIN(TestDrivePanel)
 #include "TestDrivePanel.moc"
+#include "tests/support/ReleaseStop.h"

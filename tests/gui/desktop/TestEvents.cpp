@@ -201,7 +201,7 @@ void TestEvents::whoStoppedIsTold() {
     QVERIFY(other.callAndWait("motor.estop", QJsonObject{{"client", "anna on laptop7"}}).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(textOf(window).contains("emergency stop by anna on laptop7"),
                               qPrintable(textOf(window)), 10000);
-    QVERIFY(other.callAndWait("motor.reset_estop", QJsonObject{{"client", "anna on laptop7"}}).ok());
+    QVERIFY(releaseStop(other, {{"client", "anna on laptop7"}}));
     QTRY_VERIFY2_WITH_TIMEOUT(
         !rowsOf(window).filter("note | motorcontrol | stop: released by anna on laptop7").isEmpty(),
         qPrintable(rowsOf(window).join('\n')), 10000);
@@ -292,3 +292,4 @@ void TestEvents::soundsCanBeSwitchedOff() {
 
 QTEST_MAIN(TestEvents)
 #include "TestEvents.moc"
+#include "tests/support/ReleaseStop.h"

@@ -211,7 +211,7 @@ void TestReadable::whatDrivesIsInSight() {
     auto *const banner = open.window.findChild<QToolBar *>("stopLine");
     QTRY_VERIFY(banner->isVisible());
     QCOMPARE(open.window.size(), QSize(1024, 600)); // with a banner, too
-    QVERIFY(other.callAndWait("motor.reset_estop", anna).ok());
+    QVERIFY(releaseStop(other, anna));
     QTRY_VERIFY_WITH_TIMEOUT(!banner->isVisible(), 10000);
     anna["timeout_s"] = 60; // she does not drive
     QVERIFY(other.callAndWait("control.acquire", anna).ok());
@@ -295,3 +295,4 @@ void TestReadable::wordsOfDaemonsAreMadePlain() {
 
 QTEST_MAIN(TestReadable)
 #include "TestReadable.moc"
+#include "tests/support/ReleaseStop.h"

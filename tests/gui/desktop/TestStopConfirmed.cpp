@@ -212,11 +212,8 @@ void TestStopConfirmed::isOverWhenSomebodyReleases() {
     openWindow(robot_->port());
     press();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
-    QVERIFY(
-        client_->callAndWait("motor.reset_estop").ok()); // as one that was on its way when STOP was pressed
-    QTRY_VERIFY(phase() == StopPhase::Confirmed && state()["estop"].toBool()); // STOP holds
-    QTest::qWait(1200);
-    QVERIFY(client_->callAndWait("motor.reset_estop").ok());
+    QVERIFY(!client_->callAndWait("motor.reset_estop", QJsonObject{{"confirm", true}}).ok()); // too early
+    QVERIFY(releaseStop(*client_));
     QTRY_VERIFY(phase() == StopPhase::None);
     QTRY_COMPARE(button(), QString("STOP"));
     QVERIFY(client_->callAndWait("motor.estop").ok()); // by somebody else
@@ -235,6 +232,10 @@ void TestStopConfirmed::theStopOfAnotherIsWatched() {
     robot_->setSilent(false);
     QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
     QTRY_VERIFY2(banner().startsWith("STOPPED: emergency stop by"), qPrintable(banner()));
+    OpenWindow::click(&open_->window, "release");
+    QTRY_VERIFY2(banner().startsWith("Not stopped from here"), qPrintable(banner()));
+    QTest::qWait(600); // as a person, who reads it
+    QVERIFY(state()["estop"].toBool());
     OpenWindow::click(&open_->window, "release");
     QTRY_COMPARE(button(), QString("STOP"));
     QVERIFY(!state()["estop"].toBool());
@@ -296,7 +297,7 @@ void TestStopConfirmed::aReleaseIsToldWhenItIsNotTaken() {
     QTRY_VERIFY(state().contains("estop"));
     QTest::qWait(1500);
     QCOMPARE(state()["estop"].toBool(), phase() != StopPhase::None); // the window tells what is
-    if (state()["estop"].toBool())
+    if (state()["estop"].toBool() && !QTest::qWaitFor([&] { return !state()["estop"].toBool(); }, 2500))
         OpenWindow::click(&open_->window, "release");
     QTRY_VERIFY(!state()["estop"].toBool());
     QTRY_COMPARE(button(), QString("STOP"));
@@ -304,3 +305,4 @@ void TestStopConfirmed::aReleaseIsToldWhenItIsNotTaken() {
 
 QTEST_MAIN(TestStopConfirmed)
 #include "TestStopConfirmed.moc"
+#include "tests/support/ReleaseStop.h"

@@ -85,7 +85,7 @@ static void letSomethingHappen(RobotProcesses &robot) {
     const QJsonObject name{{"client", "anna on laptop7"}};
     QVERIFY(anna.callAndWait("motor.estop", name).ok());
     QTest::qWait(1200);
-    QVERIFY(anna.callAndWait("motor.reset_estop", name).ok());
+    QVERIFY(releaseStop(anna, name));
     QTest::qWait(1200);
     robot.kill("velodynelogger");
     QTest::qWait(2000);
@@ -164,3 +164,4 @@ int main(int argc, char **argv) {
 }
 
 #include "screenshots.moc"
+#include "tests/support/ReleaseStop.h"

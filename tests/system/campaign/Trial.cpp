@@ -167,7 +167,7 @@ private:
             drive.stop(77, "bystander");
             ends();
         } else if (a == "emergency stop") {
-            drive.emergencyStop("bystander");
+            drive.emergencyStop(77, "bystander", time());
             ends();
             events_.emplace(time() + step.amount, [this] { robot_.engine.drive().resetEmergencyStop(); });
         } else if (a == "loses its connection") {
