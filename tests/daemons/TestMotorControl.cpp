@@ -1,6 +1,7 @@
 // hermes-motorcontrol as its clients see it, with emulated controllers on a pseudo-terminal.
 #include "MotorFixture.h"
 #include "common/settings/DottedPath.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QTcpSocket>
 #include <QUrl>
@@ -408,4 +409,3 @@ void TestMotorControl::aTenthOfAVoltIsEnough() {
 
 QTEST_GUILESS_MAIN(TestMotorControl)
 #include "TestMotorControl.moc"
-#include "tests/support/ReleaseStop.h"

@@ -2,6 +2,7 @@
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/drive/Stick.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QLabel>
 #include <QLineEdit>
@@ -461,4 +462,3 @@ void TestDrivePanel::theBatteryIsTold() {
 
 QTEST_MAIN(TestDrivePanel)
 #include "TestDrivePanel.moc"
-#include "tests/support/ReleaseStop.h"

@@ -2,6 +2,7 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QCheckBox>
 #include <QLabel>
@@ -292,4 +293,3 @@ void TestEvents::soundsCanBeSwitchedOff() {
 
 QTEST_MAIN(TestEvents)
 #include "TestEvents.moc"
-#include "tests/support/ReleaseStop.h"

@@ -1,5 +1,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QLabel>
 #include <QTcpServer>
@@ -305,4 +306,3 @@ void TestStopConfirmed::aReleaseIsToldWhenItIsNotTaken() {
 
 QTEST_MAIN(TestStopConfirmed)
 #include "TestStopConfirmed.moc"
-#include "tests/support/ReleaseStop.h"
