@@ -158,30 +158,28 @@ void TestCapture::tagsAreSteppedOver() {
 }
 
 void TestCapture::otherFramesAreTold_data() {
-    QTest::addColumn<QByteArray>("frame");
-    QTest::addColumn<int>("fault");
+    const Rows<QByteArray, int> row("frame", "fault");
     const QByteArray good = frameOf(datagram("payload"));
     const auto with = [&](int offset, int value) {
         return QByteArray(good).replace(offset, 1, QByteArray(1, char(value)));
     };
-    QTest::newRow("empty") << QByteArray() << int(FrameFault::Short);
-    QTest::newRow("link header only") << good.left(14) << int(FrameFault::Short);
-    QTest::newRow("cut in IPv4") << good.left(30) << int(FrameFault::Short);
-    QTest::newRow("cut in UDP") << good.left(40) << int(FrameFault::Short);
-    QTest::newRow("cut in payload") << good.left(45) << int(FrameFault::Short);
-    QTest::newRow("UDP length 7") << with(39, 7) << int(FrameFault::Short);
-    QTest::newRow("header length 16") << with(14, 0x44) << int(FrameFault::Short);
-    QTest::newRow("header length 60") << with(14, 0x4F) << int(FrameFault::Short);
-    QTest::newRow("ARP") << with(13, 6) << int(FrameFault::NotUdp);
-    QTest::newRow("version 6") << with(14, 0x65) << int(FrameFault::NotUdp);
-    QTest::newRow("TCP") << with(23, 6) << int(FrameFault::NotUdp);
-    QTest::newRow("first fragment") << with(20, 0x20) << int(FrameFault::Fragment);
-    QTest::newRow("later fragment") << with(21, 0x10) << int(FrameFault::Fragment);
+    row("empty", QByteArray(), int(FrameFault::Short));
+    row("link header only", good.left(14), int(FrameFault::Short));
+    row("cut in IPv4", good.left(30), int(FrameFault::Short));
+    row("cut in UDP", good.left(40), int(FrameFault::Short));
+    row("cut in payload", good.left(45), int(FrameFault::Short));
+    row("UDP length 7", with(39, 7), int(FrameFault::Short));
+    row("header length 16", with(14, 0x44), int(FrameFault::Short));
+    row("header length 60", with(14, 0x4F), int(FrameFault::Short));
+    row("ARP", with(13, 6), int(FrameFault::NotUdp));
+    row("version 6", with(14, 0x65), int(FrameFault::NotUdp));
+    row("TCP", with(23, 6), int(FrameFault::NotUdp));
+    row("first fragment", with(20, 0x20), int(FrameFault::Fragment));
+    row("later fragment", with(21, 0x10), int(FrameFault::Fragment));
 }
 
 void TestCapture::otherFramesAreTold() {
-    QFETCH(QByteArray, frame);
-    QFETCH(int, fault);
+    FETCH(QByteArray, frame, int, fault);
     Datagram d;
     QCOMPARE(int(parse(frame, d)), fault);
 }
@@ -231,11 +229,11 @@ void TestCapture::fullDiskIsReported() {
 }
 
 void TestCapture::cutFilesNameRecordAndByte_data() {
-    QTest::addColumn<int>("keep"); ///< bytes of the third record, which has 16 + 142
-    QTest::newRow("in the record's header") << 7;
-    QTest::newRow("behind the header") << 16;
-    QTest::newRow("in the frame") << 100;
-    QTest::newRow("one byte short") << 157;
+    const Rows<int> row("keep"); // bytes of the third record, which has 16 + 142
+    row("in the record's header", 7);
+    row("behind the header", 16);
+    row("in the frame", 100);
+    row("one byte short", 157);
 }
 
 void TestCapture::cutFilesNameRecordAndByte() {
@@ -257,10 +255,10 @@ void TestCapture::cutFilesNameRecordAndByte() {
 }
 
 void TestCapture::filesThatAreNoCapture_data() {
-    QTest::addColumn<QByteArray>("content");
-    QTest::newRow("empty") << QByteArray();
-    QTest::newRow("cut in the file header") << QByteArray::fromHex("4d3cb2a10200");
-    QTest::newRow("text") << QByteArray("1.0,2.0\n1.1,2.1\n1.2,2.2\n");
+    const Rows<QByteArray> row("content");
+    row("empty", QByteArray());
+    row("cut in the file header", QByteArray::fromHex("4d3cb2a10200"));
+    row("text", "1.0,2.0\n1.1,2.1\n1.2,2.2\n");
 }
 
 void TestCapture::filesThatAreNoCapture() {

@@ -193,19 +193,15 @@ void TestClient::closesFromInsideACallback() {
 }
 
 void TestClient::everyRequestEndsOverABadLine_data() {
-    QTest::addColumn<double>("drop");
-    QTest::addColumn<double>("flip");
-    QTest::addColumn<double>("split");
-    QTest::newRow("splits") << 0.0 << 0.0 << 1.0;
-    QTest::newRow("drops") << 0.2 << 0.0 << 0.2;
-    QTest::newRow("flips") << 0.0 << 0.2 << 0.2;
-    QTest::newRow("all") << 0.1 << 0.1 << 0.5;
+    const Rows<double, double, double> row("drop", "flip", "split");
+    row("splits", 0.0, 0.0, 1.0);
+    row("drops", 0.2, 0.0, 0.2);
+    row("flips", 0.0, 0.2, 0.2);
+    row("all", 0.1, 0.1, 0.5);
 }
 
 void TestClient::everyRequestEndsOverABadLine() {
-    QFETCH(double, drop);
-    QFETCH(double, flip);
-    QFETCH(double, split);
+    FETCH(double, drop, double, flip, double, split);
     const unsigned int seed = 42;
     auto *faulty = new FaultyInterface(new TcpInterface(*InterfaceUrl::parse(address), nullptr),
                                        {drop, flip, split, 2, seed}, nullptr);

@@ -99,16 +99,14 @@ void TestRecordingEnds::aFolderThatIsRemovedEndsTheRecording() {
 }
 
 void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording_data() {
-    QTest::addColumn<bool>("isReplaced");
-    QTest::addColumn<bool>("isFolderToo");
-    QTest::newRow("removed") << false << false;
-    QTest::newRow("replaced") << true << false;
-    QTest::newRow("moved away with its folder, which has a successor") << false << true;
+    const Rows<bool, bool> row("isReplaced", "isFolderToo");
+    row("removed", false, false);
+    row("replaced", true, false);
+    row("moved away with its folder, which has a successor", false, true);
 }
 
 void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording() {
-    QFETCH(bool, isReplaced);
-    QFETCH(bool, isFolderToo);
+    FETCH(bool, isReplaced, bool, isFolderToo);
     QTemporaryDir root;
     Logger logger(root.path());
     const QString folder = root.path() + "/a", path = folder + "/logger-0001.txt";
@@ -146,9 +144,9 @@ void TestRecordingEnds::aFileThatIsRemovedJustBeforeTheStopIsMissed() {
 }
 
 void TestRecordingEnds::aStopWhileItBeginsEndsIt_data() {
-    QTest::addColumn<bool>("begins");
-    QTest::newRow("begins") << true;
-    QTest::newRow("does not") << false;
+    const Rows<bool> row("begins");
+    row("begins", true);
+    row("does not", false);
 }
 
 void TestRecordingEnds::aStopWhileItBeginsEndsIt() {
@@ -223,12 +221,12 @@ void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {
 }
 
 void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone_data() {
-    QTest::addColumn<QByteArray>("content");
-    QTest::newRow("empty") << QByteArray();
-    QTest::newRow("cut") << QByteArray("{\"format\": \"hermes rec");
-    QTest::newRow("array") << QByteArray("[1]");
-    QTest::newRow("another format") << QByteArray("{\"format\": \"hermes recording 2\"}");
-    QTest::newRow("binary") << QByteArray("\0\xff\xfe", 3);
+    const Rows<QByteArray> row("content");
+    row("empty", QByteArray());
+    row("cut", "{\"format\": \"hermes rec");
+    row("array", "[1]");
+    row("another format", "{\"format\": \"hermes recording 2\"}");
+    row("binary", QByteArray("\0\xff\xfe", 3));
 }
 
 void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone() {

@@ -170,19 +170,15 @@ void TestSerialLine::eachCallOnceOnADamagedLine() {
 }
 
 void TestSerialLine::stopDoesNotWaitBehindAMap_data() {
-    QTest::addColumn<bool>("ofDaemon");
-    QTest::addColumn<bool>("ofClient");
-    QTest::addColumn<bool>("isDamaged");
-    QTest::newRow("a large reply") << true << false << false;
-    QTest::newRow("a large request") << false << true << false;
-    QTest::newRow("both") << true << true << false;
-    QTest::newRow("both, damaged") << true << true << true;
+    const Rows<bool, bool, bool> row("ofDaemon", "ofClient", "isDamaged");
+    row("a large reply", true, false, false);
+    row("a large request", false, true, false);
+    row("both", true, true, false);
+    row("both, damaged", true, true, true);
 }
 
 void TestSerialLine::stopDoesNotWaitBehindAMap() {
-    QFETCH(bool, ofDaemon);
-    QFETCH(bool, ofClient);
-    QFETCH(bool, isDamaged);
+    FETCH(bool, ofDaemon, bool, ofClient, bool, isDamaged);
     if (isDamaged)
         damage();
     const int bytes = 1000000, stops = 60;

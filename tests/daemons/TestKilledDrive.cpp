@@ -59,12 +59,12 @@ void TestKilledDrive::startMatcher() {
 }
 
 void TestKilledDrive::atMostFiveSecondsAreLost_data() {
-    QTest::addColumn<int>("scans");
+    const Rows<int> row("scans");
     std::random_device device;
     const int round = int(way.size()) / 2;
     for (int trial = 0; trial < 3; ++trial) {
         const int scans = round + 20 + int(device() % unsigned(round / 2));
-        QTest::newRow(qPrintable(QString::number(scans))) << scans;
+        row(qPrintable(QString::number(scans)), scans);
     }
 }
 

@@ -219,18 +219,14 @@ void TestLidarFeed::positionPacketsTellTheHour() {
 }
 
 void TestLidarFeed::ofSeveralSensorsInACaptureOneIsDecoded_data() {
-    QTest::addColumn<int>("port"); // of the second
-    QTest::addColumn<int>("only");
-    QTest::addColumn<double>("range");
-    QTest::newRow("to one port") << 2368 << 0 << 5.0;
-    QTest::newRow("to two ports") << 4711 << 0 << 5.0;
-    QTest::newRow("to two ports, the second") << 4711 << 4711 << 6.0;
+    const Rows<int, int, double> row("port", "only", "range"); // port: of the second
+    row("to one port", 2368, 0, 5.0);
+    row("to two ports", 4711, 0, 5.0);
+    row("to two ports, the second", 4711, 4711, 6.0);
 }
 
 void TestLidarFeed::ofSeveralSensorsInACaptureOneIsDecoded() {
-    QFETCH(int, port);
-    QFETCH(int, only);
-    QFETCH(double, range);
+    FETCH(int, port, int, only, double, range);
     const Sensor sensor;
     QTemporaryDir folder;
     const std::string path = folder.filePath("two.pcap").toStdString();

@@ -31,17 +31,15 @@ private Q_SLOTS:
 };
 
 void TestLidarModel::ringPointsLieOnTheWalls_data() {
-    QTest::addColumn<bool>("driving");
-    QTest::addColumn<double>("sigma");
-    QTest::newRow("standing, no noise") << false << 0.0;
-    QTest::newRow("standing") << false << 0.01;
-    QTest::newRow("driving, no noise") << true << 0.0;
-    QTest::newRow("driving") << true << 0.01;
+    const Rows<bool, double> row("driving", "sigma");
+    row("standing, no noise", false, 0.0);
+    row("standing", false, 0.01);
+    row("driving, no noise", true, 0.0);
+    row("driving", true, 0.01);
 }
 
 void TestLidarModel::ringPointsLieOnTheWalls() {
-    QFETCH(bool, driving);
-    QFETCH(double, sigma);
+    FETCH(bool, driving, double, sigma);
     const World world = pillars();
     Simulation::Options options;
     options.lidar.sigma = sigma;

@@ -24,10 +24,10 @@ private Q_SLOTS:
 };
 
 void TestLidarReplay::replayGivesWhatDirectDecodingGives_data() {
-    QTest::addColumn<double>("speed");
-    QTest::newRow("as fast as possible") << 0.0;
-    QTest::newRow("real time") << 1.0;
-    QTest::newRow("threefold") << 3.0;
+    const Rows<double> row("speed");
+    row("as fast as possible", 0.0);
+    row("real time", 1.0);
+    row("threefold", 3.0);
 }
 
 void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
@@ -113,22 +113,18 @@ void TestLidarReplay::replayLoops() {
 }
 
 void TestLidarReplay::replaySeeks_data() {
-    QTest::addColumn<double>("target_s");
-    QTest::addColumn<bool>("pcapng");
-    QTest::addColumn<int>("first"); // packet played after it
-    QTest::newRow("to the beginning") << 0.0 << false << 0;
-    QTest::newRow("between two packets") << 0.0100 << false << 19;
-    QTest::newRow("behind the first mark") << 3.0 << false << 5426;
-    QTest::newRow("the last packet") << 11999 * 552.96e-6 << false << 11999;
-    QTest::newRow("pcapng") << 3.0 << true << 5426;
+    const Rows<double, bool, int> row("target_s", "pcapng", "first"); // first: packet played after it
+    row("to the beginning", 0.0, false, 0);
+    row("between two packets", 0.0100, false, 19);
+    row("behind the first mark", 3.0, false, 5426);
+    row("the last packet", 11999 * 552.96e-6, false, 11999);
+    row("pcapng", 3.0, true, 5426);
 }
 
 /// Paused, so that nothing but a turn from the target on is played after the seek; from the front and from
 /// behind.
 void TestLidarReplay::replaySeeks() {
-    QFETCH(double, target_s);
-    QFETCH(bool, pcapng);
-    QFETCH(int, first);
+    FETCH(double, target_s, bool, pcapng, int, first);
     QTemporaryDir folder;
     QString path = makeCapture(folder, 12000);
     if (pcapng) {

@@ -190,12 +190,7 @@ void TestMotorControl::topicsCome() {
 }
 
 void TestMotorControl::refusals_data() {
-    QTest::addColumn<QString>("method");
-    QTest::addColumn<QJsonObject>("params");
-    QTest::addColumn<int>("code");
-    QTest::addColumn<QString>("names");
-    const auto row = [](const char *name, const char *method, const QJsonObject &params, ErrorCode code,
-                        const char *names) { QTest::newRow(name) << method << params << int(code) << names; };
+    const Rows<QString, QJsonObject, int, QString> row("method", "params", "code", "names");
     row("too fast", "motor.drive", {{"vx", 3}}, ErrorCode::OverLimit,
         "vx is 3, expected a number from -1 to 1 m/s");
     row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, ErrorCode::OverLimit, "rear_left is 1e+06");
@@ -213,9 +208,7 @@ void TestMotorControl::refusals() {
     QTRY_VERIFY(state()["ready"].toBool());
     QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).code, int(ErrorCode::ControlHeld)); // no lease
     call("control.acquire", {{"timeout_s", 10}});
-    QFETCH(QString, method);
-    QFETCH(QJsonObject, params);
-    QFETCH(QString, names);
+    FETCH(QString, method, QJsonObject, params, QString, names);
     const Error error = failure(method, params);
     QTEST(error.code, "code");
     const QString all = error.message + QJsonDocument(error.data.toObject()).toJson();
@@ -352,34 +345,27 @@ void TestMotorControl::shutdownStops() {
 }
 
 void TestMotorControl::settingsAreCheckedAgainstEachOther_data() {
-    QTest::addColumn<QStringList>("settings");
-    QTest::addColumn<QString>("path");
-    QTest::newRow("a path alone") << QStringList{"controllers.1.url=/dev/ttyACM0"} << "controllers.1.url";
-    QTest::newRow("unknown scheme") << QStringList{"controllers.2.url=serail:///dev/ttyACM0"}
-                                    << "controllers.2.url";
-    QTest::newRow("one address twice") << QStringList{"controllers.2.address=128"} << "controllers.2.address";
-    QTest::newRow("one motor twice") << QStringList{"wheels.rear_left.controller=1"}
-                                     << "wheels.rear_left.motor";
-    QTest::newRow("thresholds crossed") << QStringList{"faults.battery_v=24"} << "faults.battery_v";
-    QTest::newRow("encoder fault while braking")
-        << QStringList{"safety.deceleration=1"} << "faults.encoder_hold_s";
-    QTest::newRow("motor.wheels is faster than any twist")
-        << QStringList{"motion.vx=0.1", "motion.vy=0.1", "motion.omega=0.1", "safety.deceleration=2"}
-        << "faults.encoder_hold_s";
-    QTest::newRow("a fault that comes too late")
-        << QStringList{"faults.encoder_hold_s=5"} << "faults.encoder_hold_s";
-    QTest::newRow("turning counts as standing")
-        << QStringList{"faults.encoder_moving_rad_s=0.9", "faults.encoder_commanded_rad_s=0.9"}
-        << "faults.encoder_moving_rad_s";
-    QTest::newRow("standing may be a command")
-        << QStringList{"faults.encoder_commanded_rad_s=5"} << "faults.encoder_commanded_rad_s";
-    QTest::newRow("an encoder that shows no turning")
-        << QStringList{"frame.counts_per_turn=50", "pid.qpps=150"} << "frame.counts_per_turn";
+    const Rows<QStringList, QString> row("settings", "path");
+    row("a path alone", {"controllers.1.url=/dev/ttyACM0"}, "controllers.1.url");
+    row("unknown scheme", {"controllers.2.url=serail:///dev/ttyACM0"}, "controllers.2.url");
+    row("one address twice", {"controllers.2.address=128"}, "controllers.2.address");
+    row("one motor twice", {"wheels.rear_left.controller=1"}, "wheels.rear_left.motor");
+    row("thresholds crossed", {"faults.battery_v=24"}, "faults.battery_v");
+    row("encoder fault while braking", {"safety.deceleration=1"}, "faults.encoder_hold_s");
+    row("motor.wheels is faster than any twist",
+        {"motion.vx=0.1", "motion.vy=0.1", "motion.omega=0.1", "safety.deceleration=2"},
+        "faults.encoder_hold_s");
+    row("a fault that comes too late", {"faults.encoder_hold_s=5"}, "faults.encoder_hold_s");
+    row("turning counts as standing",
+        {"faults.encoder_moving_rad_s=0.9", "faults.encoder_commanded_rad_s=0.9"},
+        "faults.encoder_moving_rad_s");
+    row("standing may be a command", {"faults.encoder_commanded_rad_s=5"}, "faults.encoder_commanded_rad_s");
+    row("an encoder that shows no turning", {"frame.counts_per_turn=50", "pid.qpps=150"},
+        "frame.counts_per_turn");
 }
 
 void TestMotorControl::settingsAreCheckedAgainstEachOther() {
-    QFETCH(QStringList, settings);
-    QFETCH(QString, path);
+    FETCH(QStringList, settings, QString, path);
     MotorControl daemon;
     const auto result = daemon.settings().set([&] {
         QJsonObject values;

@@ -49,9 +49,9 @@ void TestMotorStops::emergencyStopReachesTheWire() {
 }
 
 void TestMotorStops::signalToTheClient_data() {
-    QTest::addColumn<int>("signal");
-    QTest::newRow("killed") << SIGKILL;
-    QTest::newRow("frozen") << SIGSTOP;
+    const Rows<int> row("signal");
+    row("killed", SIGKILL);
+    row("frozen", SIGSTOP);
 }
 
 void TestMotorStops::signalToTheClient() {

@@ -259,19 +259,18 @@ void TestRecorder::toolsReadTheFiles() {
 }
 
 void TestRecorder::repairReadsOnWhereTheSidecarEnds_data() {
-    QTest::addColumn<int>("known"); // packets when the sidecar was written
-    QTest::addColumn<int>("cut");   // bytes missing at the end
-    QTest::newRow("whole, all known") << 300 << 0;
-    QTest::newRow("whole") << 120 << 0;
-    QTest::newRow("cut in a payload") << 120 << 100;
-    QTest::newRow("cut in a record's header") << 120 << 1206 + 42 + 3;
-    QTest::newRow("sidecar knows nothing") << 0 << 1;
-    QTest::newRow("sidecar knows more than is there") << 300 << 1000 * 100;
+    const Rows<int, int> row(
+        "known", "cut"); // known: packets when the sidecar was written; cut: bytes missing at the end
+    row("whole, all known", 300, 0);
+    row("whole", 120, 0);
+    row("cut in a payload", 120, 100);
+    row("cut in a record's header", 120, 1206 + 42 + 3);
+    row("sidecar knows nothing", 0, 1);
+    row("sidecar knows more than is there", 300, 1000 * 100);
 }
 
 void TestRecorder::repairReadsOnWhereTheSidecarEnds() {
-    QFETCH(int, known);
-    QFETCH(int, cut);
+    FETCH(int, known, int, cut);
     QTemporaryDir folder;
     const Sensor sensor;
     RecordingPlan plan = planIn(folder);

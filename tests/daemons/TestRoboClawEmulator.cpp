@@ -55,8 +55,7 @@ void TestRoboClawEmulator::answersAsPublished_data() {
 }
 
 void TestRoboClawEmulator::answersAsPublished() {
-    QFETCH(QByteArray, sent);
-    QFETCH(QByteArray, answer);
+    FETCH(QByteArray, sent, QByteArray, answer);
     Drivetrain::Options options;
     options.battery.full = 25.2;
     Drivetrain drivetrain(options);
@@ -304,18 +303,14 @@ void TestRoboClawEmulator::writtenCellIsAcknowledgedTwice() {
 }
 
 void TestRoboClawEmulator::firmwareKnowsItsCommands_data() {
-    QTest::addColumn<QString>("firmware");
-    QTest::addColumn<int>("statusSize");
-    QTest::addColumn<QList<int>>("unknown");
-    QTest::newRow("16 bits") << "4.1.28" << 2 << QList<int>{72, 107, 110, 113, 116, 118};
-    QTest::newRow("usual") << "4.2.8" << 4 << QList<int>{};
-    QTest::newRow("new") << "4.3.6" << 4 << QList<int>{101, 104, 107};
+    const Rows<QString, int, QList<int>> row("firmware", "statusSize", "unknown");
+    row("16 bits", "4.1.28", 2, {72, 107, 110, 113, 116, 118});
+    row("usual", "4.2.8", 4, {});
+    row("new", "4.3.6", 4, {101, 104, 107});
 }
 
 void TestRoboClawEmulator::firmwareKnowsItsCommands() {
-    QFETCH(QString, firmware);
-    QFETCH(int, statusSize);
-    QFETCH(QList<int>, unknown);
+    FETCH(QString, firmware, int, statusSize, QList<int>, unknown);
     Drivetrain::Options options;
     options.controller[0].setFirmware(firmware.toStdString());
     Drivetrain drivetrain(options);

@@ -243,9 +243,9 @@ void TestScanMatcher::aLoadedMapGrowsNoGhost() {
 }
 
 void TestScanMatcher::aReplayLeavesTheLiveMapAlone_data() {
-    QTest::addColumn<QString>("mode");
-    QTest::newRow("mapping") << "mapping";
-    QTest::newRow("localization") << "localization";
+    const Rows<QString> row("mode");
+    row("mapping", "mapping");
+    row("localization", "localization");
 }
 
 void TestScanMatcher::aReplayLeavesTheLiveMapAlone() {

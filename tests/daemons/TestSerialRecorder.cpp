@@ -141,17 +141,15 @@ void TestSerialRecorder::nothingIsOverwritten() {
 }
 
 void TestSerialRecorder::aFullDiskLeavesWhatIsRight_data() {
-    QTest::addColumn<int>("limit");
-    QTest::addColumn<int>("chunk");
-    QTest::newRow("bytes do not fit") << 10000 << 700;
-    QTest::newRow("index does not fit") << 10000 << 3;
-    QTest::newRow("index does not fit, half a record") << 10003 << 3;
-    QTest::newRow("header does not fit") << 20 << 100;
+    const Rows<int, int> row("limit", "chunk");
+    row("bytes do not fit", 10000, 700);
+    row("index does not fit", 10000, 3);
+    row("index does not fit, half a record", 10003, 3);
+    row("header does not fit", 20, 100);
 }
 
 void TestSerialRecorder::aFullDiskLeavesWhatIsRight() {
-    QFETCH(int, limit);
-    QFETCH(int, chunk);
+    FETCH(int, limit, int, chunk);
     ChunkQueue queue(1 << 20);
     SerialRecorder recorder;
     recorder.setPorts({{"a", "u", &queue}});

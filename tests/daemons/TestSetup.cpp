@@ -111,9 +111,7 @@ void TestSetup::whichIsWhichStaysAsItIs_data() {
 }
 
 void TestSetup::whichIsWhichStaysAsItIs() {
-    QFETCH(const QByteArray, settings);
-    QFETCH(const std::vector<FoundSerial>, lines);
-    QFETCH(const QStringList, expected);
+    FETCH(const QByteArray, settings, const std::vector<FoundSerial>, lines, const QStringList, expected);
     const QJsonObject base{
         {"motorcontrol", QJsonObject{{"controllers", QJsonDocument::fromJson(settings).object()}}}};
     const QJsonObject then = merged(base, propose({lines, {}, {}, {}}, base, "/etc/hermes").settings);

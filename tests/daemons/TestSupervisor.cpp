@@ -207,11 +207,11 @@ void TestSupervisor::stubbornProcessIsKilled() {
 }
 
 void TestSupervisor::whatAProcessLeavesBehindIsKilled_data() {
-    QTest::addColumn<QString>("script");
-    QTest::newRow("child") << "sleep 600 & echo $!; wait";
-    QTest::newRow("session of its own") << "setsid sh -c 'echo $$; exec sleep 600' & wait";
-    QTest::newRow("daemon") << "(setsid sh -c 'echo $$; exec sleep 600' &) ; sleep 600";
-    QTest::newRow("of a process that has ended") << "setsid sh -c 'echo $$; exec sleep 600' & sleep 0.2";
+    const Rows<QString> row("script");
+    row("child", "sleep 600 & echo $!; wait");
+    row("session of its own", "setsid sh -c 'echo $$; exec sleep 600' & wait");
+    row("daemon", "(setsid sh -c 'echo $$; exec sleep 600' &) ; sleep 600");
+    row("of a process that has ended", "setsid sh -c 'echo $$; exec sleep 600' & sleep 0.2");
 }
 
 void TestSupervisor::whatAProcessLeavesBehindIsKilled() {
@@ -274,9 +274,9 @@ void TestSupervisor::addAndRemove() {
 }
 
 void TestSupervisor::changedEntryIsStartedAnew_data() {
-    QTest::addColumn<bool>("last");
-    QTest::newRow("the first") << false;
-    QTest::newRow("the last") << true;
+    const Rows<bool> row("last");
+    row("the first", false);
+    row("the last", true);
 }
 
 void TestSupervisor::changedEntryIsStartedAnew() {
@@ -296,18 +296,14 @@ void TestSupervisor::changedEntryIsStartedAnew() {
 }
 
 void TestSupervisor::aMendedEntryIsStarted_data() {
-    QTest::addColumn<QString>("script");
-    QTest::addColumn<QString>("state");
-    QTest::newRow("wrong arguments") << "exit 2"
-                                     << "failed";
-    QTest::newRow("tried again later") << "exit 1"
-                                       << "waiting";
+    const Rows<QString, QString> row("script", "state");
+    row("wrong arguments", "exit 2", "failed");
+    row("tried again later", "exit 1", "waiting");
 }
 
 /// Whatever was wrong with it; one that ended in order, or was stopped, stays as it is.
 void TestSupervisor::aMendedEntryIsStarted() {
-    QFETCH(QString, script);
-    QFETCH(QString, state);
+    FETCH(QString, script, QString, state);
     launch({shell("one", script), shell("two", "exit 0"), shell("three", script)});
     QTRY_COMPARE(process("two")["last_exit"].toString(), QString("exit status 0"));
     QVERIFY(call("process.stop", {{"name", "three"}}).ok());

@@ -35,9 +35,7 @@ private Q_SLOTS:
         row({"pairs", "--log", log(), "--every", "1", "--every", "2"}, "--every", "one for each --log");
     }
     void refusesOptionsItDoesNotUse() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QByteArray, option);
-        QFETCH(QByteArray, taker);
+        FETCH(QStringList, arguments, QByteArray, option, QByteArray, taker);
         const Result r = run(QStringList{"experiment"} + arguments + QStringList{"--out", path("refused")});
         QCOMPARE(r.status, 2);
         QVERIFY2(r.err.contains(option) && r.err.contains(taker), r.err.constData());

@@ -100,9 +100,9 @@ void TestQuality::polygons() {
 }
 
 void TestQuality::realScans_data() {
-    QTest::addColumn<QString>("name");
+    const Rows<QString> row("name");
     for (const char *name : {"intel", "freiburg-079", "fhw", "belgioioso", "orebro"})
-        QTest::newRow(name) << QString("%1-corrected.log.gz").arg(name);
+        row(name, QString("%1-corrected.log.gz").arg(name));
 }
 
 void TestQuality::realScans() {

@@ -72,7 +72,7 @@ private Q_SLOTS:
 };
 
 void TestRegistrationExperiments::everyPairLiesOnItsEdge_data() {
-    QTest::addColumn<int>("pairing");
+    const Rows<int> row("pairing");
     for (const auto &[name, pairing] : {std::pair{"extracted", Pairing::Extracted},
                                         {"tight", Pairing::ExtractedTight},
                                         {"ftls", Pairing::ExtractedFtls},
@@ -80,7 +80,7 @@ void TestRegistrationExperiments::everyPairLiesOnItsEdge_data() {
                                         {"known", Pairing::KnownEdges},
                                         {"across", Pairing::AcrossEdges},
                                         {"fitted", Pairing::FittedRanges}})
-        QTest::newRow(name) << int(pairing);
+        row(name, int(pairing));
 }
 
 void TestRegistrationExperiments::everyPairLiesOnItsEdge() {
@@ -228,9 +228,9 @@ void TestRegistrationExperiments::noiseAlongTheEdgeIsTheBias() {
 }
 
 void TestRegistrationExperiments::weightingHelpsMostAmongPillars_data() {
-    QTest::addColumn<QStringList>("options");
-    QTest::newRow("extracted") << QStringList();
-    QTest::newRow("known edges") << QStringList("--known-edges");
+    const Rows<QStringList> row("options");
+    row("extracted", QStringList());
+    row("known edges", QStringList("--known-edges"));
 }
 
 void TestRegistrationExperiments::weightingHelpsMostAmongPillars() { // paper tables 1 and 2

@@ -286,32 +286,22 @@ void TestReport::settingsReachTheSearch() {
 }
 
 void TestReport::wrongUse_data() {
-    QTest::addColumn<QStringList>("arguments");
-    QTest::addColumn<int>("status");
-    QTest::addColumn<QByteArray>("message");
-    QTest::newRow("neither") << QStringList{"pillars"} << 2 << QByteArray("--case");
-    QTest::newRow("both") << QStringList{"pillars", "--overall", "--case", "1"} << 2 << QByteArray("--case");
-    QTest::newRow("case and all") << QStringList{"pillars", "--all", "--case", "1"} << 2
-                                  << QByteArray("--all");
-    QTest::newRow("bound of nothing")
-        << QStringList{"pillars", "--case", "1", "--most", "9"} << 2 << QByteArray("--all-combinations");
-    QTest::newRow("beyond the poses")
-        << QStringList{"pillars", "--case", "38"} << 2 << QByteArray("expected 0 to 37");
-    QTest::newRow("negative case") << QStringList{"pillars", "--case", "-1"} << 2 << QByteArray("--case");
-    QTest::newRow("format") << QStringList{"pillars", "--overall", "--format", "doc"} << 2
-                            << QByteArray("--format");
-    QTest::newRow("NaN") << QStringList{"pillars", "--overall", "--noise", "nan"} << 2
-                         << QByteArray("--noise");
-    QTest::newRow("no rays") << QStringList{"pillars", "--overall", "--rays", "0"} << 2
-                             << QByteArray("--rays");
-    QTest::newRow("no world") << QStringList{"nowhere", "--overall"} << 1 << QByteArray("nowhere");
-    QTest::newRow("no path") << QStringList{"../pillars", "--overall"} << 1 << QByteArray("../pillars");
+    const Rows<QStringList, int, QByteArray> row("arguments", "status", "message");
+    row("neither", {"pillars"}, 2, "--case");
+    row("both", {"pillars", "--overall", "--case", "1"}, 2, "--case");
+    row("case and all", {"pillars", "--all", "--case", "1"}, 2, "--all");
+    row("bound of nothing", {"pillars", "--case", "1", "--most", "9"}, 2, "--all-combinations");
+    row("beyond the poses", {"pillars", "--case", "38"}, 2, "expected 0 to 37");
+    row("negative case", {"pillars", "--case", "-1"}, 2, "--case");
+    row("format", {"pillars", "--overall", "--format", "doc"}, 2, "--format");
+    row("NaN", {"pillars", "--overall", "--noise", "nan"}, 2, "--noise");
+    row("no rays", {"pillars", "--overall", "--rays", "0"}, 2, "--rays");
+    row("no world", {"nowhere", "--overall"}, 1, "nowhere");
+    row("no path", {"../pillars", "--overall"}, 1, "../pillars");
 }
 
 void TestReport::wrongUse() {
-    QFETCH(QStringList, arguments);
-    QFETCH(int, status);
-    QFETCH(QByteArray, message);
+    FETCH(QStringList, arguments, int, status, QByteArray, message);
     const Result r = run(QStringList("report") + arguments);
     QCOMPARE(r.status, status);
     QVERIFY2(r.err.contains(message), r.err);

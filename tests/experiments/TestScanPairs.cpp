@@ -35,23 +35,17 @@ private:
 };
 
 void TestScanPairs::sharesOnRealLogs_data() {
-    QTest::addColumn<QString>("log");
-    QTest::addColumn<QStringList>("options");
-    QTest::addColumn<int>("pairs");
-    QTest::addColumn<double>("share");
-    QTest::newRow("intel") << "intel" << QStringList() << 909 << 0.97;
-    QTest::newRow("freiburg-079") << "freiburg-079" << QStringList{"--first", "1000"} << 1000 << 0.995;
-    QTest::newRow("freiburg-079, every 5th") << "freiburg-079" << QStringList{"--every", "5"} << 958 << 0.95;
-    QTest::newRow("fhw") << "fhw" << QStringList() << 487 << 0.90;
-    QTest::newRow("belgioioso") << "belgioioso" << QStringList() << 394 << 0.99;
-    QTest::newRow("orebro, no odometry") << "orebro" << QStringList() << 236 << 0.75;
+    const Rows<QString, QStringList, int, double> row("log", "options", "pairs", "share");
+    row("intel", "intel", QStringList(), 909, 0.97);
+    row("freiburg-079", "freiburg-079", {"--first", "1000"}, 1000, 0.995);
+    row("freiburg-079, every 5th", "freiburg-079", {"--every", "5"}, 958, 0.95);
+    row("fhw", "fhw", QStringList(), 487, 0.90);
+    row("belgioioso", "belgioioso", QStringList(), 394, 0.99);
+    row("orebro, no odometry", "orebro", QStringList(), 236, 0.75);
 }
 
 void TestScanPairs::sharesOnRealLogs() {
-    QFETCH(QString, log);
-    QFETCH(QStringList, options);
-    QFETCH(int, pairs);
-    QFETCH(double, share);
+    FETCH(QString, log, QStringList, options, int, pairs, double, share);
     const QString path = realData(log + "-corrected.log.gz");
     if (path.isEmpty())
         QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
@@ -63,27 +57,16 @@ void TestScanPairs::sharesOnRealLogs() {
 }
 
 void TestScanPairs::withoutAnyGuess_data() {
-    QTest::addColumn<QString>("log");
-    QTest::addColumn<QString>("every");
-    QTest::addColumn<int>("pairs");
-    QTest::addColumn<double>("share");
-    QTest::newRow("intel") << "intel"
-                           << "1" << 909 << 0.965;
-    QTest::newRow("freiburg-079, every 5th") << "freiburg-079"
-                                             << "5" << 958 << 0.948;
-    QTest::newRow("fhw") << "fhw"
-                         << "1" << 487 << 0.90;
-    QTest::newRow("belgioioso") << "belgioioso"
-                                << "1" << 394 << 0.99;
-    QTest::newRow("orebro") << "orebro"
-                            << "1" << 236 << 0.97;
+    const Rows<QString, QString, int, double> row("log", "every", "pairs", "share");
+    row("intel", "intel", "1", 909, 0.965);
+    row("freiburg-079, every 5th", "freiburg-079", "5", 958, 0.948);
+    row("fhw", "fhw", "1", 487, 0.90);
+    row("belgioioso", "belgioioso", "1", 394, 0.99);
+    row("orebro", "orebro", "1", 236, 0.97);
 }
 
 void TestScanPairs::withoutAnyGuess() {
-    QFETCH(QString, log);
-    QFETCH(QString, every);
-    QFETCH(int, pairs);
-    QFETCH(double, share);
+    FETCH(QString, log, QString, every, int, pairs, double, share);
     const QString path = realData(log + "-corrected.log.gz");
     if (path.isEmpty())
         QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");

@@ -57,20 +57,20 @@ private Q_SLOTS:
     void init() { folder_.empty(); }
 
     void isToldAndDoesNoHarm_data() {
-        QTest::addColumn<QStringList>("kinds");
+        const Rows<QStringList> row("kinds");
         const QStringList all{"duplicated", "empty", "stamps_back", "odometry_refused", "odometry_leaps"};
-        QTest::newRow("good") << QStringList();
+        row("good", QStringList());
         for (const QString &kind : all)
-            QTest::newRow(qPrintable(kind)) << QStringList{kind};
+            row(qPrintable(kind), {kind});
         std::mt19937 random(7);
         for (int i = 0; i < 4; ++i) {
             QStringList some;
             for (const QString &kind : all)
                 if (random() % 3 > 0)
                     some << kind;
-            QTest::newRow(qPrintable("drawn " + some.join(", "))) << some;
+            row(qPrintable("drawn " + some.join(", ")), some);
         }
-        QTest::newRow("all") << all;
+        row("all", all);
     }
     void isToldAndDoesNoHarm() {
         QFETCH(QStringList, kinds);

@@ -214,18 +214,14 @@ private Q_SLOTS:
         QVERIFY(json(r.out)["revisits"].toObject()["mean_deg"].toDouble() > 3);
     }
     void fewPosesWithAScanMustTurnAsTheLogDoes_data() {
-        QTest::addColumn<int>("some");
-        QTest::addColumn<int>("status");
-        QTest::addColumn<QByteArray>("message");
-        QTest::newRow("too few to tell") << 10 << 1 << QByteArray("found only 10 of 299 poses");
-        QTest::newRow("a part of them") << 60 << 0 << QByteArray("only 60 of 299 poses");
-        QTest::newRow("most of them") << 200 << 0 << QByteArray();
+        const Rows<int, int, QByteArray> row("some", "status", "message");
+        row("too few to tell", 10, 1, "found only 10 of 299 poses");
+        row("a part of them", 60, 0, "only 60 of 299 poses");
+        row("most of them", 200, 0, QByteArray());
     }
     // The others are between two scans, and one is missing, so that they are not taken one by one.
     void fewPosesWithAScanMustTurnAsTheLogDoes() {
-        QFETCH(int, some);
-        QFETCH(int, status);
-        QFETCH(QByteArray, message);
+        FETCH(int, some, int, status, QByteArray, message);
         std::mt19937 random(10);
         const Drive drive = wandering(random, 300);
         writeLog(drive);
@@ -260,20 +256,17 @@ private Q_SLOTS:
     }
 
     void saysWhatIsWrong_data() {
-        QTest::addColumn<QByteArray>("trajectory");
-        QTest::addColumn<QByteArray>("message");
-        QTest::newRow("empty") << QByteArray() << QByteArray("found 0 poses");
-        QTest::newRow("other times") << QByteArray("1 0 0 0 0 0 0 1\n")
-                                     << QByteArray("0 of them at the time");
-        QTest::newRow("seven fields") << QByteArray("1 0 0 0 0 0 1\n") << QByteArray("7 fields");
-        QTest::newRow("a word") << QByteArray("1 x 0 0 0 0 0 1\n") << QByteArray("\"x\"");
-        QTest::newRow("not a number") << QByteArray("1 0 nan 0 0 0 0 1\n") << QByteArray("\"nan\"");
-        QTest::newRow("no heading") << QByteArray("1 0 0 0 0 0 0 0\n") << QByteArray("quaternion");
-        QTest::newRow("far away") << QByteArray("1 1e300 0 0 0 0 0 1\n") << QByteArray("beyond all measure");
+        const Rows<QByteArray, QByteArray> row("trajectory", "message");
+        row("empty", QByteArray(), "found 0 poses");
+        row("other times", "1 0 0 0 0 0 0 1\n", "0 of them at the time");
+        row("seven fields", "1 0 0 0 0 0 1\n", "7 fields");
+        row("a word", "1 x 0 0 0 0 0 1\n", "\"x\"");
+        row("not a number", "1 0 nan 0 0 0 0 1\n", "\"nan\"");
+        row("no heading", "1 0 0 0 0 0 0 0\n", "quaternion");
+        row("far away", "1 1e300 0 0 0 0 0 1\n", "beyond all measure");
     }
     void saysWhatIsWrong() {
-        QFETCH(QByteArray, trajectory);
-        QFETCH(QByteArray, message);
+        FETCH(QByteArray, trajectory, QByteArray, message);
         writeLog({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
         write(path("a.tum"), trajectory);
         const Result r = evaluate({"--svg", path("a.svg")});
@@ -284,16 +277,14 @@ private Q_SLOTS:
 
     /// Of real buildings: with loops closed the places met again lie on each other.
     void loopsOfRealLogsAreClosed_data() {
-        QTest::addColumn<double>("tracked");
-        QTest::addColumn<double>("closed");
-        QTest::newRow("intel") << 0.5 << 0.05;
-        QTest::newRow("fhw") << 0.3 << 0.055;
-        QTest::newRow("belgioioso") << 0.05 << 0.035;
-        QTest::newRow("orebro") << 1.0 << 0.15; // has no odometry
+        const Rows<double, double> row("tracked", "closed");
+        row("intel", 0.5, 0.05);
+        row("fhw", 0.3, 0.055);
+        row("belgioioso", 0.05, 0.035);
+        row("orebro", 1.0, 0.15); // has no odometry
     }
     void loopsOfRealLogsAreClosed() {
-        QFETCH(double, tracked);
-        QFETCH(double, closed);
+        FETCH(double, tracked, double, closed);
         const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
         if (log.isEmpty())
             QSKIP("the logs of real robots are not here; HERMES_DATA names their folder");

@@ -42,11 +42,11 @@ void TestMatchOutcomes::keysAreTheSameForAllMethods() {
 }
 
 void TestMatchOutcomes::outcomeIsTheSameForAllMethods_data() {
-    QTest::addColumn<QStringList>("options");
-    QTest::newRow("global") << QStringList{"--method", "global"};
-    QTest::newRow("finder") << QStringList{"--method", "finder",       "--expected",
-                                           "0,0,1.57", "--max-dalpha", "1.6"}; // half a turn is permitted
-    QTest::newRow("relations") << QStringList{"--method", "relations"};
+    const Rows<QStringList> row("options");
+    row("global", {"--method", "global"});
+    row("finder",
+        {"--method", "finder", "--expected", "0,0,1.57", "--max-dalpha", "1.6"}); // half a turn is permitted
+    row("relations", {"--method", "relations"});
 }
 
 void TestMatchOutcomes::outcomeIsTheSameForAllMethods() {

@@ -120,7 +120,7 @@ private Q_SLOTS:
         QVERIFY2(told().startsWith("{\"progress\":"), told().constData());
     }
     void eachCommandTakesTheOption_data() {
-        QTest::addColumn<QString>("command");
+        const Rows<QString> row("command");
         const QString help = QString::fromUtf8(run({"--help"}).out);
         QRegularExpressionMatchIterator commands =
             QRegularExpression("^  ([a-z-]+) ", QRegularExpression::MultilineOption)
@@ -128,7 +128,7 @@ private Q_SLOTS:
         while (commands.hasNext()) {
             const QString name = commands.next().captured(1);
             if (name != "experiment" && name != "report") // of another program
-                QTest::newRow(qPrintable(name)) << name;
+                row(qPrintable(name), name);
         }
     }
     void eachCommandTakesTheOption() {

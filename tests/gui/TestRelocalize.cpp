@@ -102,9 +102,9 @@ private Q_SLOTS:
     }
 
     void logIsNoScan_data() {
-        QTest::addColumn<QString>("command");
+        const Rows<QString> row("command");
         for (const char *command : {"relocalize", "match"})
-            QTest::newRow(command) << QString(command);
+            row(command, QString(command));
     }
     /// What the message says to do does it.
     void logIsNoScan() {

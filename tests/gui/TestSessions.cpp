@@ -250,21 +250,15 @@ void TestSessions::allAreReleasedTogether() {
 }
 
 void TestSessions::aReplayThatFailsEndsForAll_data() {
-    QTest::addColumn<QString>("how");
-    QTest::addColumn<QString>("told");
-    QTest::newRow("not opened") << "error"
-                                << "b: no such file";
-    QTest::newRow("opened late") << "late"
-                                 << "b: source.open: no reply within";
-    QTest::newRow("recording") << "recording"
-                               << "a is recording \"run2\"; record stop ends it";
-    QTest::newRow("changed by others") << "changed"
-                                       << "b: its source was changed to \"live\" meanwhile";
+    const Rows<QString, QString> row("how", "told");
+    row("not opened", "error", "b: no such file");
+    row("opened late", "late", "b: source.open: no reply within");
+    row("recording", "recording", "a is recording \"run2\"; record stop ends it");
+    row("changed by others", "changed", "b: its source was changed to \"live\" meanwhile");
 }
 
 void TestSessions::aReplayThatFailsEndsForAll() {
-    QFETCH(QString, how);
-    QFETCH(QString, told);
+    FETCH(QString, how, QString, told);
     const RecordedSession session = record("run1");
     SessionPlayer::Options options;
     options.loop = true;

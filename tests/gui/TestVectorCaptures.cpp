@@ -59,20 +59,16 @@ private Q_SLOTS:
 
     // A pipe can be read only once: what tells its kind must not be lost.
     void pipesAreReadFromTheirBeginning_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QString>("file");
-        QTest::newRow("points") << QStringList{"segment", "FILE"} << QString(data("room.csv"));
-        QTest::newRow("log") << QStringList{"map", "FILE",      "--corrected", "--out-trajectory",
-                                            "-",   "--summary", path("s")}
-                             << QString(data("corrected.log"));
-        QTest::newRow("capture") << QStringList{"ring", "FILE"} << path("capture.pcap");
-        QTest::newRow("capture to map")
-            << QStringList{"map", "FILE", "--out-trajectory", "-", "--summary", path("s")}
-            << path("capture.pcap");
+        const Rows<QStringList, QString> row("arguments", "file");
+        row("points", {"segment", "FILE"}, QString(data("room.csv")));
+        row("log", {"map", "FILE", "--corrected", "--out-trajectory", "-", "--summary", path("s")},
+            QString(data("corrected.log")));
+        row("capture", {"ring", "FILE"}, path("capture.pcap"));
+        row("capture to map", {"map", "FILE", "--out-trajectory", "-", "--summary", path("s")},
+            path("capture.pcap"));
     }
     void pipesAreReadFromTheirBeginning() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QString, file);
+        FETCH(QStringList, arguments, QString, file);
         writeCapture(path("capture.pcap"), 800);
         QFile content(file);
         QVERIFY(content.open(QIODevice::ReadOnly));
@@ -91,16 +87,14 @@ private Q_SLOTS:
     }
 
     void oneSensorOfSeveralIsTaken_data() {
-        QTest::addColumn<QStringList>("options");
-        QTest::addColumn<double>("range");
-        QTest::newRow("the first") << QStringList() << 5.0;
-        QTest::newRow("by its port") << QStringList{"--port", "2369"} << 6.0;
-        QTest::newRow("by its address") << QStringList{"--sender", "192.168.1.203"} << 7.0;
-        QTest::newRow("by both") << QStringList{"--port", "2368", "--sender", "192.168.1.203"} << 7.0;
+        const Rows<QStringList, double> row("options", "range");
+        row("the first", QStringList(), 5.0);
+        row("by its port", {"--port", "2369"}, 6.0);
+        row("by its address", {"--sender", "192.168.1.203"}, 7.0);
+        row("by both", {"--port", "2368", "--sender", "192.168.1.203"}, 7.0);
     }
     void oneSensorOfSeveralIsTaken() {
-        QFETCH(QStringList, options);
-        QFETCH(double, range);
+        FETCH(QStringList, options, double, range);
         writeCapture(path("c.pcap"), 400,
                      {{0xC0A801C9, 2368, 5}, {0xC0A801CA, 2369, 6}, {0xC0A801CB, 2368, 7}});
         const Result ring = run(QStringList{"ring", path("c.pcap")} + options);
@@ -129,17 +123,14 @@ private Q_SLOTS:
     }
 
     void whatIsMissingIsTold_data() {
-        QTest::addColumn<QStringList>("options");
-        QTest::addColumn<QByteArray>("told");
-        QTest::newRow("port") << QStringList{"--port", "2370"}
-                              << QByteArray("found data packets of 192.168.1.201 to port 4711 (400 packets) "
-                                            "only, expected some to port 2370");
-        QTest::newRow("sender") << QStringList{"--sender", "10.0.0.1"}
-                                << QByteArray("only, expected some from 10.0.0.1");
+        const Rows<QStringList, QByteArray> row("options", "told");
+        row("port", {"--port", "2370"},
+            "found data packets of 192.168.1.201 to port 4711 (400 packets) "
+            "only, expected some to port 2370");
+        row("sender", {"--sender", "10.0.0.1"}, "only, expected some from 10.0.0.1");
     }
     void whatIsMissingIsTold() {
-        QFETCH(QStringList, options);
-        QFETCH(QByteArray, told);
+        FETCH(QStringList, options, QByteArray, told);
         writeCapture(path("c.pcap"), 400, {{0xC0A801C9, 4711}});
         for (const char *command : {"ring", "map"}) {
             const Result r = run(QStringList{command, path("c.pcap"), "--out", path("out")} + options);

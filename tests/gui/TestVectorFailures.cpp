@@ -18,12 +18,8 @@ private Q_SLOTS:
     void init() { folder_.empty(); }
 
     void wrongUsage_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QByteArray>("named");
+        const Rows<QStringList, QByteArray> row("arguments", "named");
         const QString room = data("room.csv"), world = data("world.json"), log = data("raw.log");
-        const auto row = [](const char *name, const QStringList &arguments, const char *named) {
-            QTest::newRow(name) << arguments << QByteArray(named);
-        };
         row("nothing", {}, "subcommand");
         row("no such command", {"draw"}, "draw");
         row("no file", {"segment"}, "IN");
@@ -67,8 +63,7 @@ private Q_SLOTS:
         row("offsets without z", {"ring", "x.pcap", "--no-vertical-offsets"}, "--all");
     }
     void wrongUsage() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QByteArray, named);
+        FETCH(QStringList, arguments, QByteArray, named);
         const Result r = run(arguments);
         QCOMPARE(r.status, 2);
         QVERIFY2(r.err.contains(named), r.err.constData());
@@ -76,44 +71,27 @@ private Q_SLOTS:
     }
 
     void badInput_data() {
-        QTest::addColumn<QString>("command");
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("place");
-        QTest::addColumn<QByteArray>("expected");
+        const Rows<QString, QByteArray, QByteArray, QByteArray> row("command", "text", "place", "expected");
         const QByteArray log = contents(data("raw.log"));
-        QTest::newRow("nan in points") << "segment" << QByteArray("x,y\n1,2\nnan,3\n") << QByteArray("in:3:")
-                                       << QByteArray("a finite number");
-        QTest::newRow("one column") << "vectorize" << QByteArray("1,2\n3\n") << QByteArray("in:2:")
-                                    << QByteArray("2 fields");
-        QTest::newRow("no pairs") << "register" << QByteArray("1,2,3,4\n") << QByteArray("in:1:")
-                                  << QByteArray("dx1");
-        QTest::newRow("empty pairs") << "register" << QByteArray() << QByteArray("in")
-                                     << QByteArray("an empty file");
-        QTest::newRow("pair of no length")
-            << "register" << QByteArray("0,0,1,0,2,2,2,2\n") << QByteArray("in:1:") << QByteArray("distinct");
-        QTest::newRow("weight 0") << "register"
-                                  << QByteArray("sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2,weight\n0,0,1,0,0,0,1,0,0\n")
-                                  << QByteArray("in:2:") << QByteArray("above 0");
-        QTest::newRow("pairs beyond measure")
-            << "register" << QByteArray("0,0,1,0,0,0,1,0\n0,1e160,1,1e160,0,0,1,0\n") << QByteArray("in:")
-            << QByteArray("far too large");
-        QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
-                                             << QByteArray("in") << QByteArray("x1");
-        QTest::newRow("world that is none")
-            << "observe" << QByteArray("{\"edges\": [\n[0,0,1]]}") << QByteArray("in:2") << QByteArray();
-        QTest::newRow("log cut short")
-            << "map" << log.left(log.size() / 2) << QByteArray("in:8:") << QByteArray("of FLASER");
-        QTest::newRow("no log") << "map" << QByteArray("hello\n") << QByteArray("in:1:")
-                                << QByteArray("CARMEN");
-        QTest::newRow("no capture") << "ring" << QByteArray("hello\n") << QByteArray("in") << QByteArray();
-        QTest::newRow("empty file") << "map" << QByteArray() << QByteArray("in") << QByteArray("FLASER");
+        row("nan in points", "segment", "x,y\n1,2\nnan,3\n", "in:3:", "a finite number");
+        row("one column", "vectorize", "1,2\n3\n", "in:2:", "2 fields");
+        row("no pairs", "register", "1,2,3,4\n", "in:1:", "dx1");
+        row("empty pairs", "register", QByteArray(), "in", "an empty file");
+        row("pair of no length", "register", "0,0,1,0,2,2,2,2\n", "in:1:", "distinct");
+        row("weight 0", "register", "sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2,weight\n0,0,1,0,0,0,1,0,0\n",
+            "in:2:", "above 0");
+        row("pairs beyond measure", "register", "0,0,1,0,0,0,1,0\n0,1e160,1,1e160,0,0,1,0\n",
+            "in:", "far too large");
+        row("world without edges", "observe", "{\"name\": \"x\", \"edges\": []}", "in", "x1");
+        row("world that is none", "observe", "{\"edges\": [\n[0,0,1]]}", "in:2", QByteArray());
+        row("log cut short", "map", log.left(log.size() / 2), "in:8:", "of FLASER");
+        row("no log", "map", "hello\n", "in:1:", "CARMEN");
+        row("no capture", "ring", "hello\n", "in", QByteArray());
+        row("empty file", "map", QByteArray(), "in", "FLASER");
     }
     /// Status 1, a message that names the place, and not a trace of any output file.
     void badInput() {
-        QFETCH(QString, command);
-        QFETCH(QByteArray, text);
-        QFETCH(QByteArray, place);
-        QFETCH(QByteArray, expected);
+        FETCH(QString, command, QByteArray, text, QByteArray, place, QByteArray, expected);
         write(path("in"), text);
         QStringList arguments{command, path("in"), "--out", path("out")};
         if (command == QLatin1String("observe"))
@@ -165,10 +143,10 @@ private Q_SLOTS:
     }
 
     void picturesAreNamedAsWhatTheyAre_data() {
-        QTest::addColumn<QString>("name");
-        QTest::newRow("png") << "a.png";
-        QTest::newRow("compressed") << "a.svg.gz";
-        QTest::newRow("capitals") << "a.PNG";
+        const Rows<QString> row("name");
+        row("png", "a.png");
+        row("compressed", "a.svg.gz");
+        row("capitals", "a.PNG");
     }
     void picturesAreNamedAsWhatTheyAre() {
         QFETCH(QString, name);
@@ -184,13 +162,13 @@ private Q_SLOTS:
         }
     }
     void latexIsAPictureToo_data() {
-        QTest::addColumn<QStringList>("command");
+        const Rows<QStringList> row("command");
         const QString room = data("room.csv");
-        QTest::newRow("segment") << QStringList{"segment", room};
-        QTest::newRow("vectorize") << QStringList{"vectorize", room};
-        QTest::newRow("match") << QStringList{"match", room, room};
-        QTest::newRow("register") << QStringList{"register", data("pairs.csv")};
-        QTest::newRow("observe") << QStringList{"observe", data("world.json"), "--pose", "0,0,0"};
+        row("segment", {"segment", room});
+        row("vectorize", {"vectorize", room});
+        row("match", {"match", room, room});
+        row("register", {"register", data("pairs.csv")});
+        row("observe", {"observe", data("world.json"), "--pose", "0,0,0"});
     }
     /// --latex has the rules of --svg.
     void latexIsAPictureToo() {
@@ -223,9 +201,9 @@ private Q_SLOTS:
     }
 
     void killLeavesNoFile_data() {
-        QTest::addColumn<bool>("isThere");
-        QTest::newRow("new file") << false;
-        QTest::newRow("instead of another") << true;
+        const Rows<bool> row("isThere");
+        row("new file", false);
+        row("instead of another", true);
     }
     /// The program waits for the rest of its input when it is killed: nothing it could do about its files.
     void killLeavesNoFile() {
@@ -255,26 +233,23 @@ private Q_SLOTS:
     }
 
     void closedPipe_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QStringList>("complete");
+        const Rows<QStringList, QStringList> row("arguments", "complete");
         const QString room = data("room.csv");
         const QStringList match{"match", room, room, "--force"};
-        QTest::newRow("table") << QStringList{"segment", room} << QStringList();
-        QTest::newRow("picture beside it")
-            << match + QStringList{"--svg", path("m.svg")} << QStringList{"m.svg"};
-        QTest::newRow("file beside the picture")
-            << match + QStringList{"--svg", "-", "--out", path("m.json")} << QStringList{"m.json"};
-        QTest::newRow("picture to another pipe")
-            << match + QStringList{"--svg", "/dev/stdout", "--out", path("m.json")} << QStringList{"m.json"};
-        QTest::newRow("map beside the summary")
-            << QStringList{"map", data("corrected.log"), "--out-map", path("m.csv"), "--svg", path("m.svg")}
-            << QStringList{"m.csv", "m.svg"};
+        row("table", {"segment", room}, QStringList());
+        row("picture beside it", match + QStringList{"--svg", path("m.svg")}, {"m.svg"});
+        row("file beside the picture", match + QStringList{"--svg", "-", "--out", path("m.json")},
+            {"m.json"});
+        row("picture to another pipe", match + QStringList{"--svg", "/dev/stdout", "--out", path("m.json")},
+            {"m.json"});
+        row("map beside the summary",
+            {"map", data("corrected.log"), "--out-map", path("m.csv"), "--svg", path("m.svg")},
+            {"m.csv", "m.svg"});
     }
     /// The reader of the pipe has gone before the program starts: the files are complete, and what is missing
     /// is told.
     void closedPipe() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QStringList, complete);
+        FETCH(QStringList, arguments, QStringList, complete);
         QProcess shell;
         shell.start("bash", QStringList{"-c", "exec 3> >(true); wait $!; \"$@\" >&3", "bash",
                                         qEnvironmentVariable("HERMES_BIN") + "/hermes-vector"} +

@@ -15,26 +15,18 @@ private Q_SLOTS:
     void init() { folder_.empty(); }
 
     void columns_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QByteArray>("header");
-        QTest::addColumn<int>("rows");
-        QTest::newRow("segment") << QStringList{"segment", data("room.csv")} << QByteArray("index,cluster")
-                                 << 360;
-        QTest::newRow("vectorize tls")
-            << QStringList{"vectorize", data("room.csv"), "--algorithm", "tls", "--no-segment"}
-            << QByteArray("cluster,first,last,a,b,c,sigma,x1,y1,x2,y2") << 1;
-        QTest::newRow("observe") << QStringList{"observe", data("world.json"), "--pose", "-1,0.5,1.5"}
-                                 << QByteArray("x1,y1,x2,y2") << 6;
-        QTest::newRow("observe a scan")
-            << QStringList{"observe", data("world.json"), "--pose=0,0,0", "--scan", "100", "--noise",
-                           "0.01",    "--outliers",       "0.1",          "--seed", "3",   "--fov",
-                           "180"}
-            << QByteArray("x,y") << 100;
+        const Rows<QStringList, QByteArray, int> row("arguments", "header", "rows");
+        row("segment", {"segment", data("room.csv")}, "index,cluster", 360);
+        row("vectorize tls", {"vectorize", data("room.csv"), "--algorithm", "tls", "--no-segment"},
+            "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2", 1);
+        row("observe", {"observe", data("world.json"), "--pose", "-1,0.5,1.5"}, "x1,y1,x2,y2", 6);
+        row("observe a scan",
+            {"observe", data("world.json"), "--pose=0,0,0", "--scan", "100", "--noise", "0.01", "--outliers",
+             "0.1", "--seed", "3", "--fov", "180"},
+            "x,y", 100);
     }
     void columns() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QByteArray, header);
-        QFETCH(int, rows);
+        FETCH(QStringList, arguments, QByteArray, header, int, rows);
         const Result r = run(arguments);
         QCOMPARE(r.err, QByteArray());
         QCOMPARE(r.status, 0);
@@ -44,9 +36,9 @@ private Q_SLOTS:
     }
 
     void vectorizeFindsTheWalls_data() {
-        QTest::addColumn<QString>("algorithm");
+        const Rows<QString> row("algorithm");
         for (const char *algorithm : {"ftls", "aftls", "inc", "dp", "rw", "rw-adjacent", "sam"})
-            QTest::newRow(algorithm) << algorithm;
+            row(algorithm, algorithm);
     }
     void vectorizeFindsTheWalls() {
         QFETCH(QString, algorithm);
@@ -68,10 +60,10 @@ private Q_SLOTS:
     }
 
     void registerTellsThePose_data() {
-        QTest::addColumn<QStringList>("options");
-        QTest::newRow("default") << QStringList{};
-        QTest::newRow("wahba, length") << QStringList{"--rotation", "wahba", "--weights", "length"};
-        QTest::newRow("column") << QStringList{"--weights", "column", "--k-alpha", "2", "--k-xy", "0.5"};
+        const Rows<QStringList> row("options");
+        row("default", {});
+        row("wahba, length", {"--rotation", "wahba", "--weights", "length"});
+        row("column", {"--weights", "column", "--k-alpha", "2", "--k-xy", "0.5"});
     }
     void registerTellsThePose() {
         QFETCH(QStringList, options);
@@ -199,11 +191,10 @@ private Q_SLOTS:
 
     /// Of the public logs one steps back, two lost the digits of their stamps.
     void trajectoriesOfRealLogsAscend_data() {
-        QTest::addColumn<int>("ties");
-        QTest::addColumn<int>("stepsBack");
-        QTest::newRow("intel") << 0 << 4;
-        QTest::newRow("belgioioso") << 394 << 0;
-        QTest::newRow("orebro") << 236 << 0;
+        const Rows<int, int> row("ties", "stepsBack");
+        row("intel", 0, 4);
+        row("belgioioso", 394, 0);
+        row("orebro", 236, 0);
     }
     void trajectoriesOfRealLogsAscend() {
         const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
@@ -288,9 +279,9 @@ private Q_SLOTS:
     }
 
     void realLogs_data() {
-        QTest::addColumn<QString>("name");
+        const Rows<QString> row("name");
         for (const char *name : {"intel", "fhw", "belgioioso", "orebro", "freiburg-079"})
-            QTest::newRow(name) << QString::fromLatin1(name) + "-corrected.log.gz";
+            row(name, QString::fromLatin1(name) + "-corrected.log.gz");
     }
     void realLogs() {
         QFETCH(QString, name);

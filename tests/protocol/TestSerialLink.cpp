@@ -153,11 +153,11 @@ void TestSerialLink::urgentGoesFirst() {
 }
 
 void TestSerialLink::allArriveOnce_data() {
-    QTest::addColumn<int>("oneIn");
-    QTest::newRow("undamaged") << 0;
-    QTest::newRow("one byte in 1000") << 1000;
-    QTest::newRow("one byte in 200") << 200;
-    QTest::newRow("one byte in 150") << 150;
+    const Rows<int> row("oneIn");
+    row("undamaged", 0);
+    row("one byte in 1000", 1000);
+    row("one byte in 200", 200);
+    row("one byte in 150", 150);
 }
 
 void TestSerialLink::allArriveOnce() {

@@ -115,9 +115,9 @@ void TestTurnAssembler::everyNthFiringOnly() {
 }
 
 void TestTurnAssembler::beamsOfAllLasersAreCounted_data() {
-    QTest::addColumn<bool>("dual");
-    QTest::newRow("single") << false;
-    QTest::newRow("dual") << true;
+    const Rows<bool> row("dual");
+    row("single", false);
+    row("dual", true);
 }
 
 /// Whichever laser is decoded; the second return of a beam does not count.

@@ -93,9 +93,9 @@ private Q_SLOTS:
         QVERIFY2(compared.faults.isEmpty(), qPrintable(compared.faults.mid(0, 10).join("\n")));
     }
     void realClusters_data() {
-        QTest::addColumn<QString>("log");
+        const Rows<QString> row("log");
         for (const char *log : {"belgioioso", "fhw", "freiburg-079", "intel", "orebro"})
-            QTest::newRow(log) << QString(log);
+            row(log, QString(log));
     }
     void realClusters();
 };

@@ -72,19 +72,15 @@ private Q_SLOTS:
 };
 
 void TestGlobalPairMatcher::anyMotionIsFound_data() {
-    QTest::addColumn<int>("world");
-    QTest::addColumn<int>("rays");
-    QTest::addColumn<double>("turn");
-    QTest::newRow("hall, whole turn") << 0 << 720 << 1.0;
-    QTest::newRow("hall, coarse") << 0 << 240 << 1.0;
-    QTest::newRow("hall, half a turn") << 0 << 361 << 0.5;
-    QTest::newRow("round pillars") << 1 << 720 << 1.0;
+    const Rows<int, int, double> row("world", "rays", "turn");
+    row("hall, whole turn", 0, 720, 1.0);
+    row("hall, coarse", 0, 240, 1.0);
+    row("hall, half a turn", 0, 361, 0.5);
+    row("round pillars", 1, 720, 1.0);
 }
 
 void TestGlobalPairMatcher::anyMotionIsFound() {
-    QFETCH(int, world);
-    QFETCH(int, rays);
-    QFETCH(double, turn);
+    FETCH(int, world, int, rays, double, turn);
     const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
     qInfo("seed %u", seed);
     std::mt19937 random(seed);
@@ -159,15 +155,13 @@ void TestGlobalPairMatcher::corridorIsOpenAlongIt() {
 }
 
 void TestGlobalPairMatcher::symmetricRoomIsAmbiguous_data() {
-    QTest::addColumn<double>("width");
-    QTest::addColumn<int>("ways");
-    QTest::newRow("rectangle") << 8.0 << 2;
-    QTest::newRow("square") << 6.0 << 4;
+    const Rows<double, int> row("width", "ways");
+    row("rectangle", 8.0, 2);
+    row("square", 6.0, 4);
 }
 
 void TestGlobalPairMatcher::symmetricRoomIsAmbiguous() {
-    QFETCH(double, width);
-    QFETCH(int, ways);
+    FETCH(double, width, int, ways);
     std::mt19937 random(5);
     const double x = width / 2;
     const ScanWorld room = ScanWorld::of({{-x, -3}, {x, -3}, {x, 3}, {-x, 3}});

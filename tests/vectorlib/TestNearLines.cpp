@@ -102,10 +102,10 @@ void TestNearLines::farAndHugeReachesAreNoTrouble() {
 }
 
 void TestNearLines::timeGrowsWithTheSets_data() {
-    QTest::addColumn<int>("kind");
-    QTest::newRow("buildings") << 0;
-    QTest::newRow("round hall") << 1;
-    QTest::newRow("corridor") << 2;
+    const Rows<int> row("kind");
+    row("buildings", 0);
+    row("round hall", 1);
+    row("corridor", 2);
 }
 
 // Expected where few lie on each other, so that no bound ends the search: 32 times as many segments take 32

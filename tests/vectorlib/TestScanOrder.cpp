@@ -134,12 +134,12 @@ private Q_SLOTS:
 };
 
 void TestScanOrder::anOrderedScanStaysAsItIs_data() {
-    QTest::addColumn<int>("order");
-    QTest::newRow("as seen") << int(AsSeen);
-    QTest::newRow("started anywhere") << int(StartedAnywhere);
-    QTest::newRow("over one turn") << int(OverOneTurn);
-    QTest::newRow("every point twice") << int(Doubled);
-    QTest::newRow("every other point is none") << int(WithNaN);
+    const Rows<int> row("order");
+    row("as seen", int(AsSeen));
+    row("started anywhere", int(StartedAnywhere));
+    row("over one turn", int(OverOneTurn));
+    row("every point twice", int(Doubled));
+    row("every other point is none", int(WithNaN));
 }
 
 void TestScanOrder::anOrderedScanStaysAsItIs() {
@@ -198,8 +198,7 @@ void TestScanOrder::matchersTellTheSame_data() {
 }
 
 void TestScanOrder::matchersTellTheSame() {
-    QFETCH(int, order);
-    QFETCH(double, turn);
+    FETCH(int, order, double, turn);
     const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
     qInfo("seed %u", seed);
     std::mt19937 random(seed);
@@ -244,17 +243,15 @@ void TestScanOrder::matchersTellTheSame() {
 }
 
 void TestScanOrder::nothingIsFoundInNothing_data() {
-    QTest::addColumn<int>("count");
-    QTest::addColumn<int>("places");
+    const Rows<int, int> row("count", "places");
     for (int count : {0, 1, 2, 720})
         QTest::addRow("%d points", count) << count << 1;
-    QTest::newRow("720 points in two places") << 720 << 2;
-    QTest::newRow("720 points that are none") << 720 << 0;
+    row("720 points in two places", 720, 2);
+    row("720 points that are none", 720, 0);
 }
 
 void TestScanOrder::nothingIsFoundInNothing() {
-    QFETCH(int, count);
-    QFETCH(int, places);
+    FETCH(int, count, int, places);
     const RandomRoom room(3);
     SimulatedScanner<double> scanner(4);
     Points whole, few;

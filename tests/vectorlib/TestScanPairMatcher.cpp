@@ -82,9 +82,9 @@ void TestScanPairMatcher::nearestOfEightIsTheFirstOfTheNearest() {
 }
 
 void TestScanPairMatcher::motionIsFound_data() {
-    QTest::addColumn<bool>("round");
-    QTest::newRow("room") << false;
-    QTest::newRow("round pillars") << true;
+    const Rows<bool> row("round");
+    row("room", false);
+    row("round pillars", true);
 }
 
 void TestScanPairMatcher::motionIsFound() {

@@ -206,10 +206,10 @@ void TestDrivePanel::keysAfterAFieldHasVanishedDoNotDrive() {
 }
 
 void TestDrivePanel::stopIsLatchedAndNeedsNoControl_data() {
-    QTest::addColumn<int>("key");
-    QTest::newRow("button") << 0;
-    QTest::newRow("space") << int(Qt::Key_Space);
-    QTest::newRow("escape, which was told to") << int(Qt::Key_Escape);
+    const Rows<int> row("key");
+    row("button", 0);
+    row("space", int(Qt::Key_Space));
+    row("escape, which was told to", int(Qt::Key_Escape));
 }
 
 void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
@@ -334,16 +334,14 @@ void TestDrivePanel::keysDoNotDisturbTheDriveOfAnother() {
 }
 
 void TestDrivePanel::aHeldKeyDrivesOnlyOnce_data() {
-    QTest::addColumn<bool>("isKilled");
-    QTest::addColumn<bool>("isRepeated");
-    QTest::newRow("killed") << true << false;
-    QTest::newRow("killed, repeated") << true << true;
-    QTest::newRow("frozen, repeated") << false << true;
+    const Rows<bool, bool> row("isKilled", "isRepeated");
+    row("killed", true, false);
+    row("killed, repeated", true, true);
+    row("frozen, repeated", false, true);
 }
 
 void TestDrivePanel::aHeldKeyDrivesOnlyOnce() {
-    QFETCH(bool, isKilled);
-    QFETCH(bool, isRepeated);
+    FETCH(bool, isKilled, bool, isRepeated);
     QTest::keyPress(window_.get(), Qt::Key_W);
     if (isRepeated)
         repeat(Qt::Key_W);

@@ -77,16 +77,14 @@ void TestHeldKeys::drivesAnew(const QString &key) {
 }
 
 void TestHeldKeys::drivesOnlyOnce_data() {
-    QTest::addColumn<QString>("key");
-    QTest::addColumn<bool>("isKilled");
-    QTest::newRow("killed") << "s" << true;
-    QTest::newRow("frozen") << "Up" << false;
-    QTest::newRow("frozen, turning") << "q" << false;
+    const Rows<QString, bool> row("key", "isKilled");
+    row("killed", "s", true);
+    row("frozen", "Up", false);
+    row("frozen, turning", "q", false);
 }
 
 void TestHeldKeys::drivesOnlyOnce() {
-    QFETCH(QString, key);
-    QFETCH(bool, isKilled);
+    FETCH(QString, key, bool, isKilled);
     hold(key);
     awaitMotion();
     if (isKilled) {

@@ -53,9 +53,9 @@ void TestMapPanel::placedByADrag() {
 }
 
 void TestMapPanel::exported_data() {
-    QTest::addColumn<QString>("name");
-    QTest::newRow("svg") << "view.svg";
-    QTest::newRow("png") << "view.png";
+    const Rows<QString> row("name");
+    row("svg", "view.svg");
+    row("png", "view.png");
 }
 
 void TestMapPanel::exported() {

@@ -172,9 +172,9 @@ void TestReadable::initTestCase() {
 }
 
 void TestReadable::textsFit_data() {
-    QTest::addColumn<QSize>("size");
-    QTest::newRow("1024 x 600") << QSize(1024, 600);
-    QTest::newRow("1920 x 1080") << QSize(1920, 1080);
+    const Rows<QSize> row("size");
+    row("1024 x 600", QSize(1024, 600));
+    row("1920 x 1080", QSize(1920, 1080));
 }
 
 void TestReadable::textsFit() {

@@ -302,24 +302,20 @@ void TestRecordPanel::aLoggerThatDiesIsTold() {
 }
 
 void TestRecordPanel::theNextFreeNameIsProposed_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<QStringList>("taken");
-    QTest::addColumn<QString>("next");
-    QTest::newRow("free") << "run1" << QStringList{"run2"} << "run1";
-    QTest::newRow("next") << "run1" << QStringList{"run1"} << "run2";
-    QTest::newRow("gap") << "run1" << QStringList{"run1", "run2", "run4"} << "run3";
-    QTest::newRow("ten") << "run9" << QStringList{"run9"} << "run10";
-    QTest::newRow("zeros") << "run007" << QStringList{"run007"} << "run008";
-    QTest::newRow("no number") << "hall" << QStringList{"hall", "hall2"} << "hall3";
-    QTest::newRow("a number") << "1" << QStringList{"1"} << "2";
-    QTest::newRow("none") << "" << QStringList{"run1"} << "";
-    QTest::newRow("long number") << "run99999999999999999999" << QStringList{"run99999999999999999999"}
-                                 << "run999999999999991000000";
+    const Rows<QString, QStringList, QString> row("name", "taken", "next");
+    row("free", "run1", {"run2"}, "run1");
+    row("next", "run1", {"run1"}, "run2");
+    row("gap", "run1", {"run1", "run2", "run4"}, "run3");
+    row("ten", "run9", {"run9"}, "run10");
+    row("zeros", "run007", {"run007"}, "run008");
+    row("no number", "hall", {"hall", "hall2"}, "hall3");
+    row("a number", "1", {"1"}, "2");
+    row("none", "", {"run1"}, "");
+    row("long number", "run99999999999999999999", {"run99999999999999999999"}, "run999999999999991000000");
 }
 
 void TestRecordPanel::theNextFreeNameIsProposed() {
-    QFETCH(QString, name);
-    QFETCH(QStringList, taken);
+    FETCH(QString, name, QStringList, taken);
     SessionList list;
     for (const QString &one : taken)
         list.sessions.push_back({one, one, 0, 0, {}});

@@ -219,9 +219,9 @@ void TestSetupPanel::stopEndsTheTestOfWheels() {
 }
 
 void TestSetupPanel::outOfSightNoWheelTurns_data() {
-    QTest::addColumn<bool>("isClosed");
-    QTest::newRow("its dock is closed") << true;
-    QTest::newRow("another tab is over it") << false;
+    const Rows<bool> row("isClosed");
+    row("its dock is closed", true);
+    row("another tab is over it", false);
 }
 
 void TestSetupPanel::outOfSightNoWheelTurns() {
