@@ -74,9 +74,8 @@ private Q_SLOTS:
     }
 
     void failureLeavesNoFolder() {
-        const Result r = run({"experiment", "accuracy", "--worlds", folder_.path(), "--out", path("a/b/c")});
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("cutsquare.json"), r.err.constData());
+        refused(run({"experiment", "accuracy", "--worlds", folder_.path(), "--out", path("a/b/c")}), 1,
+                "cutsquare.json");
         QVERIFY(!QFileInfo::exists(path("a")));
         QVERIFY(QDir(folder_.path()).mkdir("there"));
         QCOMPARE(run({"experiment", "log", "--out", path("there")}).status, 2);
@@ -94,16 +93,14 @@ private Q_SLOTS:
     }
     void folderThatIsAFileIsRefused() {
         write(path("file"), "precious");
-        const Result r = run({"experiment", "criterion", "--out", path("file/folder")});
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("file/folder: cannot be made"), r.err.constData());
+        refused(run({"experiment", "criterion", "--out", path("file/folder")}), 1,
+                "file/folder: cannot be made");
         QCOMPARE(contents(path("file")), QByteArray("precious"));
     }
 
     // What is published is of one log, which nobody else has.
     void anyLogHasNoPublishedFigures() {
-        const Result r = run({"experiment", "free-log", "--log", log(), "--out", path("free-log")});
-        QCOMPARE(r.status, 0);
+        const Result r = ran({"experiment", "free-log", "--log", log(), "--out", path("free-log")});
         QVERIFY(json(r.out)["scans"].toInt() > 1);
         QVERIFY2(!r.out.contains("published"), r.out.constData());
         const Result home = run({"experiment", "free-leaps", "--out", path("free-leaps")});
@@ -111,8 +108,7 @@ private Q_SLOTS:
     }
 
     void copyPrintsASummary() {
-        const Result r = run({"experiment", "free-copy", "--out", path("free-copy")});
-        QCOMPARE(r.status, 0);
+        const Result r = ran({"experiment", "free-copy", "--out", path("free-copy")});
         QVERIFY2(json(r.out)["area_at_10_deg_m2"].toDouble() > 1, r.out.constData());
         QVERIFY(json(r.out)["area_at_50_cm_m2"].toDouble() > 1);
         QVERIFY(json(r.out)["grows_throughout"].toBool());
@@ -121,12 +117,11 @@ private Q_SLOTS:
 
     // There is no right place in another building, and so no error.
     void scansOfAnotherBuildingHaveNoErrors() {
-        QCOMPARE(run({"experiment", "places", "--log", log(), "--out", path("own")}).status, 0);
+        ran({"experiment", "places", "--log", log(), "--out", path("own")});
         QCOMPARE(firstLine(path("own/places.csv")),
                  QByteArray("scan,found,right,places,score,probability,error_m,error_deg,time_ms"));
         const Result r =
-            run({"experiment", "places", "--log", log(), "--other", log(), "--out", path("other")});
-        QCOMPARE(r.status, 0);
+            ran({"experiment", "places", "--log", log(), "--other", log(), "--out", path("other")});
         QCOMPARE(firstLine(path("other/places.csv")),
                  QByteArray("scan,accepted,places,score,probability,time_ms"));
         for (const QByteArray &row : contents(path("other/places.csv")).trimmed().split('\n'))
@@ -136,17 +131,15 @@ private Q_SLOTS:
     }
 
     void drawnPlacesNeedNoLog() {
-        const Result r = run({"experiment", "drawn-places", "--runs", "1", "--out", path("drawn")});
-        QVERIFY2(r.status == 0, r.err.constData());
+        const Result r = ran({"experiment", "drawn-places", "--runs", "1", "--out", path("drawn")});
         QCOMPARE(json(r.out)["sets"].toObject()["home"].toObject()["scans"].toInt(), 50);
         QVERIFY(json(r.out)["slope_of_time"].toDouble() > 0);
         QCOMPARE(contents(path("drawn/drawn-places.json")), r.out);
         QVERIFY(firstLine(path("drawn/drawn-places.csv")).startsWith("set,has_place,outcome,"));
     }
     void trustIsFittedToLogsAndDrawnBuildings() {
-        const Result r = run({"experiment", "place-trust", "--log", log(), "--log", log(), "--other", log(),
+        const Result r = ran({"experiment", "place-trust", "--log", log(), "--log", log(), "--other", log(),
                               "--runs", "1", "--out", path("trust")});
-        QVERIFY2(r.status == 0, r.err.constData());
         for (const char *weights : {"present", "fitted"}) {
             const QJsonObject of = json(r.out)[QLatin1String(weights)].toObject();
             QVERIFY(of["weights"].toObject()["rival"].toDouble() > 0);
@@ -158,9 +151,8 @@ private Q_SLOTS:
     }
     void trustOfPosesIsFittedToOneHalf() {
         QVERIFY(QFile::copy(log(), path("copy.log")));
-        const Result r = run({"experiment", "pose-trust", "--log", log(), "--other", log(), "--other",
+        const Result r = ran({"experiment", "pose-trust", "--log", log(), "--other", log(), "--other",
                               path("copy.log"), "--runs", "4", "--out", path("poses")});
-        QVERIFY2(r.status == 0, r.err.constData());
         for (const char *weights : {"present", "fitted"}) {
             const QJsonObject of = json(r.out)[QLatin1String(weights)].toObject();
             QCOMPARE(of["weights"].toArray().size(), 6);

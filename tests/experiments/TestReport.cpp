@@ -218,8 +218,7 @@ void TestReport::picturesAreWellFormed() {
     for (const QStringList &what :
          {QStringList{file, "--case", "0"}, QStringList{file, "--overall"},
           QStringList{"pillars", "--case", "25"}, QStringList{"quadratic", "--overall"}}) {
-        const Result r = run(QStringList{"report", "--format", "svg"} + what);
-        QCOMPARE(r.status, 0);
+        const Result r = ran(QStringList{"report", "--format", "svg"} + what);
         QXmlStreamReader xml(r.out);
         int paths = 0;
         while (!xml.atEnd())
@@ -244,7 +243,7 @@ void TestReport::documentsCompile() {
     const Latex latex;
     for (int i = 0; i < reports.size(); ++i) {
         const QString name = folder.filePath(QString("report%1.tex").arg(i));
-        QCOMPARE(run(QStringList{"report", "--out", name} + reports[i]).status, 0);
+        ran(QStringList{"report", "--out", name} + reports[i]);
         const QByteArray text = contents(name);
         QVERIFY(text.startsWith("\\documentclass") && text.trimmed().endsWith("\\end{document}"));
         QVERIFY(text.contains("tikzpicture") && text.contains("Legend"));
@@ -261,7 +260,7 @@ void TestReport::formatFollowsTheExtension() {
         {"r.json", "{"}, {"r.csv", "from,"}, {"r.svg", "<svg"}, {"r.tex", "\\doc"}};
     for (const QString &name : begins.keys()) {
         const QString path = folder.filePath(name);
-        QCOMPARE(run({"report", "quadratic", "--overall", "--out", path}).status, 0);
+        ran({"report", "quadratic", "--overall", "--out", path});
         QVERIFY(contents(path).startsWith(begins[name]));
         QCOMPARE(run({"report", "quadratic", "--overall", "--out", path}).status,
                  1); // nothing is overwritten
@@ -317,7 +316,7 @@ void TestReport::poseThatSeesNothingIsReported() {
     QVERIFY(report["search"].toObject()["outcome"].toString().startsWith("no usable segment in the "));
     for (const char *format : {"csv", "svg", "latex"})
         for (const QStringList &what : {QStringList{"--case", "0"}, QStringList{"--overall"}})
-            QCOMPARE(run(QStringList{"report", file, "--rays", "100", "--format", format} + what).status, 0);
+            ran(QStringList{"report", file, "--rays", "100", "--format", format} + what);
     write(file, world("w", "[0,0,0]"));
     const Result r = run({"report", file, "--overall"});
     QCOMPARE(r.status, 1);

@@ -61,10 +61,9 @@ void TestMatch::findsTheMotion_data() {
 
 void TestMatch::findsTheMotion() {
     FETCH(QStringList, options, bool, staticPoints, bool, dynamicPoints, double, most, QString, method);
-    const Result r = run(QStringList{"match", seen("a.csv", "0,0,0", staticPoints),
+    const Result r = ran(QStringList{"match", seen("a.csv", "0,0,0", staticPoints),
                                      seen("b.csv", "0.7,-0.3,0.5", dynamicPoints)} +
                          options);
-    QCOMPARE(r.status, 0);
     QCOMPARE(r.err, QByteArray());
     const QJsonObject result = json(r.out), best = result["solutions"].toArray()[0].toObject();
     QCOMPARE(result["method"].toString(), method);
@@ -143,10 +142,9 @@ void TestMatch::mapHidesNothing() {
 }
 
 void TestMatch::mapFileIsAMap() {
-    QCOMPARE(run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv")}).status, 0);
+    ran({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv")});
     seen("b.csv", "0.4,0.1,0.2", true); // the log is of the same room, from (0, 0) on
-    const Result r = run({"match", path("m.csv"), path("b.csv"), "--expected", "0.5,0,0"});
-    QCOMPARE(r.status, 0);
+    const Result r = ran({"match", path("m.csv"), path("b.csv"), "--expected", "0.5,0,0"});
     const QJsonObject best = json(r.out)["solutions"].toArray()[0].toObject();
     QVERIFY2(best["accepted"].toBool(), r.out.constData());
     QVERIFY(!best["covariance"].toArray().isEmpty());
@@ -208,8 +206,7 @@ void TestMatch::pictureIsWellFormed() {
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
     write(path("wall.csv"), "1,-2,1,2\n");
     for (const QString &fixed : {a, path("wall.csv")}) {
-        QCOMPARE(run({"match", fixed, b, "--svg", path("m.svg"), "--out", path("m.json"), "--force"}).status,
-                 0);
+        ran({"match", fixed, b, "--svg", path("m.svg"), "--out", path("m.json"), "--force"});
         QXmlStreamReader xml(contents(path("m.svg")));
         while (!xml.atEnd())
             xml.readNext();
@@ -239,8 +236,7 @@ void TestMatch::wrongUse_data() {
 void TestMatch::wrongUse() {
     FETCH(QStringList, arguments, QByteArray, named);
     const Result r = run(QStringList{"match"} + arguments);
-    QCOMPARE(r.status, 2);
-    QVERIFY2(r.err.contains(named), r.err.constData());
+    refused(r, 2, named);
     QCOMPARE(r.out, QByteArray());
 }
 
@@ -259,9 +255,7 @@ void TestMatch::badInput() {
     write(path("in.csv"), text);
     for (const QStringList &files :
          {QStringList{path("in.csv"), data("room.csv")}, QStringList{data("room.csv"), path("in.csv")}}) {
-        const Result r = run(QStringList{"match", "--out", path("out")} + files);
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains(message), r.err.constData());
+        refused(run(QStringList{"match", "--out", path("out")} + files), 1, message);
         QCOMPARE(folder_.files(), QStringList{"in.csv"});
     }
 }

@@ -31,6 +31,21 @@ inline Result run(const QStringList &arguments, const QByteArray &input = QByteA
     return r;
 }
 
+/// The same where it must succeed.
+inline Result ran(const QStringList &arguments, const char *file = __builtin_FILE(),
+                  int line = __builtin_LINE()) {
+    const Result r = run(arguments);
+    QTest::qVerify(r.status == 0, "it succeeds", r.err.constData(), file, line);
+    return r;
+}
+
+/// It ended with that status and said so.
+inline void refused(const Result &r, int status, const QByteArray &words, const char *file = __builtin_FILE(),
+                    int line = __builtin_LINE()) {
+    QTest::qCompare(r.status, status, "status", "expected", file, line);
+    QTest::qVerify(r.err.contains(words), words.constData(), r.err.constData(), file, line);
+}
+
 /// A file of tests/data/vector.
 inline QString data(const char *name) {
     return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
