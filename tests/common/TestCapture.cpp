@@ -185,9 +185,7 @@ void TestCapture::otherFramesAreTold() {
 }
 
 void TestCapture::randomFramesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     const QByteArray good = frameOf(datagram(QByteArray(60, 'x')));
     for (int round = 0; round < 20000; ++round) {
         QByteArray frame = good.left(int(random() % unsigned(good.size() + 1)));
@@ -328,9 +326,7 @@ void TestCapture::tsharkReadsIt() {
 }
 
 void TestCapture::realRecording() {
-    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "hdl32e-outdoor.pcap");
     PcapReader reader;
     QVERIFY2(reader.open(path.toStdString()), reader.error().c_str());
     std::vector<bool> partial;
@@ -352,9 +348,7 @@ void TestCapture::realRecording() {
 }
 
 void TestCapture::realPositionPacketHasAWrongLength() {
-    const QString path = realData(QStringLiteral("velodyne-position-packet.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "velodyne-position-packet.pcap");
     PcapReader reader;
     QVERIFY2(reader.open(path.toStdString()), reader.error().c_str());
     Datagram d;

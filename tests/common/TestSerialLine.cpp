@@ -51,11 +51,6 @@ Figures figuresOf(std::vector<double> values) {
     return {at(0.5), at(0.99), at(1)};
 }
 
-unsigned int seedOfRun() {
-    const QByteArray given = qgetenv("HERMES_SEED");
-    return given.isEmpty() ? std::random_device{}() : given.toUInt();
-}
-
 } // namespace
 
 class TestSerialLine : public QObject {
@@ -94,9 +89,8 @@ private:
     }
     void printLink() const;
     void damage() {
-        const unsigned int seed = seedOfRun();
-        qInfo("one byte in %d is damaged, HERMES_SEED=%u", damageOneIn, seed);
-        line->setDamage(damageOneIn, seed);
+        qInfo("one byte in %d is damaged", damageOneIn);
+        line->setDamage(damageOneIn, newSeed());
     }
 
     std::unique_ptr<NoisyLine> line;

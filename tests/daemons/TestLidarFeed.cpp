@@ -86,9 +86,7 @@ private Q_SLOTS:
 };
 
 void TestLidarFeed::liveGivesWhatDirectDecodingGives() {
-    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "hdl32e-outdoor.pcap");
     LidarListener listener;
     QVERIFY(listener.feed.openLive("127.0.0.1", 0, 4 << 20, {}));
     sendCapture(path, listener.feed.port());

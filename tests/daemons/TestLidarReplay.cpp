@@ -32,9 +32,7 @@ void TestLidarReplay::replayGivesWhatDirectDecodingGives_data() {
 
 void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
     QFETCH(double, speed);
-    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "hdl32e-outdoor.pcap");
     LidarListener listener;
     QVERIFY(listener.openPcap(path.toStdString(), speed));
     QVERIFY(listener.waitForEnd());

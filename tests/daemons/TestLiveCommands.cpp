@@ -132,8 +132,7 @@ void TestLiveCommands::askAny(std::size_t i) {
 
 void TestLiveCommands::anyCommandAtAnyTime_data() {
     const Rows<unsigned> row("seed");
-    const QByteArray given = qgetenv("HERMES_SEED");
-    unsigned seed = given.isEmpty() ? std::random_device()() : given.toUInt();
+    unsigned seed = newSeed();
     const int trials = std::max(1, qEnvironmentVariableIntValue("HERMES_TRIALS"));
     for (int trial = 0; trial < trials; ++trial, ++seed)
         row(qPrintable(QString("HERMES_SEED=%1").arg(seed)), seed);

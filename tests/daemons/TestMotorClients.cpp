@@ -24,8 +24,7 @@ private Q_SLOTS:
 };
 
 void TestMotorClients::leaseIsExclusiveAndRunsOut() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     PatientClient other;
     QVERIFY(other.connectTo(address()).ok());
     QVERIFY(other.waitConnected().ok());
@@ -41,8 +40,7 @@ void TestMotorClients::leaseIsExclusiveAndRunsOut() {
 
 // Sent in one go: the stop is done first, and what was sent before it must not undo it.
 void TestMotorClients::whatAStopOvertakesIsVoid() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QTcpSocket socket;
     const QStringList place = address().split(':');
     socket.connectToHost("127.0.0.1", quint16(place.last().section(',', 0, 0).toUInt()));
@@ -74,8 +72,7 @@ void TestMotorClients::whatAStopOvertakesIsVoid() {
 }
 
 void TestMotorClients::takingOverStopsTheRobot() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     PatientClient other;
     QVERIFY(other.connectTo(address()).ok());
     QVERIFY(other.waitConnected().ok());
@@ -105,8 +102,7 @@ void TestMotorClients::takingOverStopsTheRobot() {
 }
 
 void TestMotorClients::silentClientIsStopped() {
-    launch({"safety.command_timeout_s=0.25"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"safety.command_timeout_s=0.25"});
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
@@ -117,8 +113,7 @@ void TestMotorClients::silentClientIsStopped() {
 // Longer than the mail to it holds: the cycle goes on, and tells how much was not read.
 void TestMotorClients::aBusyMainThreadDelaysNoStop() {
     plugServer();
-    launch({"safety.command_timeout_s=0.25"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"safety.command_timeout_s=0.25"});
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     client_->notify("control.acquire", QJsonObject{{"timeout_s", 10}});
@@ -140,8 +135,7 @@ void TestMotorClients::aBusyMainThreadDelaysNoStop() {
 
 // More than the mail to the loop holds.
 void TestMotorClients::manyCommandsAtOnceAreAllAnswered() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     constexpr int count = 300;
     QStringList names;
     for (int i = 0; i < count; ++i)
@@ -156,8 +150,7 @@ void TestMotorClients::manyCommandsAtOnceAreAllAnswered() {
 }
 
 void TestMotorClients::clientThatGoesIsStopped() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QString where = address();

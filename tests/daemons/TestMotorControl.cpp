@@ -53,8 +53,7 @@ private Q_SLOTS:
 };
 
 void TestMotorControl::setsTheControllersUp() {
-    launch({"pid.p=2", "pid.i=0.25", "pid.d=0", "pid.qpps=140000"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"pid.p=2", "pid.i=0.25", "pid.d=0", "pid.qpps=140000"});
     rig_->with([](std::vector<RoboClawEmulator> &all) {
         for (RoboClawEmulator &controller : all) {
             for (int motor : {0, 1}) {
@@ -130,8 +129,7 @@ void TestMotorControl::aSleepForgetsTheCharge() {
 }
 
 void TestMotorControl::drivesAndTellsWhere() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("odometry.reset", {{"x", 1}, {"y", 2}, {"theta", pi / 2}});
     call("control.acquire", {{"client", "test"}});
     const QJsonObject twist{{"vx", 0.4}, {"vy", 0.2}};
@@ -165,8 +163,7 @@ void TestMotorControl::drivesAndTellsWhere() {
 }
 
 void TestMotorControl::topicsCome() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QJsonObject first, wheels, power;
     std::vector<double> times; // of the odometry
     client_->subscribe("odometry", {{"queue", 100}}, [&](const TopicUpdate &update) {
@@ -204,8 +201,7 @@ void TestMotorControl::refusals_data() {
 }
 
 void TestMotorControl::refusals() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).code, int(ErrorCode::ControlHeld)); // no lease
     call("control.acquire", {{"timeout_s", 10}});
     FETCH(QString, method, QJsonObject, params, QString, names);
@@ -220,8 +216,7 @@ void TestMotorControl::refusals() {
 
 // As a client may send them that does not keep to JSON.
 void TestMotorControl::numbersWithoutAValueAreRefused() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QTcpSocket socket;
     socket.connectToHost("127.0.0.1", quint16(QUrl(address()).port()));
     QByteArray answers;
@@ -256,8 +251,7 @@ void TestMotorControl::missingDeviceIsNamedAndFoundWhenItComes() {
 
 // As hermesctl setup tests the wheels, and is killed.
 void TestMotorControl::oneWheelTurnsAndStopsByItself() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QCOMPARE(failure("motor.wheels", {{"front_left", 1}}).code, int(ErrorCode::ControlHeld));
     call("control.acquire");
     call("motor.wheels", {{"front_left", 1}});
@@ -272,9 +266,7 @@ void TestMotorControl::oneWheelTurnsAndStopsByItself() {
 }
 
 void TestMotorControl::emergencyStopLatches() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.5}});
     call("motor.estop");
     QVERIFY(state()["estop"].toBool());
@@ -293,9 +285,7 @@ void TestMotorControl::emergencyStopLatches() {
 }
 
 void TestMotorControl::stopsBrakeWithTheEmergencyDeceleration() {
-    launch({"safety.deceleration=2", "faults.encoder_hold_s=2"});
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld({"safety.deceleration=2", "faults.encoder_hold_s=2"});
     driveUntil({{"vx", 0.6}}, [this] { return atRim(rig_->fastest()) > 0.58; });
     call("motor.stop");
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
@@ -307,8 +297,7 @@ void TestMotorControl::stopsBrakeWithTheEmergencyDeceleration() {
 }
 
 void TestMotorControl::newPidIsWrittenAndReadBack() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("settings.set", {{"values", QJsonObject{{"pid", QJsonObject{{"p", 3}}}}}});
     QTRY_COMPARE(rig_->with([](auto &all) { return all[1].channel(1).pid().p; }), 3.0);
     QTRY_VERIFY(state()["ready"].toBool());
@@ -318,10 +307,8 @@ void TestMotorControl::twoLines() {
     rig_.reset();
     RoboClawRig front(folder_->filePath("front"), {controllerAt(0x80)});
     RoboClawRig rear(folder_->filePath("rear"), {controllerAt(0x80)});
-    launch({"controllers.1.url=" + url("front"), "controllers.2.url=" + url("rear"),
-            "controllers.2.address=128", "wheels.rear_left.reversed=true"});
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld({"controllers.1.url=" + url("front"), "controllers.2.url=" + url("rear"),
+                "controllers.2.address=128", "wheels.rear_left.reversed=true"});
     driveUntil({{"omega", 1}}, [&] {
         const auto f = front.speeds(), r = rear.speeds(); // rear_left is mounted the other way round
         return f[0] < -1000 && f[1] > 1000 && r[0] > 1000 && r[1] > 1000;
@@ -334,9 +321,7 @@ void TestMotorControl::twoLines() {
 }
 
 void TestMotorControl::shutdownStops() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.5}});
     client_.reset();
     daemon_->shutDown();

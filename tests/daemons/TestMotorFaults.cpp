@@ -24,9 +24,7 @@ private Q_SLOTS:
 };
 
 void TestMotorFaults::pulledLineRecoversWithoutAJump() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.5}});
     drive({{"vx", 0.5}}, 0.5);
     rig_->pull();
@@ -54,9 +52,7 @@ void TestMotorFaults::pulledLineRecoversWithoutAJump() {
 }
 
 void TestMotorFaults::controllerThatLostItsCountsMakesNoJump() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveUntil({{"vx", 0.5}}, [this] { return state()["pose"].toObject()["x"].toDouble() > 0.05; });
     call("motor.stop");
     QTRY_VERIFY(rig_->fastest() < 10);
@@ -109,8 +105,7 @@ void TestMotorFaults::faultsStopAndLatch_data() {
 
 void TestMotorFaults::faultsStopAndLatch() {
     FETCH(std::function<void(RoboClawRig &)>, breakIt, QString, setting, QString, name, QString, says);
-    launch({setting, "faults.hold_s=0.1"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({setting, "faults.hold_s=0.1"});
     const auto isLatched = [&] { return state()["latched"].toObject().contains(name); };
     const auto tryUntil = [&](const auto &isReached) { // at 25 Hz, for 10 s at most
         for (int i = 0; i < 250 && !isReached(); ++i) {
@@ -132,9 +127,7 @@ void TestMotorFaults::faultsStopAndLatch() {
 }
 
 void TestMotorFaults::deafControllerIsNamed() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.4}});
     rig_->with([](auto &all) { all[1].faults().silent = true; });
     QTRY_VERIFY(!state()["ready"].toBool());
@@ -161,8 +154,7 @@ void TestMotorFaults::wrongFirmwareIsNamed() {
 }
 
 void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     rig_->with([](auto &all) {
         for (RoboClawEmulator &controller : all)
             controller.faults().corrupt = 0.03;
@@ -177,8 +169,7 @@ void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
 }
 
 void TestMotorFaults::turningUncommandedIsAFault() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     double turned = RoboClawRig::now();
     QTimer turn;
     connect(&turn, &QTimer::timeout, this, [&] { // in steps that are shorter than a cycle

@@ -164,9 +164,7 @@ private Q_SLOTS:
         refused(run({"experiment", "corridor", "--out", path(), "--force"}), 2, "--log");
     }
     void realCapture() {
-        const QString capture = realData("hdl32e-outdoor.pcap");
-        if (capture.isEmpty())
-            QSKIP("no real capture here");
+        REAL_DATA(capture, "hdl32e-outdoor.pcap");
         ran({"experiment", "laboratory", "--log", capture, "--out", path()});
         QVERIFY(table(path("laboratory.csv"))[0]["lines_reference"].toInt() > 0);
     }

@@ -107,9 +107,7 @@ void TestQuality::realScans_data() {
 
 void TestQuality::realScans() {
     QFETCH(QString, name);
-    const QString path = realData(name);
-    if (path.isEmpty())
-        QSKIP(qPrintable(name + " is absent"));
+    REAL_DATA(path, name);
     const auto rows = sorted(ofLog(path));
     QVERIFY(!rows.empty());
     for (const auto &[key, row] : rows) {

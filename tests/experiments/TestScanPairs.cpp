@@ -46,9 +46,7 @@ void TestScanPairs::sharesOnRealLogs_data() {
 
 void TestScanPairs::sharesOnRealLogs() {
     FETCH(QString, log, QStringList, options, int, pairs, double, share);
-    const QString path = realData(log + "-corrected.log.gz");
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, log + "-corrected.log.gz");
     QCOMPARE(run(QStringList{"--log", path} + options), 0);
     const QJsonObject found = QJsonDocument::fromJson(output_).object();
     QCOMPARE(found["pairs"].toInt(), pairs);
@@ -67,9 +65,7 @@ void TestScanPairs::withoutAnyGuess_data() {
 
 void TestScanPairs::withoutAnyGuess() {
     FETCH(QString, log, QString, every, int, pairs, double, share);
-    const QString path = realData(log + "-corrected.log.gz");
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, log + "-corrected.log.gz");
     QCOMPARE(run({"--log", path, "--every", every, "--no-guess"}), 0);
     const QJsonObject found = QJsonDocument::fromJson(output_).object();
     QCOMPARE(found["pairs"].toInt(), pairs);
@@ -79,9 +75,7 @@ void TestScanPairs::withoutAnyGuess() {
 }
 
 void TestScanPairs::halvesMakeTheWhole() {
-    const QString path = realData("belgioioso-corrected.log.gz");
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "belgioioso-corrected.log.gz");
     double right = 0;
     int pairs = 0;
     for (const QStringList &half : {QStringList{"--half", "1"}, QStringList{"--half", "2"}, QStringList{}}) {
@@ -99,9 +93,7 @@ void TestScanPairs::halvesMakeTheWhole() {
 void TestScanPairs::probabilitiesAreCalibrated() {
     QStringList arguments{"--half", "2", "--every", "1", "--every", "5", "--every", "1"};
     for (const char *log : {"intel", "freiburg-079", "fhw", "belgioioso", "orebro"}) {
-        const QString path = realData(QLatin1String(log) + "-corrected.log.gz");
-        if (path.isEmpty())
-            QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+        REAL_DATA(path, QLatin1String(log) + "-corrected.log.gz");
         arguments += {"--log", path};
     }
     QCOMPARE(run(arguments, "calibration"), 0);

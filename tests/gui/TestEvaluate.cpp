@@ -73,9 +73,7 @@ private Q_SLOTS:
 
     // Against all pairs, one by one, as the rule says.
     void findsEveryPlaceMetAgain() {
-        const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-        qInfo("seed %u", seed);
-        std::mt19937 random(seed);
+        std::mt19937 random(newSeed());
         const Drive drive = wandering(random, 800);
         std::vector<double> way{0};
         for (std::size_t i = 1; i < drive.size(); ++i)
@@ -285,9 +283,7 @@ private Q_SLOTS:
     }
     void loopsOfRealLogsAreClosed() {
         FETCH(double, tracked, double, closed);
-        const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
-        if (log.isEmpty())
-            QSKIP("the logs of real robots are not here; HERMES_DATA names their folder");
+        REAL_DATA(log, QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
         const auto errorOf = [&](const char *loops) {
             const QString tum = path("real.tum");
             const Result r =

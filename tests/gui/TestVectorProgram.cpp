@@ -188,9 +188,7 @@ private Q_SLOTS:
         row("orebro", 236, 0);
     }
     void trajectoriesOfRealLogsAscend() {
-        const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
-        if (log.isEmpty())
-            QSKIP("the logs of real robots are not here; HERMES_DATA names their folder");
+        REAL_DATA(log, QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
         const Result r = ran({"map", log, "--corrected", "--out-trajectory", path("t.tum")});
         double last = -INFINITY;
         for (const QByteArray &line : contents(path("t.tum")).trimmed().split('\n')) {
@@ -266,26 +264,20 @@ private Q_SLOTS:
     }
     void realLogs() {
         QFETCH(QString, name);
-        const QString log = realData(name);
-        if (log.isEmpty())
-            QSKIP("the real logs are not here");
+        REAL_DATA(log, name);
         const Result r = ran({"map", log, "--corrected", "--every", "2", "--out-map", path("m.csv")});
         QVERIFY(json(r.out)["scans"].toInt() > 100);
         QVERIFY(contents(path("m.csv")).count('\n') > 100);
     }
 
     void realCapture() {
-        const QString capture = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-        if (capture.isEmpty())
-            QSKIP("the real capture is not here");
+        REAL_DATA(capture, "hdl32e-outdoor.pcap");
         const Result r = ran({"ring", capture});
         QVERIFY(r.out.count('\n') > 2000);
     }
 
     void realPacketOfAVlp16() {
-        const QString capture = realData(QStringLiteral("vlp16-single-packet.pcap"));
-        if (capture.isEmpty())
-            QSKIP("the real packet is not here");
+        REAL_DATA(capture, "vlp16-single-packet.pcap");
         const Result all = ran({"ring", capture, "--all"});
         QCOMPARE(all.out.count('\n'), 261);
         refused(run({"ring", capture, "--laser", "16"}), 1, "found a VLP-16, expected a laser from 0 to 15");

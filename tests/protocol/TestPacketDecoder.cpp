@@ -40,9 +40,7 @@ void TestPacketDecoder::elevationsAreMultiplesOfFourThirds() {
 }
 
 void TestPacketDecoder::packetsComeBackToTheLastBit() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     for (int round = 0; round < 50; ++round) {
         DataPacketWriter writer;
         std::vector<unsigned> written;

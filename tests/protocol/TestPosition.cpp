@@ -169,9 +169,7 @@ void TestPosition::aFaultChangesNothing() {
 }
 
 void TestPosition::aRealPacket() {
-    const QString path = realData(QStringLiteral("velodyne-position-packet.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "velodyne-position-packet.pcap");
     PcapReader reader;
     Datagram datagram;
     QVERIFY(reader.open(path.toStdString()));
@@ -188,9 +186,7 @@ void TestPosition::aRealPacket() {
 }
 
 void TestPosition::randomBytesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     GpsReader gps;
     Bytes bytes;
     for (int round = 0; round < 20000; ++round) {

@@ -92,9 +92,7 @@ void TestSerialFrames::stuffing() {
 }
 
 void TestSerialFrames::whateverIsStuffedComesBack() {
-    const unsigned int seed = std::random_device{}();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     for (int round = 0; round < 3000; ++round) {
         QByteArray bytes(int(random() % 1200), 0);
         const unsigned int zeros = 1 + random() % 300; // one in so many

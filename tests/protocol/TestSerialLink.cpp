@@ -162,10 +162,7 @@ void TestSerialLink::allArriveOnce_data() {
 
 void TestSerialLink::allArriveOnce() {
     QFETCH(int, oneIn);
-    const QByteArray given = qgetenv("HERMES_SEED");
-    const unsigned int seed = given.isEmpty() ? std::random_device{}() : given.toUInt();
-    qInfo("HERMES_SEED=%u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     LinkPair pair(11520);
     pair.damage = [&](QByteArray &frame) {
         if (oneIn == 0)

@@ -162,9 +162,7 @@ void TestTurnAssembler::turnsThatEndBeforeTheyBeginHaveNoSpeed() {
 }
 
 void TestTurnAssembler::randomBytesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     TurnAssembler::Options options;
     options.laser = PacketDecoder::allLasers;
     options.returns = Returns::Both;

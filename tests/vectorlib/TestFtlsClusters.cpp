@@ -102,9 +102,7 @@ private Q_SLOTS:
 
 void TestFtlsClusters::realClusters() {
     QFETCH(QString, log);
-    const QString path = realData(log + "-corrected.log.gz");
-    if (path.isEmpty())
-        QSKIP("the real recordings are absent");
+    REAL_DATA(path, log + "-corrected.log.gz");
     QProcess unpack;
     unpack.start("zcat", {path});
     QVERIFY(unpack.waitForFinished());

@@ -81,9 +81,7 @@ void TestGlobalPairMatcher::anyMotionIsFound_data() {
 
 void TestGlobalPairMatcher::anyMotionIsFound() {
     FETCH(int, world, int, rays, double, turn);
-    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     const ScanWorld place = world == 0 ? hall() : ScanWorld::grove();
     const ScanWorld::Scanner scanner{rays, 2 * pi * turn, 0.01};
     // A scanner of half a turn may look elsewhere: less of a turn is sure to overlap.
@@ -112,9 +110,7 @@ void TestGlobalPairMatcher::anyMotionIsFound() {
 }
 
 void TestGlobalPairMatcher::motionAndItsInverse() {
-    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     std::uniform_real_distribution<double> shift(-1.5, 1.5), angle(-pi, pi);
     GlobalPairMatcher match;
     for (int i = 0; i < 30; ++i) {

@@ -64,9 +64,7 @@ private Q_SLOTS:
 };
 
 void TestNearLines::noneIsMissed() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     std::uniform_real_distribution<double> size(1, 40), shift(-3, 0.5), turn(0, pi);
     NearLines lines;
     std::size_t found = 0;

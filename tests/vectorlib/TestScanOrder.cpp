@@ -166,9 +166,7 @@ void TestScanOrder::aClockwiseScanIsReversed() {
 }
 
 void TestScanOrder::aScanWithoutOrderIsSorted() {
-    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     ScanOrder ordered;
     for (std::size_t n : {3, 10, 100, 300}) { // of a turn of 360: the widest gap is behind the last
         Points scan = turn();
@@ -199,9 +197,7 @@ void TestScanOrder::matchersTellTheSame_data() {
 
 void TestScanOrder::matchersTellTheSame() {
     FETCH(int, order, double, turn);
-    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     const Matchers match{2 * pi * turn, int(720 * turn) + (turn < 1)};
     int told = 0, same = 0;
     for (int i = 0; i < 25; ++i) {

@@ -103,9 +103,7 @@ void TestLayoutFile::anyFile() {
 
 // Bytes of a layout, changed or cut at random.
 void TestLayoutFile::anyState() {
-    const quint32 seed = QRandomGenerator::global()->generate();
-    qInfo("seed %u", seed);
-    QRandomGenerator random(seed);
+    QRandomGenerator random(newSeed());
     { LayoutWindow(file_, {"127.0.0.1:1"}).window->close(); }
     QVERIFY(Layouts(file_).damage().isEmpty());
     QSettings file(file_, QSettings::IniFormat);
@@ -129,9 +127,7 @@ void TestLayoutFile::anyState() {
 
 // As this program wrote it, but for some bytes, or the rest.
 void TestLayoutFile::ownFileDamaged() {
-    const quint32 seed = QRandomGenerator::global()->generate();
-    qInfo("seed %u", seed);
-    QRandomGenerator random(seed);
+    QRandomGenerator random(newSeed());
     {
         LayoutWindow one(file_, {"127.0.0.1:1"});
         one.saveAs("Bench");
