@@ -5,6 +5,7 @@
 #include "common/client/Client.h"
 #include "tests/support/NoisyLine.h"
 #include "tests/support/Patience.h"
+#include "tests/support/PatientClient.h"
 
 #include <set>
 
@@ -392,9 +393,7 @@ void TestSerialLine::aPortThatComesBackIsHeardAgain() {
     QTRY_COMPARE(health()["level"].toString(), QString("error"));
     QVERIFY(health()["message"].toString().contains("the device is gone"));
     adapter = plugIn();
-    Client hopeful;
-    hopeful.connectTo("serial://" + adapter->device(1) + "?baud=115200&protocol=serial");
-    QVERIFY(hopeful.waitConnected());
+    ConnectedClient hopeful("serial://" + adapter->device(1) + "?baud=115200&protocol=serial");
     QVERIFY(hopeful.callAndWait("count", QJsonArray{1}));
     QCOMPARE(health()["level"].toString(), QString("ok"));
 }

@@ -1,5 +1,6 @@
 // A matcher that is killed while it maps: what it remembered is there again, and the drive goes on.
 #include "RingDrive.h"
+#include "tests/support/PatientClient.h"
 
 #include <QProcess>
 #include <QRegularExpression>
@@ -51,9 +52,7 @@ void TestKilledDrive::startMatcher() {
     QString log;
     const QRegularExpression listens("127.0.0.1:(\\d+),");
     QTRY_VERIFY((log += process.readAll()).contains(listens));
-    client_ = std::make_unique<PatientClient>();
-    QVERIFY(client_->connectTo(asOwner("127.0.0.1:" + listens.match(log).captured(1))).ok());
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner("127.0.0.1:" + listens.match(log).captured(1)));
     QTRY_VERIFY(source->hasSubscribers("odometry") && source->hasSubscribers("scan2d"));
     listen();
 }

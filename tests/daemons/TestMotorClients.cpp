@@ -25,9 +25,7 @@ private Q_SLOTS:
 
 void TestMotorClients::leaseIsExclusiveAndRunsOut() {
     launchReady();
-    PatientClient other;
-    QVERIFY(other.connectTo(address()).ok());
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(address());
     QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 1}})["holder"].toString(),
              QString("anna"));
     const auto refused = other.callAndWait("motor.drive", QJsonObject{{"vx", 0.1}});
@@ -73,9 +71,7 @@ void TestMotorClients::whatAStopOvertakesIsVoid() {
 
 void TestMotorClients::takingOverStopsTheRobot() {
     launchReady();
-    PatientClient other;
-    QVERIFY(other.connectTo(address()).ok());
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(address());
     call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QJsonObject ask{{"client", "bert"}, {"timeout_s", 10}};

@@ -22,9 +22,7 @@ private Q_SLOTS:
 
 // From before the client writes the request to the last byte of the stop of both controllers.
 void TestMotorStops::emergencyStopReachesTheWire() {
-    PatientClient client;
-    QVERIFY(client.connectTo("127.0.0.1:" + port_).ok());
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client("127.0.0.1:" + port_);
     std::vector<double> times;
     for (int trial = 0; int(times.size()) < trials(); ++trial) {
         QTRY_VERIFY(client.callAndWait("control.acquire", QJsonObject{{"timeout_s", 10}}).ok());

@@ -80,9 +80,7 @@ void TestSupervisor::launch(const QJsonArray &processes) {
     QVERIFY(!ended);
     const auto launched = supervisor_->launch();
     QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
-    client_ = std::make_unique<PatientClient>();
-    client_->connectTo(asOwner(supervisor_->info().listen.front()));
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner(supervisor_->info().listen.front()));
 }
 
 QJsonObject TestSupervisor::process(const QString &name) {
@@ -161,9 +159,7 @@ void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
     qunsetenv("NOTIFY_SOCKET");
     QVERIFY(!ended);
     QVERIFY(supervisor_->launch().ok());
-    client_ = std::make_unique<PatientClient>();
-    client_->connectTo(asOwner(supervisor_->info().listen.front()));
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner(supervisor_->info().listen.front()));
     const QJsonObject status = call("daemon.status")->toObject();
     QCOMPARE(status["state"].toString(), QString("degraded"));
     QVERIFY(QJsonDocument(status).toJson().contains("line 2"));

@@ -2,6 +2,7 @@
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/drive/Stick.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 
 #include <QLabel>
 #include <QLineEdit>
@@ -96,9 +97,7 @@ void TestDrivePanel::init() {
     window_->show();
     window_->activateWindow();
     QVERIFY(QTest::qWaitForWindowActive(window_.get()));
-    client_ = std::make_unique<Client>();
-    client_->connectTo(robot_->address());
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(robot_->address());
     QTRY_VERIFY(find<Stick>("stick")->isEnabled() && drive_->stateAge().isFresh());
 }
 
@@ -298,9 +297,7 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
 }
 
 void TestDrivePanel::whoTakesOverKeepsTheControl() {
-    Client owner; // who may
-    owner.connectTo(asOwner(robot_->address()));
-    QVERIFY(owner.waitConnected().ok());
+    ConnectedClient owner(asOwner(robot_->address())); // who may
     QTest::keyPress(window_.get(), Qt::Key_W);
     awaitMotion();
     const QJsonObject wish{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}};
@@ -441,9 +438,7 @@ void TestDrivePanel::speedLimitInItsUnit() {
     type("7"); // more than it can
     QCOMPARE(drive_->limit(), 1.0);
     QCOMPARE(speed->text(), QString("1.00"));
-    Client owner;
-    owner.connectTo(asOwner(robot_->address()));
-    QVERIFY(owner.waitConnected().ok());
+    ConnectedClient owner(asOwner(robot_->address()));
     const QJsonObject slower{{"motion", QJsonObject{{"vx", 0.5}}}};
     QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", slower}}).ok());
     QTRY_COMPARE(speed->text(), QString("0.50")); // another largest speed

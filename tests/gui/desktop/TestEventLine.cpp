@@ -2,6 +2,7 @@
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 
 #include <QTreeView>
 
@@ -91,9 +92,7 @@ void TestEventLine::otherClientTakesTheControl() {
     FakeRobot robot;
     OpenWindow window(robot.address());
     QVERIFY(window.show());
-    Client other;
-    other.connectTo(robot.address());
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(robot.address());
     const QJsonObject patrol{{"client", "patrol"}, {"timeout_s", 30}};
     QVERIFY(other.callAndWait("control.acquire", patrol).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(column(window, EventTable::TextColumn).contains("patrol has taken the control"),

@@ -2,6 +2,7 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 
 #include <QCheckBox>
 #include <QLabel>
@@ -195,9 +196,7 @@ void TestEvents::whoStoppedIsTold() {
     FakeRobot robot;
     OpenWindow window(robot.address());
     QVERIFY(window.show());
-    Client other;
-    other.connectTo(robot.address());
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(robot.address());
     QVERIFY(other.callAndWait("motor.estop", QJsonObject{{"client", "anna on laptop7"}}).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(textOf(window).contains("emergency stop by anna on laptop7"),
                               qPrintable(textOf(window)), 10000);

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -105,9 +106,7 @@ void TestHeldKeys::drivesOnlyOnce() {
 
 void TestHeldKeys::refusedItDoesNotDriveLater() {
     const QString key = "Up";
-    auto other = std::make_unique<Client>();
-    other->connectTo(robot_->address());
-    QVERIFY(other->waitConnected().ok());
+    auto other = std::make_unique<ConnectedClient>(robot_->address());
     QVERIFY(other->callAndWait("control.acquire", QJsonObject{{"client", "patrol"}, {"timeout_s", 30}}).ok());
     hold(key);
     QTRY_VERIFY(open_->drive.problem().contains("patrol"));

@@ -3,6 +3,7 @@
 #include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 #include "tests/gui/desktop/TcpLink.h"
+#include "tests/support/PatientClient.h"
 
 #include <QLabel>
 #include <QLineEdit>
@@ -178,9 +179,7 @@ void TestRecordingEnd::aStartWhoseLinkBreaksIsTakenBack() {
     RobotProcesses robot;
     robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
     Fleet fleet;
-    Client client;
-    client.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
     TcpLink link(robot.port("seriallogger"));
     link.cutAfter("record.start");
     QVERIFY(fleet.add(QString("127.0.0.1:%1").arg(link.port())).ok());

@@ -1,6 +1,7 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/PatientClient.h"
 
 #include <QComboBox>
 #include <QFile>
@@ -70,9 +71,7 @@ void TestSettingsPanel::init() {
     panel_ = window_->panel<SettingsPanel>("settings");
     QVERIFY(window_->choose(window_->fleet.robot()->withName("motorcontrol")));
     QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
-    client_ = std::make_unique<Client>();
-    client_->connectTo(asOwner(QString("127.0.0.1:%1").arg(port)));
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner(QString("127.0.0.1:%1").arg(port)));
 }
 
 void TestSettingsPanel::cleanup() {

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/SetupPanel.h"
 #include "gui/setup/WheelTurn.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/PatientClient.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -242,9 +243,7 @@ void TestSetupPanel::outOfSightNoWheelTurns() {
 /// While the control is asked for.
 void TestSetupPanel::givenUpEarlyLeavesTheControl() {
     open(true);
-    Client motors;
-    motors.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
-    QVERIFY(motors.waitConnected());
+    ConnectedClient motors(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
     WheelTurn turn(motors, "test", Client::defaultTimeout);
     bool isOver = false;
     Result<double> measured = 0.0;

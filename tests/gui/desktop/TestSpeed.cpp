@@ -4,6 +4,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
+#include "tests/support/PatientClient.h"
 #include "tests/support/ThreadTime.h"
 
 #include <QPlainTextEdit>
@@ -279,9 +280,7 @@ void TestSpeed::memoryOfAnHour() {
     program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
                   {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.ini")});
     QVERIFY(program.waitForStarted());
-    Client client;
-    client.connectTo(QString("127.0.0.1:%1").arg(port));
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client(QString("127.0.0.1:%1").arg(port));
     quint64 seen = 0;
     client.subscribe("pose", {{"max_rate_hz", 10}},
                      [&seen](const TopicUpdate &update) { seen = update.seq; });
