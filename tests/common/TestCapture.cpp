@@ -262,14 +262,11 @@ void TestCapture::filesThatAreNoCapture_data() {
 void TestCapture::filesThatAreNoCapture() {
     QFETCH(QByteArray, content);
     QTemporaryDir folder;
-    QFile file(folder.filePath(QStringLiteral("c.pcap")));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(content);
-    file.close();
+    const QString file = folder.filePath(QStringLiteral("c.pcap"));
+    put(file, content);
     PcapReader reader;
-    QVERIFY(!reader.open(file.fileName().toStdString()));
-    QVERIFY2(reader.error().find(file.fileName().toStdString() + ": not a capture") == 0,
-             reader.error().c_str());
+    QVERIFY(!reader.open(file.toStdString()));
+    QVERIFY2(reader.error().find(file.toStdString() + ": not a capture") == 0, reader.error().c_str());
     QVERIFY(!reader.open("/nonexistent/c.pcap"));
     QCOMPARE(QByteArray::fromStdString(reader.error()),
              QByteArray("/nonexistent/c.pcap: cannot be opened: No such file or directory"));
@@ -290,14 +287,12 @@ void TestCapture::stampsBeyondNanosecondsAreRefused() {
         return words({6, 76, 0, high, low, 44, 44}) + frame + words({76});
     };
     QTemporaryDir folder;
-    QFile file(folder.filePath("future.pcapng"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}));
-    file.write(words({1, 32, 1, 0, 0x00010009, 0, 0, 32})); // option 9: a tick is 10^-0 s
-    file.write(record(0, 1700000000) + record(0x7FFFFFFF, 0));
-    file.close();
+    const QString file = folder.filePath("future.pcapng");
+    put(file, words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}) +
+                  words({1, 32, 1, 0, 0x00010009, 0, 0, 32}) + // option 9: a tick is 10^-0 s
+                  record(0, 1700000000) + record(0x7FFFFFFF, 0));
     PcapReader reader;
-    QVERIFY2(reader.open(file.fileName().toStdString()), reader.error().c_str());
+    QVERIFY2(reader.open(file.toStdString()), reader.error().c_str());
     Datagram d;
     QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
     QCOMPARE(qint64(d.stamp_ns), qint64(1700000000) * 1000000000);

@@ -92,8 +92,7 @@ void TestDaemon::wrongFileIsNoWrongCommandLine_data() {
 void TestDaemon::wrongFileIsNoWrongCommandLine() {
     FETCH(QStringList, options, bool, withFile, int, status);
     const QTemporaryDir folder;
-    QFile file(folder.filePath("tested.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("{\"gain\": 3}") > 0 && file.flush());
+    put(folder.filePath("tested.json"), "{\"gain\": 3}");
     TestedDaemon tested;
     tested.settings().declare(Field::number("offset", "At most the gain").byDefault(0));
     tested.settings().addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
@@ -103,7 +102,7 @@ void TestDaemon::wrongFileIsNoWrongCommandLine() {
     });
     QStringList line{"tested", "--check"};
     if (withFile)
-        line << "--config" << file.fileName();
+        line << "--config" << folder.filePath("tested.json");
     QCOMPARE(tested.prepare(line + options).value_or(-1), status);
 }
 

@@ -265,9 +265,7 @@ void TestInterfaces::socketsHaveAnOwner() {
     const std::optional<unsigned> mine(::geteuid());
     QVERIFY(ownerOfSocket(from, to) == mine);
     QVERIFY(!ownerOfSocket(from, {address, quint16(to.port ^ 1)}));
-    QFile file(table);
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    const QByteArray text = file.readAll();
+    const QByteArray text = contentOf(table);
     QVERIFY2(ownerInSocketTable(text, from, to) == mine, text.constData());
     QVERIFY(!ownerInSocketTable(text, from, {address, quint16(to.port ^ 1)}));
 }

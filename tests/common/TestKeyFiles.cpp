@@ -16,11 +16,6 @@ using namespace hermes;
 
 namespace {
 
-QByteArray contents(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
 /// Files of this program cannot be longer: what is beyond is not written, as on a full disk.
 class LongestFile {
 public:
@@ -54,17 +49,16 @@ void TestKeyFiles::aFullDiskLeavesNoHalfLine() {
     QVERIFY(authority.init("owner", 10, 10));
     const auto made = authority.issue({"anna", "observer"}, 10);
     QVERIFY2(made, made ? "" : qPrintable(made.error().message));
-    QFile list(folder.filePath("keys/revoked"));
-    QVERIFY(list.open(QIODevice::WriteOnly) && list.write("# " + QByteArray(998, 'x') + '\n') == 1001);
-    list.close();
-    const QByteArray before = contents(list.fileName());
+    const QString list = folder.filePath("keys/revoked");
+    put(list, "# " + QByteArray(998, 'x') + '\n');
+    const QByteArray before = contentOf(list);
     {
         const LongestFile limit(before.size() + 10);
         const auto revoked = authority.revoke("anna");
         QVERIFY(!revoked);
         QVERIFY2(revoked.error().message.contains("File too large"), qPrintable(revoked.error().message));
     }
-    QCOMPARE(contents(list.fileName()), before);
+    QCOMPARE(contentOf(list), before);
     QVERIFY(authority.revoke("anna"));
     QCOMPARE(KeyFolder::revoked(folder.filePath("keys"))->size(), 1);
 }

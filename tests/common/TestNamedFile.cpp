@@ -29,14 +29,8 @@ private Q_SLOTS:
 private:
     QString at(const QString &name) const { return root_->filePath(name); }
     QStringList folders() const { return {at("allowed")}; }
-    void put(const QString &name, const QByteArray &bytes) const {
-        QFile file(at(name));
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size());
-    }
-    QByteArray content(const QString &name) const {
-        QFile file(at(name));
-        return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-    }
+    void put(const QString &name, const QByteArray &bytes) const { ::put(at(name), bytes); }
+    QByteArray content(const QString &name) const { return contentOf(at(name)); }
     void link(const QByteArray &target, const QString &name) const {
         QCOMPARE(::symlink(target.constData(), QFile::encodeName(at(name)).constData()), 0);
     }

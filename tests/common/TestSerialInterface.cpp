@@ -276,9 +276,7 @@ static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseco
     QVERIFY(QDir(system.path()).mkpath("class/tty/ttyUSB7/device"));
     for (const auto &[name, text] : {std::pair("class/tty/ttyUSB7/device/latency_timer", milliseconds),
                                      std::pair("ttyUSB7", QByteArray())}) {
-        QFile file(system.filePath(name));
-        QVERIFY(file.open(QIODevice::WriteOnly));
-        file.write(text);
+        put(system.filePath(name), text);
     }
     QVERIFY(QFile::link(system.filePath("ttyUSB7"), system.filePath("motors")));
 }

@@ -149,17 +149,12 @@ void TestSettings::savesOnlyChangesAndReadsThemBack() {
     QVERIFY(settings->load(file));
     QCOMPARE(settings->text("mode"), QString("file"));
     QCOMPARE(*settings->save(), file); // remembered
-    QFile saved(file);
-    QVERIFY(saved.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(saved.readAll()).object(), (QJsonObject{{"mode", "file"}}));
+    QCOMPARE(QJsonDocument::fromJson(contentOf(file)).object(), (QJsonObject{{"mode", "file"}}));
 }
 
 void TestSettings::readsWhatWindowsWrites() {
-    QFile file(folder.filePath("windows.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("\xef\xbb\xbf{\r\n\"on\": false\r\n}\r\n");
-    file.close();
-    QVERIFY(settings->load(file.fileName()));
+    put(folder.filePath("windows.json"), "\xef\xbb\xbf{\r\n\"on\": false\r\n}\r\n");
+    QVERIFY(settings->load(folder.filePath("windows.json")));
     QVERIFY(!settings->flag("on"));
 }
 
@@ -191,13 +186,11 @@ void TestSettings::fileErrorsNameFileAndPlace_data() {
 
 void TestSettings::fileErrorsNameFileAndPlace() {
     FETCH(QByteArray, text, QString, says);
-    QFile file(folder.filePath("bad.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(text);
-    file.close();
-    const auto result = settings->load(file.fileName());
+    const QString file = folder.filePath("bad.json");
+    put(file, text);
+    const auto result = settings->load(file);
     QVERIFY(!result);
-    QVERIFY2(result.error().message.contains(file.fileName()), qPrintable(result.error().message));
+    QVERIFY2(result.error().message.contains(file), qPrintable(result.error().message));
     QVERIFY2(result.error().message.contains(says), qPrintable(result.error().message));
     QVERIFY2(!result.error().message.endsWith('.'), "more may follow in the sentence");
     QCOMPARE(settings->values(), settings->defaults());

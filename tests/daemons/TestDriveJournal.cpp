@@ -21,11 +21,6 @@ using vectorlib::Transformation2D;
 
 namespace {
 
-QByteArray contentOf(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
 QString difference(const MappedDrive &a, const MappedDrive &b) {
     const vectorlib::LoopCloser &x = a.loops, &y = b.loops;
     if (x.scans() != y.scans() || x.keys().size() != y.keys().size() ||

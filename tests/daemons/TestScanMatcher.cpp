@@ -114,10 +114,8 @@ void TestScanMatcher::fullDiskLeavesNoFile() {
 
 void TestScanMatcher::loadOfABadFileNamesTheLine() {
     drive(0, 3);
-    QFile file(folder->filePath("bad.csv"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
-    file.close();
+    put(folder->filePath("bad.csv"),
+        "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
     const Error error = failure("map.load", {{"path", "bad.csv"}});
     QVERIFY2(error.message.contains("bad.csv:2"), qPrintable(error.message));
     QVERIFY(call("map.get")["size"].toInt() > 0);                                         // the old map stays

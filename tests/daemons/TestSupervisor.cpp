@@ -146,10 +146,7 @@ void TestSupervisor::endInOrderIsNotStartedAgain() {
 /// By hand it ends; as a service it stays, starts nothing, and tells; the file is not written over.
 void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
     const QString name = folder_->filePath("supervisor.json");
-    QFile file(name);
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("{\n\"processes\": [}\n");
-    file.close();
+    put(name, "{\n\"processes\": [}\n");
     const QStringList line{"hermes-supervisor", "--listen", "tcp://127.0.0.1:0", "--config", name};
     QVERIFY(Supervisor().prepare(line).has_value());
     qputenv("NOTIFY_SOCKET", folder_->filePath("nobody").toUtf8());

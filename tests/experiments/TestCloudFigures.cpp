@@ -14,7 +14,7 @@ namespace {
 /// The rows of a CSV file by the names of its columns.
 QVector<QMap<QByteArray, QByteArray>> table(const QString &path) {
     QVector<QMap<QByteArray, QByteArray>> rows;
-    const QList<QByteArray> text = contents(path).trimmed().split('\n'), names = text.value(0).split(',');
+    const QList<QByteArray> text = contentOf(path).trimmed().split('\n'), names = text.value(0).split(',');
     for (const QByteArray &line : text.mid(1)) {
         const QList<QByteArray> fields = line.split(',');
         rows.resize(rows.size() + 1);
@@ -117,7 +117,7 @@ private Q_SLOTS:
         QVERIFY(inc["first_line_turned_deg"].toDouble() > optimum["first_line_turned_deg"].toDouble());
         QCOMPARE(table(path("threshold.csv")).size(), 99);
         for (const char *picture : {"threshold-clouds.svg", "threshold-lines.svg"})
-            QVERIFY2(contents(path(picture)).endsWith("</svg>\n"), picture);
+            QVERIFY2(contentOf(path(picture)).endsWith("</svg>\n"), picture);
     }
 
     // Thesis 5.2.2: without a lower bound near points are false outliers; without an upper one far clusters
@@ -127,7 +127,7 @@ private Q_SLOTS:
         QMap<QByteArray, QMap<QByteArray, QByteArray>> of;
         for (const auto &row : table(path("adaptive-threshold.csv"))) {
             of[row["case"]] = row;
-            QVERIFY(contents(path("adaptive-threshold-" + row["case"] + ".svg")).endsWith("</svg>\n"));
+            QVERIFY(contentOf(path("adaptive-threshold-" + row["case"] + ".svg")).endsWith("</svg>\n"));
         }
         QCOMPARE(of.size(), 4);
         QVERIFY(of["near-unbounded"]["points_lost"].toInt() > 50);
@@ -141,7 +141,7 @@ private Q_SLOTS:
         ran({"experiment", "real-segmentation", "--log", data("corrected.log"), "--out", path()});
         QCOMPARE(table(path("real-segmentation.csv")).size(), 3);
         for (const char *kind : {"corridor", "empty-room", "laboratory"})
-            QVERIFY(contents(path(qPrintable(QString("real-segmentation-%1.svg").arg(kind))))
+            QVERIFY(contentOf(path(qPrintable(QString("real-segmentation-%1.svg").arg(kind))))
                         .contains("outliers"));
     }
 
@@ -171,11 +171,11 @@ private Q_SLOTS:
 
     void cloudsAndTablesStandBesideThePlots() {
         ran({"experiment", "semicircle", "--max-points", "20", "--out", path()});
-        QVERIFY(contents(path("semicircle-cloud.svg")).endsWith("</svg>\n"));
+        QVERIFY(contentOf(path("semicircle-cloud.svg")).endsWith("</svg>\n"));
         ran({"experiment", "edges", "--runs", "2", "--max-points", "200", "--noise", "0.002", "--out",
              path()});
-        QVERIFY(contents(path("edges-cloud.svg")).contains("noise 2 mm"));
-        QVERIFY(contents(path("edges.tex")).contains("200 & 4 & +0.0 & +0.0"));
+        QVERIFY(contentOf(path("edges-cloud.svg")).contains("noise 2 mm"));
+        QVERIFY(contentOf(path("edges.tex")).contains("200 & 4 & +0.0 & +0.0"));
         QByteArrayList algorithms;
         for (const auto &row : table(path("edges.csv"))) {
             algorithms << row["algorithm"];

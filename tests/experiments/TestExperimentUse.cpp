@@ -8,7 +8,7 @@ class TestExperimentUse : public QObject {
 
     QString path(const char *name) const { return folder_.filePath(QLatin1String(name)); }
     static QString log() { return data("corrected.log"); }
-    static QByteArray firstLine(const QString &file) { return contents(file).split('\n').first(); }
+    static QByteArray firstLine(const QString &file) { return contentOf(file).split('\n').first(); }
 
 private Q_SLOTS:
     void initTestCase() { QVERIFY(folder_.isValid()); }
@@ -92,10 +92,10 @@ private Q_SLOTS:
         QVERIFY(!QFileInfo::exists(path("new")));
     }
     void folderThatIsAFileIsRefused() {
-        write(path("file"), "precious");
+        put(path("file"), "precious");
         refused(run({"experiment", "criterion", "--out", path("file/folder")}), 1,
                 "file/folder: cannot be made");
-        QCOMPARE(contents(path("file")), QByteArray("precious"));
+        QCOMPARE(contentOf(path("file")), QByteArray("precious"));
     }
 
     // What is published is of one log, which nobody else has.
@@ -112,7 +112,7 @@ private Q_SLOTS:
         QVERIFY2(json(r.out)["area_at_10_deg_m2"].toDouble() > 1, r.out.constData());
         QVERIFY(json(r.out)["area_at_50_cm_m2"].toDouble() > 1);
         QVERIFY(json(r.out)["grows_throughout"].toBool());
-        QCOMPARE(contents(path("free-copy/free-copy.json")), r.out);
+        QCOMPARE(contentOf(path("free-copy/free-copy.json")), r.out);
     }
 
     // There is no right place in another building, and so no error.
@@ -124,7 +124,7 @@ private Q_SLOTS:
             ran({"experiment", "places", "--log", log(), "--other", log(), "--out", path("other")});
         QCOMPARE(firstLine(path("other/places.csv")),
                  QByteArray("scan,accepted,places,score,probability,time_ms"));
-        for (const QByteArray &row : contents(path("other/places.csv")).trimmed().split('\n'))
+        for (const QByteArray &row : contentOf(path("other/places.csv")).trimmed().split('\n'))
             QCOMPARE(row.count(','), 5);
         QVERIFY(!json(r.out).contains("first_right"));
         QVERIFY(json(r.out).contains("found_wrong"));
@@ -134,7 +134,7 @@ private Q_SLOTS:
         const Result r = ran({"experiment", "drawn-places", "--runs", "1", "--out", path("drawn")});
         QCOMPARE(json(r.out)["sets"].toObject()["home"].toObject()["scans"].toInt(), 50);
         QVERIFY(json(r.out)["slope_of_time"].toDouble() > 0);
-        QCOMPARE(contents(path("drawn/drawn-places.json")), r.out);
+        QCOMPARE(contentOf(path("drawn/drawn-places.json")), r.out);
         QVERIFY(firstLine(path("drawn/drawn-places.csv")).startsWith("set,has_place,outcome,"));
     }
     void trustIsFittedToLogsAndDrawnBuildings() {
@@ -147,7 +147,7 @@ private Q_SLOTS:
         }
         for (const char *set :
              {"\"logs\"", "\"logs, map with drift\"", "\"logs, other building\"", "\"worlds\""})
-            QVERIFY2(contents(path("trust/place-trust.csv")).contains(set), set);
+            QVERIFY2(contentOf(path("trust/place-trust.csv")).contains(set), set);
     }
     void trustOfPosesIsFittedToOneHalf() {
         QVERIFY(QFile::copy(log(), path("copy.log")));
@@ -162,7 +162,7 @@ private Q_SLOTS:
                 QVERIFY2(result["poses"].toInt() > 0, part);
             }
         }
-        QVERIFY(contents(path("poses/pose-trust.csv")).contains("\"drawn "));
+        QVERIFY(contentOf(path("poses/pose-trust.csv")).contains("\"drawn "));
         QCOMPARE(run({"experiment", "places", "--log", log(), "--other", log(), "--other", log(), "--out",
                       path("two")})
                      .status,

@@ -16,7 +16,7 @@ using Row = QMap<QByteArray, QByteArray>;
 /// The rows of a CSV file by the names of its columns.
 QVector<Row> table(const QString &path) {
     QVector<Row> rows;
-    const QList<QByteArray> text = contents(path).trimmed().split('\n'), names = text.value(0).split(',');
+    const QList<QByteArray> text = contentOf(path).trimmed().split('\n'), names = text.value(0).split(',');
     for (const QByteArray &line : text.mid(1)) {
         const QList<QByteArray> fields = line.split(',');
         rows.resize(rows.size() + 1);
@@ -172,7 +172,7 @@ void TestRegistrationExperiments::spaceOfTransformations() { // paper figures 2 
         QVERIFY(std::abs(std::sin(2 * epsilon) - one["reliability"].toDouble()) < 1e-9);
     }
     QCOMPARE(table(path("space/registration-space.csv")).size(), 3 * (5 + 2 + 7));
-    const QByteArray latex = contents(path("space/registration-space.tex"));
+    const QByteArray latex = contentOf(path("space/registration-space.tex"));
     QVERIFY(latex.contains("\\includegraphics") && latex.endsWith("\\end{document}\n"));
     if (hasMatplotlib())
         QCOMPARE(QDir(path("space")).entryList({"*.svg"}).size(), 4);
@@ -237,7 +237,7 @@ void TestRegistrationExperiments::weightingHelpsMostAmongPillars() { // paper ta
     QFETCH(QStringList, options);
     const QByteArray out = options.isEmpty() ? "weighting" : "weighting-known";
     QVERIFY(!experiment(QStringList{"weighting", "--runs", "20"} + options, out).isEmpty());
-    const QByteArray latex = contents(path(out) + "/weighting.tex");
+    const QByteArray latex = contentOf(path(out) + "/weighting.tex");
     QVERIFY(latex.endsWith("\\end{document}\n") && latex.contains("published"));
     const auto rows = table(path(out) + "/weighting-tables.csv");
     QCOMPARE(rows.size(), 3);
@@ -262,8 +262,8 @@ void TestRegistrationExperiments::weightsNarrowTheScatter() { // paper figure 8 
     if (!hasMatplotlib())
         return;
     QCOMPARE(QDir(path("dispersion")).entryList({"*.svg"}).size(), 14);
-    QVERIFY(contents(path("dispersion/dispersion-a.svg")).contains("to scale"));
-    QVERIFY(contents(path("dispersion/dispersion-a-enlarged.svg")).contains("enlarged 5 times"));
+    QVERIFY(contentOf(path("dispersion/dispersion-a.svg")).contains("to scale"));
+    QVERIFY(contentOf(path("dispersion/dispersion-a-enlarged.svg")).contains("enlarged 5 times"));
 }
 
 void TestRegistrationExperiments::reliabilityFallsWhereWallsAreHidden() { // paper figure 9
@@ -276,7 +276,7 @@ void TestRegistrationExperiments::reliabilityFallsWhereWallsAreHidden() { // pap
     QVERIFY2(least >= 0 && least < 0.9, qPrintable(QString::number(least)));
     QVERIFY2(most > 0.95 && most <= 1, qPrintable(QString::number(most)));
     if (hasMatplotlib())
-        QVERIFY(contents(path("reliability/reliability-circles.svg")).contains("lowest single scan, R = "));
+        QVERIFY(contentOf(path("reliability/reliability-circles.svg")).contains("lowest single scan, R = "));
 }
 
 QTEST_GUILESS_MAIN(TestRegistrationExperiments)

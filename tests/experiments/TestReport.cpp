@@ -213,7 +213,7 @@ void TestReport::tablesHaveTheirRows() {
 void TestReport::picturesAreWellFormed() {
     QTemporaryDir folder;
     const QString file = folder.filePath("odd.json");
-    write(file, world("a <b> & c", "[0,0,0],[0.3,0.1,0.2]"));
+    put(file, world("a <b> & c", "[0,0,0],[0.3,0.1,0.2]"));
     for (const QStringList &what :
          {QStringList{file, "--case", "0"}, QStringList{file, "--overall"},
           QStringList{"pillars", "--case", "25"}, QStringList{"quadratic", "--overall"}}) {
@@ -231,7 +231,7 @@ void TestReport::picturesAreWellFormed() {
 void TestReport::documentsCompile() {
     QTemporaryDir folder;
     const QString file = folder.filePath("odd.json");
-    write(file, world("50% of_a {b} #1 & ~^$", "[0,0,0],[0.3,0.1,0.2]"));
+    put(file, world("50% of_a {b} #1 & ~^$", "[0,0,0],[0.3,0.1,0.2]"));
     const QList<QStringList> reports = {{"pillars", "--case", "25"},
                                         {"quadratic", "--overall"},
                                         {file, "--case", "0"},
@@ -243,7 +243,7 @@ void TestReport::documentsCompile() {
     for (int i = 0; i < reports.size(); ++i) {
         const QString name = folder.filePath(QString("report%1.tex").arg(i));
         ran(QStringList{"report", "--out", name} + reports[i]);
-        const QByteArray text = contents(name);
+        const QByteArray text = contentOf(name);
         QVERIFY(text.startsWith("\\documentclass") && text.trimmed().endsWith("\\end{document}"));
         QVERIFY(text.contains("tikzpicture") && text.contains("Legend"));
         const QByteArray fault = latex.missing().isEmpty() ? Latex::fault(name) : QByteArray();
@@ -260,7 +260,7 @@ void TestReport::formatFollowsTheExtension() {
     for (const QString &name : begins.keys()) {
         const QString path = folder.filePath(name);
         ran({"report", "quadratic", "--overall", "--out", path});
-        QVERIFY(contents(path).startsWith(begins[name]));
+        QVERIFY(contentOf(path).startsWith(begins[name]));
         QCOMPARE(run({"report", "quadratic", "--overall", "--out", path}).status,
                  1); // nothing is overwritten
     }
@@ -309,14 +309,14 @@ void TestReport::wrongUse() {
 void TestReport::poseThatSeesNothingIsReported() {
     QTemporaryDir folder;
     const QString file = folder.filePath("w.json");
-    write(file, world("w", "[0,0,0],[500,0,0]"));
+    put(file, world("w", "[0,0,0],[500,0,0]"));
     const QJsonObject report = json(run({"report", file, "--case", "0", "--rays", "100"}).out);
     QVERIFY(report["solutions"].toArray().isEmpty());
     QVERIFY(report["search"].toObject()["outcome"].toString().startsWith("no usable segment in the "));
     for (const char *format : {"csv", "svg", "latex"})
         for (const QStringList &what : {QStringList{"--case", "0"}, QStringList{"--overall"}})
             ran(QStringList{"report", file, "--rays", "100", "--format", format} + what);
-    write(file, world("w", "[0,0,0]"));
+    put(file, world("w", "[0,0,0]"));
     const Result r = run({"report", file, "--overall"});
     QCOMPARE(r.status, 1);
     QVERIFY2(r.err.contains("w.json: found 1 poses"), r.err);

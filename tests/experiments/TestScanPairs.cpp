@@ -131,9 +131,7 @@ void TestScanPairs::writesARowAPairAndPictures() {
     QVERIFY2(std::abs(found["within_10cm_2deg"].toDouble() - 2.0 / 3) < 1e-6, output_.constData());
     QVERIFY2(std::abs(found["accepted"].toDouble() - 2.0 / 3) < 1e-6, output_.constData());
     QCOMPARE(found["accepted_wrong"].toDouble(), 0.0);
-    QFile csv(folder_.filePath("out/pairs.csv"));
-    QVERIFY(csv.open(QIODevice::ReadOnly));
-    const QList<QByteArray> rows = csv.readAll().trimmed().split('\n');
+    const QList<QByteArray> rows = contentOf(folder_.filePath("out/pairs.csv")).trimmed().split('\n');
     QCOMPARE(rows.size(), 4);
     QVERIFY(rows[0].startsWith("from,to,error_m,error_deg,"));
     QVERIFY(rows[3].startsWith("2,3,"));

@@ -81,7 +81,7 @@ private Q_SLOTS:
             std::map<QString, int> least;
             for (const QString &kind : kinds)
                 least[kind] = spoil(log, kind);
-            write(folder_.path("log"), log.text());
+            put(folder_.path("log"), log.text());
             const Result r = ran({"map", folder_.path("log"), "--out-trajectory", folder_.path("tum"),
                                   "--out-map", folder_.path("map.csv"), "--force"});
             const QJsonObject told = json(r.out);
@@ -95,7 +95,7 @@ private Q_SLOTS:
             if (kinds.isEmpty())
                 QCOMPARE(r.err, QByteArray());
             QCOMPARE(told["scans"].toInt(), int(log.lines.size()));
-            const std::vector<vectorlib::Pose2D> found = posesOfTum(contents(folder_.path("tum")));
+            const std::vector<vectorlib::Pose2D> found = posesOfTum(contentOf(folder_.path("tum")));
             QCOMPARE(found.size(), log.truth().size());
             const RevisitErrors errors(found, log.truth());
             const QString text =
@@ -110,7 +110,7 @@ private Q_SLOTS:
         SimulatedLog log(building.world, building.drive(1), random_);
         log.lines.resize(4);
         log.lines[2] = log.lines[1];
-        write(folder_.path("log"), log.text());
+        put(folder_.path("log"), log.text());
         const Result scan = ran({"map", folder_.path("log"), "--scan", "2"});
         QCOMPARE(scan.out, run({"map", folder_.path("log"), "--scan", "1"}).out);
         QVERIFY(scan.err.contains("1 scan(s) left out that repeat"));

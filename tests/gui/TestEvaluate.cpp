@@ -25,7 +25,7 @@ class TestEvaluate : public QObject {
             text += "FLASER 3 1 1 1 " + pose + ' ' + pose + ' ' + numbers({stampOf(i)}) + " host " +
                     numbers({stampOf(i)}) + '\n';
         }
-        write(path("a.log"), text);
+        put(path("a.log"), text);
     }
     void writeTrajectory(const Drive &drive, std::size_t every = 1) const {
         QByteArray text = "# stamp x y z qx qy qz qw\n";
@@ -33,7 +33,7 @@ class TestEvaluate : public QObject {
             text += numbers({stampOf(i), drive[i].x, drive[i].y, 0, 0, 0, std::sin(drive[i].theta / 2),
                              std::cos(drive[i].theta / 2)}) +
                     '\n';
-        write(path("a.tum"), text);
+        put(path("a.tum"), text);
     }
     static double stampOf(std::size_t scan) { return 1000 + 0.1 * double(scan); }
     static QByteArray numbers(const std::vector<double> &values) {
@@ -125,7 +125,7 @@ private Q_SLOTS:
         QCOMPARE(next["motions"].toInt(), 159);
         QVERIFY(next["median_m"].toDouble() < 1e-6);
         QVERIFY(std::abs(next["mean_m"].toDouble() - 0.3 / 159) < 1e-6);
-        const QByteArray svg = contents(path("a.svg"));
+        const QByteArray svg = contentOf(path("a.svg"));
         QXmlStreamReader xml(svg);
         while (!xml.atEnd())
             xml.readNext();
@@ -161,7 +161,7 @@ private Q_SLOTS:
                                 std::cos(p.theta / 2)}) +
                        '\n';
             }
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const QJsonObject found = json(evaluate().out);
         QCOMPARE(found["compared"].toInt(), 199);
         QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
@@ -173,7 +173,7 @@ private Q_SLOTS:
         QByteArray tum;
         for (std::size_t i = 0; i < drive.size(); ++i)
             tum += numbers({1e6 + stampOf(i), drive[i].x, drive[i].y, 0, 0, 0, 0, 1}) + '\n';
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const Result r = evaluate();
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("0 of them at the time"), r.err.constData());
@@ -230,7 +230,7 @@ private Q_SLOTS:
                             std::sin(p.theta / 2), std::cos(p.theta / 2)}) +
                    '\n';
         }
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const Result r = evaluate();
         QVERIFY2(r.status == status && r.err.contains(message), r.err.constData());
         QCOMPARE(r.err.isEmpty(), message.isEmpty());
@@ -244,10 +244,10 @@ private Q_SLOTS:
         for (const Pose2D &p : drive)
             log += "FLASER 3 1 1 1 " + numbers({p.x, p.y, p.theta}) + ' ' + numbers({p.x, p.y, p.theta}) +
                    " 1000 host 1000\n";
-        write(path("a.log"), log);
+        put(path("a.log"), log);
         for (std::size_t i = 0; i < drive.size(); i += 2)
             tum += numbers({1000 + 1e-6 * double(i), drive[i].x, drive[i].y, 0, 0, 0, 0, 1}) + '\n';
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const Result r = evaluate();
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("25 of 25 poses at the time of several scans"), r.err.constData());
@@ -266,7 +266,7 @@ private Q_SLOTS:
     void saysWhatIsWrong() {
         FETCH(QByteArray, trajectory, QByteArray, message);
         writeLog({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
-        write(path("a.tum"), trajectory);
+        put(path("a.tum"), trajectory);
         const Result r = evaluate({"--svg", path("a.svg")});
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("a.tum") && r.err.contains(message), r.err.constData());

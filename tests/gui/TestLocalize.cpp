@@ -12,7 +12,7 @@ class TestLocalize : public QObject {
     QString map_;
 
     QString logOf(const SimulatedLog &log, const char *name) const {
-        write(folder_.path(name), log.text());
+        put(folder_.path(name), log.text());
         return folder_.path(name);
     }
     Result localize(const QString &log, const QStringList &more = {}) const {
@@ -42,7 +42,7 @@ private Q_SLOTS:
     void findsADriveFromItsMiddle() {
         const std::vector<vectorlib::Pose2D> part(way_.begin() + std::ptrdiff_t(way_.size() / 3), way_.end());
         const SimulatedLog log(building_.world, part, random_);
-        const QByteArray before = contents(map_);
+        const QByteArray before = contentOf(map_);
         const Result r = localize(logOf(log, "second"));
         QVERIFY2(r.status == 0, r.err.constData());
         const QJsonObject told = json(r.out);
@@ -50,14 +50,14 @@ private Q_SLOTS:
         QCOMPARE(told["relocalized"].toInt(), 1);
         QCOMPARE(told["matched"].toInt() + told["lost"].toInt() + told["without_pose"].toInt(),
                  told["scans"].toInt());
-        const auto found = posesOfTum(contents(folder_.path("tum")));
+        const auto found = posesOfTum(contentOf(folder_.path("tum")));
         QCOMPARE(found.size(), part.size());
         const double off = farthest(found, part, way_[0]);
         QVERIFY2(off < 0.1, qPrintable(QString::number(off)));
-        QCOMPARE(contents(map_), before);
-        const QByteArray first = contents(folder_.path("tum"));
+        QCOMPARE(contentOf(map_), before);
+        const QByteArray first = contentOf(folder_.path("tum"));
         QCOMPARE(localize(folder_.path("second")).status, 0);
-        QCOMPARE(contents(folder_.path("tum")), first); // no clock has a say
+        QCOMPARE(contentOf(folder_.path("tum")), first); // no clock has a say
     }
 
     /// The robot is lifted and set down elsewhere.
@@ -71,7 +71,7 @@ private Q_SLOTS:
         const Result r = localize(logOf(log, "second"));
         QVERIFY2(r.status == 0, r.err.constData());
         QVERIFY2(json(r.out)["with_pose_share"].toDouble() > 0.95, r.out.constData());
-        const auto found = posesOfTum(contents(folder_.path("tum")));
+        const auto found = posesOfTum(contentOf(folder_.path("tum")));
         QCOMPARE(found.size(), ways.size());
         const double off = farthest(found, ways, way_[0]);
         QVERIFY2(off < 0.1, qPrintable(QString::number(off)));
@@ -97,7 +97,7 @@ private Q_SLOTS:
              {QStringList{"--out-map", folder_.path("m.csv")}, QStringList{"--out-graph", folder_.path("g")},
               QStringList{"--loops", "leave"}, QStringList{"--scan", "1"}})
             QCOMPARE(localize(log, more).status, 2);
-        write(folder_.path("empty.csv"), "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n");
+        put(folder_.path("empty.csv"), "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n");
         const Result r = run({"map", log, "--localize", folder_.path("empty.csv")});
         QVERIFY2(r.status == 1 && r.err.contains("empty.csv: found a map without a wall"), r.err.constData());
     }

@@ -68,7 +68,7 @@ private Q_SLOTS:
             const QJsonObject told = json(r.out);
             QVERIFY(told["places_agree"].toInt() >= 3 && told["overlap_m"].toDouble() > 10);
             QVERIFY2(told["residual_rms_m"].toDouble() < 0.1, r.out.constData());
-            std::istringstream text(contents(folder_.path("both.csv")).toStdString());
+            std::istringstream text(contentOf(folder_.path("both.csv")).toStdString());
             const auto both = vectorlib::readMapCsv(text, "both");
             QVERIFY(bool(both));
             const std::size_t all = mapOf(walls, -1, 1e9, {}).size();

@@ -108,13 +108,13 @@ void TestMatch::pointsMayComeInAnyOrder_data() {
 void TestMatch::pointsMayComeInAnyOrder() {
     FETCH(bool, isShuffled, QStringList, options);
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
-    QList<QByteArray> rows = contents(a).trimmed().split('\n').mid(1);
+    QList<QByteArray> rows = contentOf(a).trimmed().split('\n').mid(1);
     std::mt19937 random(1);
     if (isShuffled)
         std::shuffle(rows.begin(), rows.end(), random);
     else
         std::reverse(rows.begin(), rows.end());
-    write(path("other.csv"), rows.join('\n') + '\n');
+    put(path("other.csv"), rows.join('\n') + '\n');
     const auto poseOf = [&](const QString &fixed) {
         const QJsonObject found = json(run(QStringList{"match", fixed, b} + options).out);
         return found["outcome"].toString() == "found"
@@ -129,7 +129,7 @@ void TestMatch::pointsMayComeInAnyOrder() {
 
 // The second sensor stands where the first one has not looked: two walls of the room are all that it saw.
 void TestMatch::mapHidesNothing() {
-    write(path("part.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n4,-1.5,4,1\n");
+    put(path("part.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n4,-1.5,4,1\n");
     seen("b.csv", "0.3,0.2,0.1", false);
     const auto best = [&](const QStringList &more) {
         const Result r =
@@ -204,15 +204,15 @@ void TestMatch::covarianceFollowsTheNoise() {
 
 void TestMatch::pictureIsWellFormed() {
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
-    write(path("wall.csv"), "1,-2,1,2\n");
+    put(path("wall.csv"), "1,-2,1,2\n");
     for (const QString &fixed : {a, path("wall.csv")}) {
         ran({"match", fixed, b, "--svg", path("m.svg"), "--out", path("m.json"), "--force"});
-        QXmlStreamReader xml(contents(path("m.svg")));
+        QXmlStreamReader xml(contentOf(path("m.svg")));
         while (!xml.atEnd())
             xml.readNext();
         QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
-        QVERIFY(contents(path("m.svg")).contains("static set"));
-        QVERIFY(!contents(path("m.svg")).contains("nan"));
+        QVERIFY(contentOf(path("m.svg")).contains("static set"));
+        QVERIFY(!contentOf(path("m.svg")).contains("nan"));
     }
 }
 
@@ -252,7 +252,7 @@ void TestMatch::badInput_data() {
 
 void TestMatch::badInput() {
     FETCH(QByteArray, text, QByteArray, message);
-    write(path("in.csv"), text);
+    put(path("in.csv"), text);
     for (const QStringList &files :
          {QStringList{path("in.csv"), data("room.csv")}, QStringList{data("room.csv"), path("in.csv")}}) {
         refused(run(QStringList{"match", "--out", path("out")} + files), 1, message);

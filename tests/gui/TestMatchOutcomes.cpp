@@ -51,11 +51,11 @@ void TestMatchOutcomes::outcomeIsTheSameForAllMethods_data() {
 
 void TestMatchOutcomes::outcomeIsTheSameForAllMethods() {
     QFETCH(QStringList, options);
-    write(path("rectangle"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
-    write(path("corridor"), "-3,-1,3,-1\n3,1,-3,1\n");
-    write(path("corner"), "1,-1,1,1\n1,1,-3,1\n");
-    write(path("crumbs"), "2,-0.2,2,0.2\n0.2,2,-0.3,1.8\n");
-    write(path("dots"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
+    put(path("rectangle"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
+    put(path("corridor"), "-3,-1,3,-1\n3,1,-3,1\n");
+    put(path("corner"), "1,-1,1,1\n1,1,-3,1\n");
+    put(path("crumbs"), "2,-0.2,2,0.2\n0.2,2,-0.3,1.8\n");
+    put(path("dots"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
     const struct {
         const char *fixed, *moving, *outcome;
     } cases[] = {{"rectangle", "rectangle", "ambiguous"},
@@ -81,13 +81,13 @@ void TestMatchOutcomes::tellsWhyNothingIsAccepted() {
         QVERIFY(!s.toObject()["accepted"].toBool());
         QVERIFY(s.toObject()["verdict"].toString() != QLatin1String("accepted"));
     }
-    write(path("wall.csv"), "1,-2,1,2\n");
+    put(path("wall.csv"), "1,-2,1,2\n");
     const Result corridor = ran({"match", path("wall.csv"), path("wall.csv"), "--method", "finder"});
     QVERIFY(json(corridor.out)["solutions"].toArray().isEmpty());
     QCOMPARE(json(corridor.out)["outcome"].toString(), QString("open_direction"));
     QVERIFY(json(corridor.out)["text"].toString().contains("parallel"));
     QVERIFY2(corridor.err.contains("parallel"), corridor.err.constData());
-    write(path("dots.csv"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
+    put(path("dots.csv"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
     const QJsonObject dots = json(run({"match", path("dots.csv"), b}).out);
     QCOMPARE(dots["outcome"].toString(), QString("too_little"));
     QVERIFY(dots["text"].toString().contains("static set"));
@@ -95,7 +95,7 @@ void TestMatchOutcomes::tellsWhyNothingIsAccepted() {
 
 // A rectangle looks the same from two places; a single wall slides along itself.
 void TestMatchOutcomes::ambiguityIsTold() {
-    write(path("rectangle.csv"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
+    put(path("rectangle.csv"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
     const QJsonObject two = json(run({"match", path("rectangle.csv"), path("rectangle.csv")}).out);
     QCOMPARE(two["outcome"].toString(), QString("ambiguous"));
     const QJsonArray solutions = two["solutions"].toArray();
@@ -104,7 +104,7 @@ void TestMatchOutcomes::ambiguityIsTold() {
         QVERIFY(!solutions[i].toObject()["accepted"].toBool());
         QVERIFY(solutions[i].toObject()["probability"].toDouble() > 0.2);
     }
-    write(path("wall.csv"), "1,-2,1,2\n");
+    put(path("wall.csv"), "1,-2,1,2\n");
     const QJsonObject wall = json(run({"match", path("wall.csv"), path("wall.csv")}).out);
     QVERIFY(!wall["outcome"].toString().isEmpty() && wall["outcome"].toString() != "found");
     for (const QJsonValue &solution : wall["solutions"].toArray())

@@ -42,7 +42,7 @@ private Q_SLOTS:
         QVERIFY(folder_.isValid());
         QFile log(path("long.log"));
         QVERIFY(log.open(QIODevice::WriteOnly));
-        const QList<QByteArray> drive = contents(data("corrected.log")).split('\n');
+        const QList<QByteArray> drive = contentOf(data("corrected.log")).split('\n');
         for (int stamp = 1; stamp <= 120000; ++stamp) {
             QList<QByteArray> scan = drive[stamp % drive.size()].split(' ');
             if (scan[0] != "FLASER")
@@ -140,14 +140,14 @@ private Q_SLOTS:
         QCOMPARE(shell("{ \"$@\" --json 2>&1 >/dev/null; echo $? >" + path("status") + "; } | true",
                        longWork("unread")),
                  0);
-        QCOMPARE(contents(path("status")), QByteArray("0\n"));
-        QVERIFY(!json(contents(path("unread"))).isEmpty());
+        QCOMPARE(contentOf(path("status")), QByteArray("0\n"));
+        QVERIFY(!json(contentOf(path("unread"))).isEmpty());
     }
     // The first file that is opened would be standard error.
     void closedStandardErrorIsNoFile() {
         QCOMPARE(shell("\"$@\" --json >/dev/null 2>&-", longWork("closed")), 0);
-        QVERIFY(!json(contents(path("closed"))).isEmpty());
-        QVERIFY(!contents(path("closed")).contains("progress"));
+        QVERIFY(!json(contentOf(path("closed"))).isEmpty());
+        QVERIFY(!contentOf(path("closed")).contains("progress"));
     }
 };
 

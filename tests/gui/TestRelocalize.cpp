@@ -22,7 +22,7 @@ class TestRelocalize : public QObject {
                 const auto &a = corners[i], &b = corners[(i + 1) % 6];
                 walls += QString("%1,%2,%3,%4\n").arg(a[0] + x).arg(a[1]).arg(b[0] + x).arg(b[1]).toUtf8();
             }
-        write(path("twins.csv"), walls);
+        put(path("twins.csv"), walls);
         return path("twins.csv");
     }
     static void isWellFormed(const QByteArray &svg) {
@@ -56,14 +56,14 @@ private Q_SLOTS:
         const QString b = seen("b.csv", "0.4,0.1,0.2", true);
         QCOMPARE(run({"relocalize", b, b}).status, 2); // a scan is no map
         QCOMPARE(run({"relocalize", path("none.csv"), b}).status, 1);
-        write(path("wall.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n");
+        put(path("wall.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n");
         const Result r = ran({"relocalize", path("wall.csv"), path("wall.csv"), "--svg", path("wall.svg")});
         QCOMPARE(json(r.out)["outcome"].toString(), QString("too_little"));
         QVERIFY(json(r.out)["text"].toString().contains("fewer than two"));
         QVERIFY(json(r.out)["places"].toArray().isEmpty());
-        isWellFormed(contents(path("wall.svg")));
-        QVERIFY(contents(path("wall.svg")).contains("Not found"));
-        QVERIFY(!contents(path("wall.svg")).contains("scan and sensor"));
+        isWellFormed(contentOf(path("wall.svg")));
+        QVERIFY(contentOf(path("wall.svg")).contains("Not found"));
+        QVERIFY(!contentOf(path("wall.svg")).contains("scan and sensor"));
     }
 
     void pictureShowsThePlace() {
@@ -71,7 +71,7 @@ private Q_SLOTS:
         for (const bool points : {true, false}) {
             const QString scan = seen("b.csv", "0.4,0.1,2.5", points);
             ran({"relocalize", path("a.csv"), scan, "--svg", path("p.svg"), "--force"});
-            const QByteArray svg = contents(path("p.svg"));
+            const QByteArray svg = contentOf(path("p.svg"));
             isWellFormed(svg);
             QVERIFY2(svg.contains(">Found<") && svg.contains(">map<"), svg.left(500).constData());
             QVERIFY(svg.contains("probable at 0.4"));
@@ -83,14 +83,13 @@ private Q_SLOTS:
     }
 
     void pictureNumbersPlacesThatAreAlike() {
-        write(path("w.json"),
-              "{\"name\": \"room\", \"edges\": [[0,0,4,0],[4,0,4,3],[4,3,2.5,3],[2.5,3,2.5,2],"
-              "[2.5,2,0,2],[0,2,0,0]]}");
+        put(path("w.json"), "{\"name\": \"room\", \"edges\": [[0,0,4,0],[4,0,4,3],[4,3,2.5,3],[2.5,3,2.5,2],"
+                            "[2.5,2,0,2],[0,2,0,0]]}");
         ran({"observe", path("w.json"), "--pose", "2.8,1,0.4", "--scan", "720", "--noise", "0.01", "--out",
              path("s.csv")});
         const Result r = run({"relocalize", twins(), path("s.csv"), "--svg", path("p.svg")});
         QVERIFY2(json(r.out)["outcome"].toString() == "ambiguous", r.out.constData());
-        const QByteArray svg = contents(path("p.svg"));
+        const QByteArray svg = contentOf(path("p.svg"));
         isWellFormed(svg);
         QVERIFY(svg.contains(">1: scan and sensor") && svg.contains(">2: scan and sensor"));
         QCOMPARE(svg.count("<circle"), 4);

@@ -192,9 +192,7 @@ void TestSessions::aListSaysWhatASessionHolds() {
     record("run1");
     QVERIFY(start("run2").ok());
     QVERIFY(QDir(robot_->root.path()).mkpath("odd"));
-    QFile odd(robot_->root.path() + "/odd/c.json");
-    QVERIFY(odd.open(QIODevice::WriteOnly) && odd.write("{}") == 2);
-    odd.close();
+    put(robot_->root.path() + "/odd/c.json", "{}");
     robot_->clients[0]->close(); // a took part, but does not answer
     SessionRecorder recorder(members());
     const auto list = [&](int most) {

@@ -28,9 +28,9 @@ void appendForeign(const QString &path, quint16 port) {
     d.size = std::size_t(payload.size());
     if (!writer.open(copy.toStdString()) || !writer.write(d) || !writer.close())
         qFatal("%s cannot be written", qPrintable(copy));
-    const QByteArray record = contents(copy).mid(int(PcapWriter::fileHeaderBytes));
+    const QByteArray record = contentOf(copy).mid(int(PcapWriter::fileHeaderBytes));
     QFile::remove(copy);
-    write(path, contents(path) + record);
+    put(path, contentOf(path) + record);
 }
 
 } // namespace
@@ -69,9 +69,7 @@ private Q_SLOTS:
     void pipesAreReadFromTheirBeginning() {
         FETCH(QStringList, arguments, QString, file);
         writeCapture(path("capture.pcap"), 800);
-        QFile content(file);
-        QVERIFY(content.open(QIODevice::ReadOnly));
-        const QByteArray bytes = content.readAll();
+        const QByteArray bytes = contentOf(file);
         const auto of = [&](const QString &name) {
             QFile::remove(path("s"));
             return run(QStringList(arguments).replaceInStrings("FILE", name), bytes);
@@ -106,7 +104,7 @@ private Q_SLOTS:
         const Result map = ran(QStringList{"map", path("c.pcap"), "--out-map", path("m.csv")} + options);
         QCOMPARE(json(map.out)["scans"].toInt(), 3);
         QVERIFY2(map.err.contains("read 192.168.1.20"), map.err.constData());
-        for (const QByteArray &line : contents(path("m.csv")).trimmed().split('\n').mid(1)) {
+        for (const QByteArray &line : contentOf(path("m.csv")).trimmed().split('\n').mid(1)) {
             const QList<QByteArray> edge = line.split(',');
             QVERIFY2(std::abs(std::hypot(edge[1].toDouble(), edge[2].toDouble()) - range) < 0.1, line);
         }

@@ -110,11 +110,11 @@ private Q_SLOTS:
         QCOMPARE(r.err, QByteArray());
         QCOMPARE(r.out, QByteArray());
         QCOMPARE(files(), (QStringList{"g.g2o", "m.csv", "p.svg", "s.json", "t.csv", "t.tum"}));
-        QVERIFY(contents(path("m.csv")).startsWith("id,x1,y1,x2,y2,n,sigma,observations,"));
-        QVERIFY(contents(path("p.svg")).startsWith("<svg"));
-        QCOMPARE(contents(path("g.g2o")).count("VERTEX_SE2 "), 2); // key scans
-        QCOMPARE(contents(path("g.g2o")).count("EDGE_SE2 "), 1);
-        const QJsonObject s = json(contents(path("s.json")));
+        QVERIFY(contentOf(path("m.csv")).startsWith("id,x1,y1,x2,y2,n,sigma,observations,"));
+        QVERIFY(contentOf(path("p.svg")).startsWith("<svg"));
+        QCOMPARE(contentOf(path("g.g2o")).count("VERTEX_SE2 "), 2); // key scans
+        QCOMPARE(contentOf(path("g.g2o")).count("EDGE_SE2 "), 1);
+        const QJsonObject s = json(contentOf(path("s.json")));
         for (const char *key : {"scans", "skipped", "matched", "lost", "closures", "closures_tried",
                                 "closures_refused", "closures_seconds", "review", "parallel_twins",
                                 "ms_per_scan", "segments", "map_bytes", "seconds"})
@@ -127,14 +127,14 @@ private Q_SLOTS:
         QCOMPARE(s["parallel_twins"].toObject()["share"].toDouble(), 0.0);
         QCOMPARE(s["scans"].toInt(), 8);
         QCOMPARE(s["matched"].toInt(), 8);
-        QCOMPARE(s["map_bytes"].toInt(), contents(path("m.csv")).size());
+        QCOMPARE(s["map_bytes"].toInt(), contentOf(path("m.csv")).size());
         QCOMPARE(s["reference"].toObject()["within_10cm_2deg"].toDouble(), 1.0);
-        const QList<QByteArray> poses = contents(path("t.tum")).trimmed().split('\n');
+        const QList<QByteArray> poses = contentOf(path("t.tum")).trimmed().split('\n');
         QCOMPARE(poses.size(), 8);
         QCOMPARE(poses[7].split(' ').size(), 8);
         QCOMPARE(poses[7].split(' ')[0].toDouble(), 7.0);
         QVERIFY(std::abs(poses[7].split(' ')[1].toDouble() - 1.05) < 0.05);
-        const QList<QByteArray> trust = contents(path("t.csv")).trimmed().split('\n');
+        const QList<QByteArray> trust = contentOf(path("t.csv")).trimmed().split('\n');
         QCOMPARE(trust.size(), 9);
         QCOMPARE(trust[0], QByteArray("stamp,trust"));
         QCOMPARE(trust[8].split(',')[0].toDouble(), 7.0);
@@ -145,13 +145,13 @@ private Q_SLOTS:
         for (const char *name : {"m.svg", "m.geojson", "m.dxf", "m.pgm"})
             ran({"map", data("raw.log"), "--out-map", path(name), "--odometry", "ignore", "--every", "2"});
         QVERIFY(files().contains("m.yaml"));
-        QVERIFY(contents(path("m.yaml")).contains("image: m.pgm"));
+        QVERIFY(contentOf(path("m.yaml")).contains("image: m.pgm"));
     }
 
     /// As logs have them that were rounded, or put together in another order than measured.
     void trajectoriesAscendWhereTheLogDoesNot() {
         const QList<QByteArray> stamps{"0", "1", "1", "1", "4", "2", "3", "7"};
-        QList<QByteArray> lines = contents(data("corrected.log")).split('\n');
+        QList<QByteArray> lines = contentOf(data("corrected.log")).split('\n');
         int scan = 0;
         for (QByteArray &line : lines) {
             QList<QByteArray> fields = line.simplified().split(' ');
@@ -161,10 +161,10 @@ private Q_SLOTS:
             line = fields.join(' ');
         }
         QCOMPARE(scan, stamps.size());
-        write(path("in.log"), lines.join('\n'));
+        put(path("in.log"), lines.join('\n'));
         const Result r = ran({"map", path("in.log"), "--corrected", "--out-trajectory", path("t.tum")});
         QList<QByteArray> written;
-        for (const QByteArray &line : contents(path("t.tum")).trimmed().split('\n'))
+        for (const QByteArray &line : contentOf(path("t.tum")).trimmed().split('\n'))
             written << line.split(' ')[0];
         QCOMPARE(written,
                  (QList<QByteArray>{"0", "1", "1.000001", "1.000002", "4", "4.000001", "4.000002", "7"}));
@@ -191,7 +191,7 @@ private Q_SLOTS:
         REAL_DATA(log, QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
         const Result r = ran({"map", log, "--corrected", "--out-trajectory", path("t.tum")});
         double last = -INFINITY;
-        for (const QByteArray &line : contents(path("t.tum")).trimmed().split('\n')) {
+        for (const QByteArray &line : contentOf(path("t.tum")).trimmed().split('\n')) {
             QVERIFY(line.split(' ')[0].toDouble() > last);
             last = line.split(' ')[0].toDouble();
         }
@@ -207,7 +207,7 @@ private Q_SLOTS:
                  "--out", path(qPrintable(QStringLiteral("scans/%1.csv").arg(i))), "--force"});
         const Result r = ran({"map", path("scans"), "--out-trajectory", path("t.tum")});
         QCOMPARE(json(r.out)["matched"].toInt(), 3);
-        QVERIFY(std::abs(contents(path("t.tum")).split('\n')[2].split(' ')[1].toDouble() - 0.2) < 0.01);
+        QVERIFY(std::abs(contentOf(path("t.tum")).split('\n')[2].split(' ')[1].toDouble() - 0.2) < 0.01);
     }
 
     void ring() {
@@ -236,15 +236,15 @@ private Q_SLOTS:
 
     void compressedAndStandardInput() {
         const QByteArray plain = run({"segment", data("room.csv")}).out;
-        QCOMPARE(run({"segment", "-"}, contents(data("room.csv"))).out, plain);
+        QCOMPARE(run({"segment", "-"}, contentOf(data("room.csv"))).out, plain);
         QProcess gzip;
         gzip.setStandardInputFile(data("room.csv"));
         gzip.start("gzip", {"-c"});
         QVERIFY(gzip.waitForFinished());
         const QByteArray compressed = gzip.readAllStandardOutput();
-        write(path("room.csv.gz"), compressed);
+        put(path("room.csv.gz"), compressed);
         QCOMPARE(run({"segment", path("room.csv.gz")}).out, plain);
-        write(path("cut.gz"), compressed.left(compressed.size() - 20));
+        put(path("cut.gz"), compressed.left(compressed.size() - 20));
         refused(run({"segment", path("cut.gz")}), 1, "breaks off");
     }
 
@@ -267,7 +267,7 @@ private Q_SLOTS:
         REAL_DATA(log, name);
         const Result r = ran({"map", log, "--corrected", "--every", "2", "--out-map", path("m.csv")});
         QVERIFY(json(r.out)["scans"].toInt() > 100);
-        QVERIFY(contents(path("m.csv")).count('\n') > 100);
+        QVERIFY(contentOf(path("m.csv")).count('\n') > 100);
     }
 
     void realCapture() {

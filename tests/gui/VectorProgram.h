@@ -3,6 +3,7 @@
 #include "common/capture/PcapWriter.h"
 #include "protocol/velodyne/DataPacket.h"
 #include "protocol/velodyne/Hdl32e.h"
+#include "tests/support/Files.h"
 
 #include <QDir>
 #include <QJsonDocument>
@@ -49,17 +50,6 @@ inline void refused(const Result &r, int status, const QByteArray &words, const 
 /// A file of tests/data/vector.
 inline QString data(const char *name) {
     return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
-}
-
-inline QByteArray contents(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
-inline void write(const QString &path, const QByteArray &text) {
-    QFile file(path);
-    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size())
-        qFatal("cannot write a file of the test");
 }
 
 inline QJsonObject json(const QByteArray &text) {

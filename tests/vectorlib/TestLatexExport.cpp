@@ -140,9 +140,7 @@ private Q_SLOTS:
         for (QByteArray text : nonsense())
             all += text.mid(text.indexOf(begin) + begin.size()).replace(end, "\n\n");
         const QString name = folder.filePath("all.tex");
-        QFile file(name);
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(all + end) > 0);
-        file.close();
+        put(name, all + end);
         const QByteArray fault = hermes::Latex::fault(name);
         QVERIFY2(fault.isEmpty(), fault.constData());
     }

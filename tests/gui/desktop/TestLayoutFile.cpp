@@ -25,14 +25,8 @@ private Q_SLOTS:
     void linkStaysOne();
 
 private:
-    QByteArray content() const {
-        QFile file(file_);
-        return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-    }
-    void write(const QByteArray &bytes) const {
-        QFile file(file_);
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size());
-    }
+    QByteArray content() const { return contentOf(file_); }
+    void write(const QByteArray &bytes) const { put(file_, bytes); }
 
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;

@@ -270,9 +270,7 @@ void TestReadable::wordsAreOfAnOperator() {
     QStringList found;
     int texts = 0;
     while (files.hasNext()) {
-        QFile file(files.next());
-        QVERIFY(file.open(QIODevice::ReadOnly));
-        for (auto all = told.globalMatch(QString::fromUtf8(file.readAll())); all.hasNext(); ++texts)
+        for (auto all = told.globalMatch(QString::fromUtf8(contentOf(files.next()))); all.hasNext(); ++texts)
             if (const QString text = all.next().captured(1); text.contains(foreignWords()))
                 found.append(files.fileName() + ": " + text);
     }

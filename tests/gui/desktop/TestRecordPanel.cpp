@@ -68,9 +68,8 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
     QTRY_VERIFY2(message().contains("nothing missing"), qPrintable(message()));
     QVERIFY(!find<QPushButton>("mark")->isVisible());
-    QFile events(robot.path("recordings") + "/first/seriallogger-events.jsonl");
-    QVERIFY(events.open(QIODevice::ReadOnly));
-    QVERIFY(events.readAll().contains("\"text\":\"at the door\""));
+    QVERIFY(contentOf(robot.path("recordings") + "/first/seriallogger-events.jsonl")
+                .contains("\"text\":\"at the door\""));
 
     auto *const sessions = find<QTreeWidget>("sessions");
     QTRY_COMPARE(sessions->topLevelItemCount(), 1); // both loggers, one session

@@ -62,8 +62,7 @@ private:
 
 void TestSettingsPanel::init() {
     robot_ = std::make_unique<RobotProcesses>();
-    QFile file(robot_->path("motors.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("{}") == 2 && file.flush());
+    put(robot_->path("motors.json"), "{}");
     const quint16 port = robot_->start("motorcontrol", {}, {"--config", robot_->path("motors.json")});
     robot_->start("scanmatcher");
     window_ = std::make_unique<OpenWindow>(*robot_);
@@ -150,9 +149,8 @@ void TestSettingsPanel::saved() {
     QTRY_COMPARE(message(), QString("Applied."));
     OpenWindow::click(panel_, "save");
     QTRY_VERIFY(message().startsWith("Saved"));
-    QFile file(robot_->path("motors.json"));
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(file.readAll())["motion"]["vx"], QJsonValue(0.31));
+    QCOMPARE(QJsonDocument::fromJson(contentOf(robot_->path("motors.json")))["motion"]["vx"],
+             QJsonValue(0.31));
 }
 
 void TestSettingsPanel::changeOfAnotherClientArrives() {
@@ -254,9 +252,9 @@ void TestSettingsPanel::saveAppliesFirst() {
     OpenWindow::click(panel_, "save");
     QTRY_VERIFY2(message().startsWith("Applied. Saved"), qPrintable(message()));
     QCOMPARE(setting("motion.vx"), QJsonValue(0.31));
-    QFile file(robot_->path("motors.json"));
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(file.readAll()).object()["motion"].toObject()["vx"], QJsonValue(0.31));
+    QCOMPARE(
+        QJsonDocument::fromJson(contentOf(robot_->path("motors.json"))).object()["motion"].toObject()["vx"],
+        QJsonValue(0.31));
     const double warning = setting("faults.battery_warning_v").toDouble();
     OpenWindow::type(field("faults.battery_v"), QString::number(warning + 1));
     OpenWindow::click(panel_, "save");

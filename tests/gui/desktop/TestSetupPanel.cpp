@@ -57,9 +57,7 @@ private:
                    : rows[0]->parent()->text(0) + ' ' + rows[0]->text(1) + ' ' + rows[0]->text(2);
     }
     QJsonValue file(const QString &name) const {
-        QFile read(folder_ + '/' + name + ".json");
-        return read.open(QIODevice::ReadOnly) ? QJsonDocument::fromJson(read.readAll()).object()
-                                              : QJsonObject();
+        return QJsonDocument::fromJson(contentOf(folder_ + '/' + name + ".json")).object();
     }
     QJsonValue ask(const QString &daemon, const QString &method, const QJsonObject &params = {}) {
         Client client;
