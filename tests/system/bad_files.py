@@ -12,7 +12,7 @@ import unittest
 
 from robot import NAMES
 from robot_case import INTERPOSED, RobotCase
-from support import DaemonError, wait_for
+from support import DaemonError, wait_for, text_of
 
 
 class BadFiles(RobotCase):
@@ -220,8 +220,7 @@ class BadFiles(RobotCase):
             robot.call(name, "record.stop")
         self.until_well("room on the disk")
         robot.call("supervisor", "setup.undo")
-        with open(os.path.join(etc, "seriallogger.json"), encoding="utf-8") as file:
-            self.assertEqual(json.load(file), {})
+        self.assertEqual(json.loads(text_of(os.path.join(etc, "seriallogger.json"))), {})
         self.drive(lambda: not self.stands())
 
     def test_state_that_is_read_only(self):
@@ -281,8 +280,7 @@ class BadFiles(RobotCase):
         for name in os.listdir(folder):
             if not name.endswith((".json", ".previous")):
                 continue  # a draft of a program that was killed
-            with open(os.path.join(folder, name), encoding="utf-8") as file:
-                found[name] = json.load(file)
+            found[name] = json.loads(text_of(os.path.join(folder, name)))
         return found
 
     def test_killed_while_settings_are_replaced(self):

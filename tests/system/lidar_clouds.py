@@ -225,21 +225,17 @@ def start_logger(folder, **settings):
 
 def check_without_offsets(folder, capture):
     """decode.vertical_offsets: false leaves all lasers in the sensor's origin."""
-    process = start_logger(folder, **{"decode.vertical_offsets": "false"})
-    try:
+    with start_logger(folder, **{"decode.vertical_offsets": "false"}) as process:
         logger = process.connect()
         logger.call("source.open", pcap=capture, speed=1, loop=True)
         check_csv(logger.call("capture.turn", name="no-offsets")["path"], reference.turns(capture, "all", offsets=False))
-    finally:
-        status = process.stop()
-    assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+        assert process.stop() == 0, process.last_words()
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        process = start_logger(folder, **{"cloud.max_points": 2000,
-                                          "limits.topic_bytes": 2 << 20})  # so that a busy machine costs a reader nothing
-        try:
+        # So that a busy machine costs a reader nothing.
+        with start_logger(folder, **{"cloud.max_points": 2000, "limits.topic_bytes": 2 << 20}) as process:
             logger = process.connect()
             for model, product in (("hdl32e", 0x21), ("vlp16", 0x22)):
                 capture = os.path.join(folder, f"made-{model}.pcap")
@@ -250,9 +246,7 @@ def main():
                 check_sensors(logger, capture)
             check_slow_reader(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
             check_overload(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
-        finally:
-            status = process.stop()
-        assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+            assert process.stop() == 0, process.last_words()
         check_without_offsets(folder, os.path.join(folder, "made-vlp16.pcap"))
     print("clouds, captured turns and replays of both sensors are as they should be")
     return 0

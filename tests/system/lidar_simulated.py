@@ -14,7 +14,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for, put, text_of
 import velodyne_reference as reference
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
@@ -84,8 +84,7 @@ def check_geometry(edges, scans, truth):
 def check_refusals(folder, busy_port):
     """Bad input ends a program with status 1 or 2 and a message that names what is wrong."""
     empty = os.path.join(folder, "empty.json")
-    with open(empty, "w", encoding="utf-8") as file:
-        file.write('{"name": "empty", "edges": []}\n')
+    put(empty, '{"name": "empty", "edges": []}\n')
     listen = ["--listen", f"tcp://127.0.0.1:{free_port(0)}?protocol=json"]
     for program, arguments, status, words in (
             ("simulator", ["--set", f"world={empty}"], 1, [empty, "no edges"]),
@@ -204,8 +203,7 @@ def check_end(processes):
 
 
 def main():
-    with open(WORLD, encoding="utf-8") as file:
-        edges = json.load(file)["edges"]
+    edges = json.loads(text_of(WORLD))["edges"]
     with tempfile.TemporaryDirectory() as folder:
         scans, truth = drive(folder)
     # Without the packets lost on purpose.

@@ -3,16 +3,14 @@
 pseudo-terminal drives the robot of a running simulator; faults, a pulled line and the controllers' own time-out do what they
 should."""
 import binascii
-import json
 import math
 import os
 import select
-import socket
 import struct
 import tempfile
 import time
 
-from support import BINARIES, DaemonError, Process, SerialPort, free_port, wait_for
+from support import DaemonError, SerialPort, simulated_hall, wait_for
 
 
 class RoboClaw(SerialPort):
@@ -133,22 +131,15 @@ def check_faults(simulator, client, link):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        link, world = os.path.join(folder, "devices", "motors"), os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0.5]]}, file)
-        settings = {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}
-        process = Process(BINARIES, "simulator", free_port(0), folder, settings)
-        try:
+        process, link = simulated_hall(folder, pose=(0, 0, 0.5), **{"motors.link": os.path.join(folder, "devices", "motors")})
+        with process:
             simulator = process.connect()
             lines = simulator.call("sim.state")["motors"]["lines"]
             assert lines == [{"link": link, "device": os.path.realpath(link)}], lines
             client = RoboClaw(link)
             check_drive(simulator, client)
             check_faults(simulator, client, link)
-        finally:
-            status = process.stop()
-        assert status == 0, f"status {status}: {process.last_words()}"
+            assert process.stop() == 0, process.last_words()
         assert not os.path.lexists(link), "the link was left behind"
     print("driven, stopped, failed and recovered")
 

@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 """Motor control and simulator as processes, each controller on a serial line of its own: one line is pulled while the robot
 drives and put back. The robot stops, goes on without a restart, and its odometry is where the robot truly is."""
-import json
 import math
 import os
-import socket
 import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, DaemonError, Process, free_port, wait_for
+from support import BINARIES, DaemonError, Process, free_port, simulated_hall, wait_for
 
 SPEED = 0.4  # m/s
 
@@ -86,27 +84,19 @@ def pull_and_put_back(simulator, motors, line, lateness):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        links, world = [os.path.join(folder, name) for name in ("front", "rear")], os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0]]}, file)
-        settings = {"motors.link": links[0], "motors.link2": links[1], "motors.address2": 128, "world": world,
-                    "lidar.port": free_port(0, socket.SOCK_DGRAM)}
-        processes = [Process(BINARIES, "simulator", free_port(0), folder, settings)]
-        try:
-            simulator = processes[0].connect()
-            settings = {f"controllers.{i}.url": f"serial://{links[i - 1]}" for i in (1, 2)}
-            processes.append(Process(BINARIES, "motorcontrol", free_port(0), folder, {
-                **settings, "controllers.2.address": 128, "safety.command_timeout_s": 1}))
-            motors = processes[1].connect()
+        rear = os.path.join(folder, "rear")
+        simulated, front = simulated_hall(folder, **{"motors.link2": rear, "motors.address2": 128})
+        with simulated, Process(BINARIES, "motorcontrol", free_port(0), folder, {
+                "controllers.1.url": f"serial://{front}", "controllers.2.url": f"serial://{rear}", "controllers.2.address": 128,
+                "safety.command_timeout_s": 1}) as driven:
+            simulator, motors = simulated.connect(), driven.connect()
             wait_for("readiness", lambda: is_ready(motors))
             with Lateness() as lateness:
                 for line in ("line1", "line2", "line1"):
                     pull_and_put_back(simulator, motors, line, lateness)
             drive(simulator, motors)  # again
-        finally:
-            statuses = [process.stop() for process in reversed(processes)]
-        assert statuses == [0, 0], f"{statuses}: {processes[-1].last_words()}"
+            statuses = [process.stop() for process in (driven, simulated)]
+            assert statuses == [0, 0], f"{statuses}: {driven.last_words()}"
 
 
 if __name__ == "__main__":
