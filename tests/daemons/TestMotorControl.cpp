@@ -1,6 +1,7 @@
 // hermes-motorcontrol as its clients see it, with emulated controllers on a pseudo-terminal.
 #include "MotorFixture.h"
 #include "common/settings/DottedPath.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QTcpSocket>
 #include <QUrl>
@@ -188,16 +189,18 @@ void TestMotorControl::topicsCome() {
 
 void TestMotorControl::refusals_data() {
     const Rows<QString, QJsonObject, int, QString> row("method", "params", "code", "names");
-    row("too fast", "motor.drive", {{"vx", 3}}, ErrorCode::OverLimit,
+    row("too fast", "motor.drive", {{"vx", 3}}, int(ErrorCode::OverLimit),
         "vx is 3, expected a number from -1 to 1 m/s");
-    row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, ErrorCode::OverLimit, "rear_left is 1e+06");
-    row("unknown parameter", "motor.drive", {{"vz", 1}}, ErrorCode::InvalidParams, "vz");
-    row("not a number", "motor.drive", {{"vx", "fast"}}, ErrorCode::InvalidParams, "vx");
-    row("null", "motor.drive", {{"omega", QJsonValue()}}, ErrorCode::InvalidParams,
+    row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, int(ErrorCode::OverLimit),
+        "rear_left is 1e+06");
+    row("unknown parameter", "motor.drive", {{"vz", 1}}, int(ErrorCode::InvalidParams), "vz");
+    row("not a number", "motor.drive", {{"vx", "fast"}}, int(ErrorCode::InvalidParams), "vx");
+    row("null", "motor.drive", {{"omega", QJsonValue()}}, int(ErrorCode::InvalidParams),
         "omega is null, expected a number in rad/s");
-    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady,
+    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, int(ErrorCode::NotReady),
         "less than 1 s from now");
-    row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, ErrorCode::InvalidParams, "timeout_s");
+    row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, int(ErrorCode::InvalidParams),
+        "timeout_s");
 }
 
 void TestMotorControl::refusals() {
@@ -379,4 +382,3 @@ void TestMotorControl::aTenthOfAVoltIsEnough() {
 
 QTEST_GUILESS_MAIN(TestMotorControl)
 #include "TestMotorControl.moc"
-#include "tests/support/ReleaseStop.h"

@@ -2,6 +2,7 @@
 // frozen. $HERMES_TRIALS trials of each, 3 where it is not set; the times are printed.
 #include "StopTrials.h"
 #include "tests/support/PatientClient.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <csignal>
 
@@ -106,4 +107,3 @@ void TestMotorStops::signalToTheDaemon() {
 
 QTEST_GUILESS_MAIN(TestMotorStops)
 #include "TestMotorStops.moc"
-#include "tests/support/ReleaseStop.h"

@@ -3,6 +3,7 @@
 #include "gui/desktop/drive/Stick.h"
 #include "tests/support/FakeRobot.h"
 #include "tests/support/PatientClient.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QLabel>
 #include <QLineEdit>
@@ -454,4 +455,3 @@ void TestDrivePanel::theBatteryIsTold() {
 
 QTEST_MAIN(TestDrivePanel)
 #include "TestDrivePanel.moc"
-#include "tests/support/ReleaseStop.h"

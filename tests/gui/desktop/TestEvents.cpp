@@ -3,6 +3,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
 #include "tests/support/PatientClient.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QCheckBox>
 #include <QLabel>
@@ -291,4 +292,3 @@ void TestEvents::soundsCanBeSwitchedOff() {
 
 QTEST_MAIN(TestEvents)
 #include "TestEvents.moc"
-#include "tests/support/ReleaseStop.h"

@@ -2,6 +2,7 @@
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QComboBox>
 #include <QDirIterator>
@@ -293,4 +294,3 @@ void TestReadable::wordsOfDaemonsAreMadePlain() {
 
 QTEST_MAIN(TestReadable)
 #include "TestReadable.moc"
-#include "tests/support/ReleaseStop.h"

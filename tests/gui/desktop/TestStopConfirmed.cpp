@@ -1,6 +1,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
 #include "tests/support/PatientClient.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QLabel>
 #include <QTcpServer>
@@ -304,4 +305,3 @@ void TestStopConfirmed::aReleaseIsToldWhenItIsNotTaken() {
 
 QTEST_MAIN(TestStopConfirmed)
 #include "TestStopConfirmed.moc"
-#include "tests/support/ReleaseStop.h"

@@ -5,6 +5,7 @@
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/panels/TopicTree.h"
 #include "tests/gui/desktop/RobotProcesses.h"
+#include "tests/support/ReleaseStop.h"
 
 #include <QAbstractButton>
 #include <QApplication>
@@ -164,4 +165,3 @@ int main(int argc, char **argv) {
 }
 
 #include "screenshots.moc"
-#include "tests/support/ReleaseStop.h"
