@@ -1,3 +1,4 @@
+#include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
 #include "tests/support/RealData.h"
 #include "vectorlib/experiments/FewestLines.h"
@@ -10,19 +11,6 @@ using namespace hermes::experiments;
 using Points = std::vector<vectorlib::Vector2D<double>>;
 
 namespace {
-
-/// The rows of a CSV file by the names of its columns.
-QVector<QMap<QByteArray, QByteArray>> table(const QString &path) {
-    QVector<QMap<QByteArray, QByteArray>> rows;
-    const QList<QByteArray> text = contentOf(path).trimmed().split('\n'), names = text.value(0).split(',');
-    for (const QByteArray &line : text.mid(1)) {
-        const QList<QByteArray> fields = line.split(',');
-        rows.resize(rows.size() + 1);
-        for (int i = 0; i < names.size(); ++i)
-            rows.last()[names[i]] = fields.value(i);
-    }
-    return rows;
-}
 
 std::size_t fewestByTrying(const Points &points, std::size_t first, double sigma) {
     std::size_t fewest = points.size() - first;
@@ -50,14 +38,11 @@ Points randomWalk(std::uint64_t seed, int count) {
 
 /// hermes-vector experiment: figures 5.3 to 5.5, 6.1 to 6.3 and 6.7 to 6.13 of the thesis, and the options of
 /// segmentation and vectorization that go with them.
-class TestCloudFigures : public QObject {
+class TestCloudFigures : public QObject, protected TestFolder {
     Q_OBJECT
-    TestFolder folder_;
-    QString path(const char *name = "") const { return folder_.path(name); }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void fewestLinesAreTheFewest() {
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {

@@ -1,3 +1,4 @@
+#include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
 #include "vectorlib/experiments/RangeFit.h"
 #include "vectorlib/experiments/ScanPairs.h"
@@ -12,19 +13,6 @@ namespace {
 using Point = vectorlib::Vector2D<double>;
 using Segment = vectorlib::LineSegment2D<double>;
 using Row = QMap<QByteArray, QByteArray>;
-
-/// The rows of a CSV file by the names of its columns.
-QVector<Row> table(const QString &path) {
-    QVector<Row> rows;
-    const QList<QByteArray> text = contentOf(path).trimmed().split('\n'), names = text.value(0).split(',');
-    for (const QByteArray &line : text.mid(1)) {
-        const QList<QByteArray> fields = line.split(',');
-        rows.resize(rows.size() + 1);
-        for (int i = 0; i < names.size(); ++i)
-            rows.last()[names[i]] = fields.value(i);
-    }
-    return rows;
-}
 
 /// A room of 6 m x 4 m with a step in one corner; free space inside.
 World room() {

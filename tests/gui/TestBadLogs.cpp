@@ -2,10 +2,9 @@
 #include "tests/gui/VectorProgram.h"
 
 /// hermes-vector map with logs that are spoiled: what is wrong is counted and told, and the map stays good.
-class TestBadLogs : public QObject {
+class TestBadLogs : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
     std::mt19937 random_;
 
     std::size_t any(std::size_t count) { return random_() % count; }
@@ -53,8 +52,7 @@ class TestBadLogs : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void isToldAndDoesNoHarm_data() {
         const Rows<QStringList> row("kinds");
@@ -81,9 +79,9 @@ private Q_SLOTS:
             std::map<QString, int> least;
             for (const QString &kind : kinds)
                 least[kind] = spoil(log, kind);
-            put(folder_.path("log"), log.text());
-            const Result r = ran({"map", folder_.path("log"), "--out-trajectory", folder_.path("tum"),
-                                  "--out-map", folder_.path("map.csv"), "--force"});
+            put(path("log"), log.text());
+            const Result r = ran({"map", path("log"), "--out-trajectory", path("tum"), "--out-map",
+                                  path("map.csv"), "--force"});
             const QJsonObject told = json(r.out);
             for (const char *kind :
                  {"duplicated", "empty", "stamps_back", "odometry_refused", "odometry_leaps"}) {
@@ -95,7 +93,7 @@ private Q_SLOTS:
             if (kinds.isEmpty())
                 QCOMPARE(r.err, QByteArray());
             QCOMPARE(told["scans"].toInt(), int(log.lines.size()));
-            const std::vector<vectorlib::Pose2D> found = posesOfTum(contentOf(folder_.path("tum")));
+            const std::vector<vectorlib::Pose2D> found = posesOfTum(contentOf(path("tum")));
             QCOMPARE(found.size(), log.truth().size());
             const RevisitErrors errors(found, log.truth());
             const QString text =
@@ -110,9 +108,9 @@ private Q_SLOTS:
         SimulatedLog log(building.world, building.drive(1), random_);
         log.lines.resize(4);
         log.lines[2] = log.lines[1];
-        put(folder_.path("log"), log.text());
-        const Result scan = ran({"map", folder_.path("log"), "--scan", "2"});
-        QCOMPARE(scan.out, run({"map", folder_.path("log"), "--scan", "1"}).out);
+        put(path("log"), log.text());
+        const Result scan = ran({"map", path("log"), "--scan", "2"});
+        QCOMPARE(scan.out, run({"map", path("log"), "--scan", "1"}).out);
         QVERIFY(scan.err.contains("1 scan(s) left out that repeat"));
     }
 };

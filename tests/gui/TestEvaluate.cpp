@@ -10,13 +10,11 @@ using vectorlib::Pose2D;
 using vectorlib::Transformation2D;
 
 /// hermes-vector evaluate: a trajectory beside the reference poses of a log.
-class TestEvaluate : public QObject {
+class TestEvaluate : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
     using Drive = std::vector<Pose2D>;
 
-    QString path(const char *name) const { return folder_.path(name); }
     /// A log of the poses, a tenth of a second apart, and a trajectory of some of them.
     void writeLog(const Drive &drive) const {
         QByteArray text;
@@ -68,8 +66,7 @@ class TestEvaluate : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     // Against all pairs, one by one, as the rule says.
     void findsEveryPlaceMetAgain() {

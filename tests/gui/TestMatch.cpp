@@ -6,19 +6,11 @@
 #include <random>
 
 /// hermes-vector match: scans of a room from two places, as points, as segments and against a map.
-class TestMatch : public QObject {
+class TestMatch : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QString seen(const char *name, const char *pose, bool points) const {
-        return ::seen(folder_, name, pose, points);
-    }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
     void findsTheMotion_data();
     void findsTheMotion();
     void pointsMayComeInAnyOrder_data();
@@ -165,7 +157,7 @@ void TestMatch::expectedPoseMovesTheSearch() {
 
 void TestMatch::anyMotionNeedsNoEstimate() {
     for (const bool points : {true, false}) {
-        folder_.empty();
+        empty();
         const QString a = seen("a.csv", "-1,0,0", points), b = seen("b.csv", "1.5,0.3,2.9", points);
         const QJsonObject best = json(run({"match", a, b}).out)["solutions"].toArray()[0].toObject();
         QVERIFY(best["accepted"].toBool());
@@ -256,7 +248,7 @@ void TestMatch::badInput() {
     for (const QStringList &files :
          {QStringList{path("in.csv"), data("room.csv")}, QStringList{data("room.csv"), path("in.csv")}}) {
         refused(run(QStringList{"match", "--out", path("out")} + files), 1, message);
-        QCOMPARE(folder_.files(), QStringList{"in.csv"});
+        QCOMPARE(files(), QStringList{"in.csv"});
     }
 }
 

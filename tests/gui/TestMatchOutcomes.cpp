@@ -3,19 +3,11 @@
 #include <QJsonArray>
 
 /// How hermes-vector match ends, in the same keys and words whatever the method.
-class TestMatchOutcomes : public QObject {
+class TestMatchOutcomes : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QString seen(const char *name, const char *pose, bool points) const {
-        return ::seen(folder_, name, pose, points);
-    }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
     void keysAreTheSameForAllMethods();
     void outcomeIsTheSameForAllMethods_data();
     void outcomeIsTheSameForAllMethods();

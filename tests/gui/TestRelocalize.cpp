@@ -4,15 +4,9 @@
 #include <QXmlStreamReader>
 
 /// hermes-vector relocalize: the place of a scan in a map, its picture, and a scan out of a log.
-class TestRelocalize : public QObject {
+class TestRelocalize : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QString seen(const char *name, const char *pose, bool points) const {
-        return ::seen(folder_, name, pose, points);
-    }
     /// Two rooms of the same shape as a map.
     QString twins() const {
         QByteArray walls = "x1,y1,x2,y2\n";
@@ -34,8 +28,7 @@ class TestRelocalize : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void needsNoExpectation() {
         seen("a.csv", "0,0,0", false);
@@ -129,7 +122,7 @@ private Q_SLOTS:
         QVERIFY(first.out != second.out);
         refused(run({"map", log, "--scan", "1000", "--out", path("scan.csv")}), 1,
                 "expected a scan 1000 (they count from 0)");
-        QVERIFY(folder_.files().isEmpty());
+        QVERIFY(files().isEmpty());
         const Result map = run({"map", log, "--scan", "1", "--out-map", path("m.csv")});
         QCOMPARE(map.status, 2);
         QVERIFY2(map.err.contains("--scan") && map.err.contains("--out-map"), map.err.constData());

@@ -35,14 +35,11 @@ void appendForeign(const QString &path, quint16 port) {
 
 } // namespace
 
-class TestVectorCaptures : public QObject {
+class TestVectorCaptures : public QObject, protected TestFolder {
     Q_OBJECT
-    TestFolder folder_;
-    QString path(const char *name) const { return folder_.path(name); }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void anyPortIsRead() {
         writeCapture(path("usual.pcap"), 400);
@@ -129,7 +126,7 @@ private Q_SLOTS:
         writeCapture(path("c.pcap"), 400, {{0xC0A801C9, 4711}});
         for (const char *command : {"ring", "map"}) {
             refused(run(QStringList{command, path("c.pcap"), "--out", path("out")} + options), 1, told);
-            QCOMPARE(folder_.files(), QStringList{"c.pcap"});
+            QCOMPARE(files(), QStringList{"c.pcap"});
         }
     }
 

@@ -5,17 +5,11 @@
 #include <unistd.h>
 
 /// hermes-vector when something is wrong: exit status, message, and no trace of a file.
-class TestVectorFailures : public QObject {
+class TestVectorFailures : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QStringList files() const { return folder_.files(); }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void wrongUsage_data() {
         const Rows<QStringList, QByteArray> row("arguments", "named");
@@ -184,7 +178,7 @@ private Q_SLOTS:
         QVERIFY2(fault.isEmpty(), fault.constData());
     }
     void longNamesAreToldBeforeTheWork() {
-        const QString name = folder_.path(QByteArray(300, 'n').constData());
+        const QString name = path(QByteArray(300, 'n').constData());
         refused(run({"segment", path("missing.csv"), "--out", name}), 1,
                 "nnn: cannot be written: File name too long");
     }
@@ -197,7 +191,7 @@ private Q_SLOTS:
     /// The program waits for the rest of its input when it is killed: nothing it could do about its files.
     void killLeavesNoFile() {
         QFETCH(bool, isThere);
-        const int probe = ::open(qPrintable(folder_.path()), O_TMPFILE | O_WRONLY, 0600);
+        const int probe = ::open(qPrintable(path()), O_TMPFILE | O_WRONLY, 0600);
         if (probe < 0)
             QSKIP("this file system knows no files without a name");
         ::close(probe);
@@ -210,7 +204,7 @@ private Q_SLOTS:
         const QString handles = QStringLiteral("/proc/%1/fd").arg(process.processId());
         const auto holds = [&] { // the file that it writes
             for (const QFileInfo &file : QDir(handles).entryInfoList(QDir::AllEntries | QDir::System))
-                if (file.symLinkTarget().startsWith(folder_.path()))
+                if (file.symLinkTarget().startsWith(path()))
                     return true;
             return false;
         };
@@ -250,7 +244,7 @@ private Q_SLOTS:
         QVERIFY2(said.contains("cannot be written to its end: its reader has gone"), said.constData());
         QCOMPARE(files(), complete);
         for (const QString &name : complete)
-            QVERIFY(contentOf(folder_.path(qPrintable(name))).size() > 100);
+            QVERIFY(contentOf(path(qPrintable(name))).size() > 100);
     }
     void fullDevice() {
         const Result r =

@@ -2,17 +2,11 @@
 #include "tests/support/RealData.h"
 
 /// hermes-vector as its users meet it: columns, values, files, help.
-class TestVectorProgram : public QObject {
+class TestVectorProgram : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QStringList files() const { return folder_.files(); }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void columns_data() {
         const Rows<QStringList, QByteArray, int> row("arguments", "header", "rows");

@@ -95,10 +95,13 @@ inline void writeCapture(const QString &path, int packets,
         qFatal("%s", done.error().c_str());
 }
 
-/// A folder whose files are removed before every test.
+/// A folder of the test class that inherits it; empty() removes its files.
 class TestFolder {
-public:
-    bool isValid() const { return folder_.isValid(); }
+protected:
+    TestFolder() {
+        if (!folder_.isValid())
+            qFatal("no temporary folder: %s", qPrintable(folder_.errorString()));
+    }
     QString path(const char *name = "") const { return folder_.filePath(QLatin1String(name)); }
     /// What is left in it, temporary files too.
     QStringList files() const {
@@ -108,20 +111,17 @@ public:
         for (const QString &name : files())
             QFile::remove(folder_.filePath(name));
     }
+    /// What a sensor at the pose sees of world.json, as a file of the folder: a scan of points, or exact
+    /// segments. The noise of points differs with the first letter of the name.
+    QString seen(const char *name, const char *pose, bool points) const {
+        QStringList arguments{"observe", data("world.json"), QStringLiteral("--pose=") + QLatin1String(pose),
+                              "--out", path(name)};
+        if (points)
+            arguments += {"--scan", "1000", "--noise", "0.01", "--seed", QString::number(name[0])};
+        ran(arguments);
+        return path(name);
+    }
 
 private:
     QTemporaryDir folder_;
 };
-
-/// What a sensor at the pose sees of world.json, as a file of the folder: a scan of points, or exact
-/// segments. The noise of points differs with the first letter of the name.
-inline QString seen(const TestFolder &folder, const char *name, const char *pose, bool points) {
-    QStringList arguments{"observe", data("world.json"), QStringLiteral("--pose=") + QLatin1String(pose),
-                          "--out", folder.path(name)};
-    if (points)
-        arguments += {"--scan", "1000", "--noise", "0.01", "--seed", QString::number(name[0])};
-    const Result r = run(arguments);
-    if (r.status != 0)
-        qFatal("%s", r.err.constData());
-    return folder.path(name);
-}
