@@ -71,10 +71,20 @@ class SerialFilesFixture {
 protected:
     RecordingPlan plan() const { return {folder_->path(), "logger", 0, 0}; }
     QString base() const { return folder_->filePath("logger-a"); }
+    /// A recording of that port has begun; its bytes go through a queue of that size.
+    void begin(std::size_t bytes = 1 << 20) {
+        recorder_.reset(); // it reads from the queue
+        queue_ = std::make_unique<ChunkQueue>(bytes);
+        recorder_ = std::make_unique<SerialRecorder>();
+        recorder_->setPorts({{"a", "u", queue_.get()}});
+        QVERIFY(recorder_->begin(plan()).ok());
+    }
     /// The CSV without its header.
     QList<QByteArray> exported(ExportRows rows);
 
     std::unique_ptr<QTemporaryDir> folder_;
+    std::unique_ptr<ChunkQueue> queue_;
+    std::unique_ptr<SerialRecorder> recorder_;
 };
 
 inline QList<QByteArray> SerialFilesFixture::exported(ExportRows rows) {

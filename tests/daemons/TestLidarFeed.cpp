@@ -122,10 +122,8 @@ void TestLidarFeed::sourcesThatCannotBeOpened() {
 }
 
 void TestLidarFeed::slowReadersLoseTurnsAndAreTold() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 1000));
+    MadeReplay listener(6000);
+    QVERIFY(listener.play(1000));
     QTRY_VERIFY(listener.ended.load());
     listener.take();
     const LidarFeed::Counts counts = listener.feed.counts();
@@ -136,11 +134,9 @@ void TestLidarFeed::slowReadersLoseTurnsAndAreTold() {
 
 /// Also when the source is live by the time it is taken; the turn that was cut off by that, too.
 void TestLidarFeed::whatWaitsIsStillOfTheReplay() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
+    MadeReplay listener(6000);
     listener.feed.wantClouds(LidarFeed::Thinning());
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    QVERIFY(listener.play(0));
     QTRY_VERIFY(listener.ready.load() >= 16); // the queue of the clouds is full
     QVERIFY(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}));
     int turns = 0, clouds = 0;

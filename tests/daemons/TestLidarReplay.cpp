@@ -44,39 +44,34 @@ void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
 }
 
 void TestLidarReplay::fastReplayWaitsForItsReader() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000); // 34 turns
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    MadeReplay listener(6000); // 34 turns
+    QVERIFY(listener.play(0));
     QTRY_COMPARE(listener.ready.load(), 16);                   // the queue is full
     QCOMPARE(listener.feed.counts().turns, std::uint64_t(16)); // answers meanwhile
     QVERIFY(!listener.ended);
     QVERIFY(listener.waitForEnd());
-    QVERIFY(same(listener.turns, decode(path)));
+    QVERIFY(same(listener.turns, decode(listener.path)));
     QCOMPARE(listener.feed.counts().turnsDropped, std::uint64_t(0));
 }
 
 void TestLidarReplay::replayKeepsItsPace() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 1000); // 0.553 s
-    LidarListener listener;
+    MadeReplay listener(1000); // 0.553 s
     QElapsedTimer timer;
     timer.start();
-    QVERIFY(listener.openPcap(path.toStdString(), 1));
+    QVERIFY(listener.play(1));
     QVERIFY(listener.waitForEnd());
     QVERIFY(timer.elapsed() > 540);
-    QVERIFY(same(listener.turns, decode(path)));
+    QVERIFY(same(listener.turns, decode(listener.path)));
 }
 
 void TestLidarReplay::cutCaptureGivesAllBeforeTheCut() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 500);
-    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    MadeReplay listener(500);
+    QVERIFY(QFile::resize(listener.path, 24 + 300 * (16 + 42 + 1206) + 700));
+    QVERIFY(listener.play(0));
     QVERIFY(listener.waitForEnd());
-    QVERIFY2(listener.error.find(path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
-             listener.error.c_str());
+    QVERIFY2(
+        listener.error.find(listener.path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
+        listener.error.c_str());
     QCOMPARE(listener.feed.counts().packets.packets, std::uint64_t(300));
     std::size_t points = 0;
     for (const Turn &turn : listener.turns)
@@ -85,10 +80,8 @@ void TestLidarReplay::cutCaptureGivesAllBeforeTheCut() {
 }
 
 void TestLidarReplay::replayLoops() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 500);
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0, true));
+    MadeReplay listener(500);
+    QVERIFY(listener.play(0, true));
     QTRY_VERIFY((listener.take(), listener.turns.size() >= 12));
     QVERIFY(!listener.ended);
     listener.feed.close();
@@ -102,9 +95,9 @@ void TestLidarReplay::replayLoops() {
     QCOMPARE(counts.lost + counts.outOfOrder + counts.clockJumps, std::uint64_t(0));
     QVERIFY(listener.feed.player().playback().status().loops >= 2);
     // A file that is cut is played to the cut, once.
-    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
+    QVERIFY(QFile::resize(listener.path, 24 + 300 * (16 + 42 + 1206) + 700));
     LidarListener cut;
-    QVERIFY(cut.openPcap(path.toStdString(), 0, true));
+    QVERIFY(cut.openPcap(listener.path.toStdString(), 0, true));
     QVERIFY(cut.waitForEnd());
     QVERIFY(!cut.error.empty());
     QCOMPARE(cut.feed.counts().packets.packets, std::uint64_t(300));
@@ -175,10 +168,8 @@ void TestLidarReplay::replaySeeks() {
 }
 
 void TestLidarReplay::replayPauses() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 3000); // 1.659 s
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 1));
+    MadeReplay listener(3000); // 1.659 s
+    QVERIFY(listener.play(1));
     QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
     listener.feed.player().playback().setPaused(true);
     std::uint64_t packets = 0; // one may be on its way
@@ -192,14 +183,12 @@ void TestLidarReplay::replayPauses() {
     listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd()); // and does not hurry to catch up: the rest takes its time
     QVERIFY(timer.elapsed() > 700 + qint64(double(3000 - packets) * 0.553) - 20);
-    QVERIFY(same(listener.turns, decode(path)));
+    QVERIFY(same(listener.turns, decode(listener.path)));
 }
 
 void TestLidarReplay::closingEndsAWaitingReplay() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    MadeReplay listener(6000);
+    QVERIFY(listener.play(0));
     QTRY_COMPARE(listener.ready.load(), 16);
     listener.feed.close(); // does not hang
     QVERIFY(!listener.ended);

@@ -85,14 +85,11 @@ void TestSerialRepair::damageIsNamed() {
 }
 
 void TestSerialRepair::longChunksComeInPieces() {
-    ChunkQueue queue(1 << 20);
-    SerialRecorder recorder;
-    recorder.setPorts({{"a", "u", &queue}});
-    QVERIFY(recorder.begin(plan()).ok());
+    begin();
     const QByteArray large(SerialLogReader::mostBytes + 5, 'x');
-    push(queue, large, after(1));
-    push(queue, "end", after(2));
-    recorder.end();
+    push(*queue_, large, after(1));
+    push(*queue_, "end", after(2));
+    recorder_->end();
     const auto pieces = readAll(base());
     QCOMPARE(pieces->size(), 3);
     QCOMPARE(pieces->at(1).bytes.size(), 5);
