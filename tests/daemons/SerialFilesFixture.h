@@ -3,13 +3,11 @@
 #include "daemons/seriallogger/SerialExport.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialRecorder.h"
+#include "tests/support/FileSizeLimit.h"
 #include "tests/support/Files.h"
 #include "tests/support/Patience.h"
 
 #include <QTemporaryDir>
-
-#include <csignal>
-#include <sys/resource.h>
 
 namespace hermes {
 
@@ -50,21 +48,6 @@ inline Result<QList<SerialLogReader::Piece>> readAll(const QString &base) {
         pieces.append(*piece);
     }
 }
-
-/// No file of this process may become longer while this lives: as on a full disk, without needing one.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) {
-        std::signal(SIGXFSZ, SIG_IGN);
-        getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limit{bytes, before_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
-
-private:
-    rlimit before_;
-};
 
 /// A folder with the recording of a logger "logger", and its port "a".
 class SerialFilesFixture {

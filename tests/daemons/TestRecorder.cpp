@@ -1,15 +1,13 @@
 #include "common/capture/PcapReader.h"
 #include "daemons/velodynelogger/Recorder.h"
 #include "protocol/wire/Fields.h"
+#include "tests/support/FileSizeLimit.h"
 #include "tests/support/Sensor.h"
 
 #include <QProcess>
 #include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QtTest>
-
-#include <csignal>
-#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::velodynelogger;
@@ -211,17 +209,12 @@ void TestRecorder::lossesOfTheReceiverAreItsOwn() {
 void TestRecorder::reportsTheDisk() {
     QTemporaryDir folder;
     const Sensor sensor;
-    // A limit on the size of files stands for a full disk; without the signal it is an error of write().
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit before;
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit small{1000000, before.rlim_max};
     Recorder recorder;
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &small), 0);
+    std::optional<FileSizeLimit> disk(1000000);
     QVERIFY(recorder.begin(planIn(folder)).ok());
     push(recorder, sensor, 0, 2000);
     QTRY_VERIFY(recorder.state().error);
-    setrlimit(RLIMIT_FSIZE, &before);
+    disk.reset();
     recorder.end();
     const RecordingState state = recorder.state();
     QCOMPARE(state.error->code, int(ErrorCode::InputOutput));

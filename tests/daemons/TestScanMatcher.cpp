@@ -1,9 +1,8 @@
 #include "MatcherFixture.h"
+#include "tests/support/FileSizeLimit.h"
 
-#include <csignal>
 #include <future>
 #include <limits>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 using namespace hermes;
@@ -99,14 +98,10 @@ void TestScanMatcher::refusesToOverwriteAndNamesThePath() {
 
 void TestScanMatcher::fullDiskLeavesNoFile() {
     drive(0, 3);
-    std::signal(SIGXFSZ, SIG_IGN); // a limit of the file size stands for the disk
-    rlimit before;
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit tiny{100, before.rlim_max};
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &tiny), 0);
+    std::optional<FileSizeLimit> disk(100);
     const Error map = failure("map.save", {{"path", "room.csv"}});
     const auto settings = matcher->settings().save(folder->filePath("settings.json"));
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
+    disk.reset();
     QVERIFY2(map.is(ErrorCode::InputOutput), qPrintable(map.message));
     QVERIFY(!settings.ok());
     QVERIFY(QDir(folder->path()).entryList(QDir::Files).isEmpty());

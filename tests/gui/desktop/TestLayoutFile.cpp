@@ -1,10 +1,9 @@
 #include "tests/gui/desktop/LayoutWindow.h"
+#include "tests/support/FileSizeLimit.h"
 
 #include <QProcess>
 #include <QRandomGenerator>
 #include <QSettings>
-#include <csignal>
-#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -212,17 +211,13 @@ void TestLayoutFile::whatCannotBeWrittenIsTold() {
         QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
     }
     LayoutWindow full(file_, {"127.0.0.1:1"});
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit before{};
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit none{0, before.rlim_max};
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &none), 0); // as on a full disk
+    std::optional<FileSizeLimit> disk(0);
     full.saveAs("more");
     const bool isTold = QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
     full.window->close();
     const bool isAsked =
         QTest::qWaitFor([&full] { return full.notice().contains("Close the window once more"); });
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
+    disk.reset();
     QVERIFY2(isTold, qPrintable(full.notice()));
     QVERIFY2(isAsked, qPrintable(full.notice()));
     full.saveAs("when there is room");
