@@ -28,8 +28,8 @@ private Q_SLOTS:
     void aReplayThatFailsEndsForAll_data();
     void aReplayThatFailsEndsForAll();
     void aReplayEndsWhenItIsTold();
+    void aReplayFollowsAnother_data();
     void aReplayFollowsAnother();
-    void anEndIsForTheNextReplayToo();
     void allGoLiveWhenALaterPassFails();
     void ordersGoToAll();
     void whoHasEndedBeginsAnew();
@@ -297,22 +297,14 @@ void TestSessions::aReplayEndsWhenItIsTold() {
     QVERIFY(a_->source == "live" && b_->source == "live");
 }
 
-void TestSessions::aReplayFollowsAnother() {
-    const RecordedSession first = record("run1"), second = record("run2");
-    SessionPlayer player;
-    int ends = 0;
-    connect(&player, &SessionPlayer::ended, [&] { ++ends; });
-    a_->positionsToEnd = 1000;
-    player.play(first, {});
-    QTRY_COMPARE(robot_->asked.count("a: is released"), 1);
-    a_->positionsToEnd = 3;
-    player.play(second, {});
-    QTRY_COMPARE(robot_->asked.count("a: is released"), 2);
-    QTRY_COMPARE(ends, 2);
-    QVERIFY(!player.isPlaying());
+void TestSessions::aReplayFollowsAnother_data() {
+    const Rows<bool> row("isEnded"); // both, before the second has begun
+    row("to its end", false);
+    row("and is ended", true);
 }
 
-void TestSessions::anEndIsForTheNextReplayToo() {
+void TestSessions::aReplayFollowsAnother() {
+    QFETCH(bool, isEnded);
     const RecordedSession first = record("run1"), second = record("run2");
     SessionPlayer player;
     int ends = 0;
@@ -320,10 +312,15 @@ void TestSessions::anEndIsForTheNextReplayToo() {
     a_->positionsToEnd = 1000;
     player.play(first, {});
     QTRY_COMPARE(robot_->asked.count("a: is released"), 1);
+    a_->positionsToEnd = isEnded ? 1000 : 3;
     player.play(second, {});
-    player.end();
-    QTRY_COMPARE(ends, 1);
-    QVERIFY(!player.isPlaying() && a_->source == "live" && b_->source == "live");
+    if (isEnded)
+        player.end();
+    else
+        QTRY_COMPARE(robot_->asked.count("a: is released"), 2);
+    QTRY_COMPARE(ends, isEnded ? 1 : 2);
+    QVERIFY(!player.isPlaying());
+    QVERIFY(!isEnded || (a_->source == "live" && b_->source == "live"));
 }
 
 void TestSessions::allGoLiveWhenALaterPassFails() {

@@ -13,7 +13,6 @@ using namespace hermes::desktop;
 class TestEventLine : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void whatIsOverIsSaidToBeOver();
     void theFaultIsSeenInASmallWindow();
     void oneNameOfADaemonInAllOfTheList();
     void otherClientTakesTheControl();
@@ -28,22 +27,6 @@ private:
         return cells;
     }
 };
-
-void TestEventLine::whatIsOverIsSaidToBeOver() {
-    RobotProcesses robot;
-    robot.start("simulator");
-    OpenWindow window(robot);
-    QVERIFY(window.show());
-    robot.signal("simulator", SIGSTOP);
-    QTRY_VERIFY2_WITH_TIMEOUT(line(window)->text().contains("simulator: It is connected, but does not"),
-                              qPrintable(line(window)->text()), 10000);
-    QVERIFY(line(window)->styleSheet().contains("#d0100c"));
-    robot.signal("simulator", SIGCONT);
-    QTRY_VERIFY2_WITH_TIMEOUT(
-        line(window)->text().contains(QRegularExpression("OVER after \\d+ s: simulator: It is connected")),
-        qPrintable(line(window)->text()), 10000);
-    QVERIFY(!line(window)->styleSheet().contains("#d0100c"));
-}
 
 void TestEventLine::theFaultIsSeenInASmallWindow() {
     RobotProcesses robot;

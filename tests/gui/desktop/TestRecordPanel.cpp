@@ -23,7 +23,6 @@ private Q_SLOTS:
     void aStartThatTimesOutIsTakenBack();
     void aReplayIsShownAndDrivingAsks();
     void aStopIsSentUntilItIsAnswered();
-    void aLoggerThatWasAwayIsStoppedToo();
     void aLoggerThatDiesIsTold();
     void theNextFreeNameIsProposed_data();
     void theNextFreeNameIsProposed();
@@ -233,34 +232,6 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
     QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
     QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
-    panel_.reset();
-}
-
-/// Its link was gone as Stop was pressed.
-void TestRecordPanel::aLoggerThatWasAwayIsStoppedToo() {
-    FakeLoggers robot;
-    FakeLogger &here = robot.add("here"), &away = robot.add("away");
-    Fleet fleet;
-    for (const auto &logger : robot.loggers)
-        QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("here") &&
-                find<QLabel>("amount")->text().contains("away"));
-    click("record");
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
-    QVERIFY(here.recording.isActive() && away.recording.isActive());
-    DaemonLink *const link = fleet.robot()->withName("away");
-    link->client().close();
-    QTRY_COMPARE(find<QLabel>("lost")->text(), QString("away was recording run1 and is gone."));
-    click("record");
-    QTRY_VERIFY(!here.recording.isActive());
-    QTRY_VERIFY2(message().contains("away: it took part, but does not answer"), qPrintable(message()));
-    QVERIFY(away.recording.isActive());
-    QVERIFY(link->client().connectTo(away.address()).ok());
-    QTRY_VERIFY_WITH_TIMEOUT(!away.recording.isActive(), 15000);
-    QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
-    QVERIFY(!find<QLabel>("lost")->isVisible()); // it had gone on
     panel_.reset();
 }
 

@@ -21,7 +21,8 @@ class TestRecordingEnd : public QObject {
 private Q_SLOTS:
     void aStopGoesOnWhileAnotherRobotIsChosen();
     void aStopOfARobotThatIsRemoved();
-    void whatWasBegunLaterGoesOn();
+    void aLoggerThatWasAwayIsStoppedToo_data();
+    void aLoggerThatWasAwayIsStoppedToo();
     void aStartWhoseLinkBreaksIsTakenBack();
     void anotherClientEndsIt();
     void aFullDiskEndsIt();
@@ -149,8 +150,15 @@ void TestRecordingEnd::aStopOfARobotThatIsRemoved() {
     QCOMPARE(text("message"), QString("Recording run1.")); // it was said once
 }
 
-/// Its link was gone as Stop was pressed, and others have begun another recording meanwhile.
-void TestRecordingEnd::whatWasBegunLaterGoesOn() {
+void TestRecordingEnd::aLoggerThatWasAwayIsStoppedToo_data() {
+    const Rows<bool> row("isLater"); // others have begun another recording meanwhile, which goes on
+    row("the same recording", false);
+    row("a later one", true);
+}
+
+/// Its link was gone as Stop was pressed.
+void TestRecordingEnd::aLoggerThatWasAwayIsStoppedToo() {
+    QFETCH(bool, isLater);
     FakeLoggers robot;
     FakeLogger &here = robot.add("here"), &away = robot.add("away");
     Fleet fleet;
@@ -162,16 +170,23 @@ void TestRecordingEnd::whatWasBegunLaterGoesOn() {
     link->client().close();
     QTRY_COMPARE(text("lost"), QString("away was recording run1 and is gone."));
     click("record");
+    QTRY_VERIFY(!here.recording.isActive());
     QTRY_VERIFY2(text("message").contains("away: it took part, but does not answer"),
                  qPrintable(text("message")));
-    QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
-    QVERIFY(robot.clients.back()->callAndWait("record.start", QJsonObject{{"name", "later"}}).ok());
-    QVERIFY(link->client().connectTo(away.address()).ok());
-    QTRY_VERIFY_WITH_TIMEOUT(recordsForSeconds("later"), 30000);
     QVERIFY(away.recording.isActive());
-    click("record");
-    QTRY_VERIFY(!away.recording.isActive());
+    if (isLater) {
+        QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
+        QVERIFY(robot.clients.back()->callAndWait("record.start", QJsonObject{{"name", "later"}}).ok());
+    }
+    QVERIFY(link->client().connectTo(away.address()).ok());
+    if (isLater) {
+        QTRY_VERIFY_WITH_TIMEOUT(recordsForSeconds("later"), 30000);
+        QVERIFY(away.recording.isActive());
+        click("record");
+    }
+    QTRY_VERIFY_WITH_TIMEOUT(!away.recording.isActive(), 15000);
     QTRY_COMPARE(text("message"), QString("Stopped, nothing missing."));
+    QVERIFY(isLater || !find<QLabel>("lost")->isVisible()); // it had gone on
 }
 
 /// It has begun, and nobody knows.
