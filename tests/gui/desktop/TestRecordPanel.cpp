@@ -1,14 +1,12 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/MapPanel.h"
-#include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SessionTable.h"
-#include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/gui/desktop/RecordPanelFixture.h"
+#include "tests/support/PatientClient.h"
 
 #include <QHeaderView>
-#include <QLabel>
 #include <QLineEdit>
-#include <QPushButton>
 #include <QTreeWidget>
 #include <cmath>
 
@@ -16,7 +14,7 @@ using namespace hermes;
 using namespace hermes::desktop;
 
 /// Records what the simulated lidar sends, with a serial logger beside it, and replays it.
-class TestRecordPanel : public QObject {
+class TestRecordPanel : public QObject, RecordPanelFixture {
     Q_OBJECT
 private Q_SLOTS:
     void recordsAsOneAndReplays();
@@ -28,16 +26,10 @@ private Q_SLOTS:
     void theNextFreeNameIsProposed();
     void recordingsAreSortedByTheHeader();
     void lossesAreToldByTheirNames();
+    void cleanup() { panel_.reset(); }
 
 private:
-    template <typename T>
-    T *find(const QString &name) const {
-        return panel_->findChild<T *>(name);
-    }
-    void click(const QString &button) { QTest::mouseClick(find<QPushButton>(button), Qt::LeftButton); }
-    QString message() const { return find<QLabel>("message")->text(); }
-
-    std::unique_ptr<RecordPanel> panel_;
+    QString message() const { return text("message"); }
 };
 
 void TestRecordPanel::recordsAsOneAndReplays() {
@@ -46,16 +38,13 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
     Fleet fleet;
     robot.connectTo(fleet);
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
-                find<QLabel>("amount")->text().contains("seriallogger"));
+    open(fleet, {"velodynelogger", "seriallogger"});
 
     OpenWindow::type(find<QLineEdit>("name"), "first");
     click("record");
     QTRY_COMPARE(message(), QString("Recording first."));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("amount")->text().contains("the disk will do for"), 15000);
+    QTRY_COMPARE(button("record"), QString("S&top"));
+    QTRY_VERIFY_WITH_TIMEOUT(text("amount").contains("the disk will do for"), 15000);
     QTRY_VERIFY(find<QPushButton>("mark")->isVisible());
     QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
     Q_EMIT find<QTreeWidget>("sessions")->itemActivated(find<QTreeWidget>("sessions")->topLevelItem(0), 0);
@@ -64,7 +53,7 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     click("mark");
     QTRY_COMPARE(message(), QString("Marked: at the door"));
     click("record");
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(button("record"), QString("Re&cord"));
     QTRY_VERIFY2(message().contains("nothing missing"), qPrintable(message()));
     QVERIFY(!find<QPushButton>("mark")->isVisible());
     QVERIFY(contentOf(robot.path("recordings") + "/first/seriallogger-events.jsonl")
@@ -82,7 +71,7 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     OpenWindow::type(find<QLineEdit>("name"), "first");               // the same name once more
     click("record");
     QTRY_VERIFY(message().startsWith("nothing was begun; "));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(button("record"), QString("Re&cord"));
 
     sessions->setCurrentItem(sessions->topLevelItem(0));
     QTRY_VERIFY(find<QPushButton>("replay")->isEnabled());
@@ -105,12 +94,11 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_VERIFY(!find<QPushButton>("live")->isEnabled());
     sessions->setCurrentItem(sessions->topLevelItem(0)); // the chosen one goes with its loggers
     robot.signal("velodynelogger", SIGSTOP);
-    QTRY_VERIFY(find<QLabel>("amount")->text().startsWith("velodynelogger does not answer"));
+    QTRY_VERIFY(text("amount").startsWith("velodynelogger does not answer"));
     robot.kill("velodynelogger");
     robot.kill("seriallogger");
     QTRY_COMPARE(sessions->topLevelItemCount(), 0);
     QVERIFY(!find<QPushButton>("replay")->isEnabled());
-    panel_.reset();
 }
 
 /// As with hermesctl: see TestSessions.
@@ -118,12 +106,7 @@ void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
     FakeLoggers robot;
     FakeLogger &prompt = robot.add("prompt"), &late = robot.add("late");
     Fleet fleet;
-    for (const auto &logger : robot.loggers)
-        QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("prompt") &&
-                find<QLabel>("amount")->text().contains("late"));
+    open(fleet, robot);
     late.writer.hold = true;
     click("record");
     QTRY_VERIFY(prompt.recording.isActive());
@@ -136,7 +119,6 @@ void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
     const auto *const sessions = find<QTreeWidget>("sessions");
     QTRY_VERIFY(sessions->topLevelItemCount() == 1 && sessions->topLevelItem(0)->text(2) != "goes on");
     QVERIFY2(message().contains("late had begun and was stopped"), qPrintable(message()));
-    panel_.reset();
 }
 
 // Begun by somebody else: the window says so all the same.
@@ -149,10 +131,8 @@ void TestRecordPanel::aReplayIsShownAndDrivingAsks() {
     const auto label = [&](const char *name) { return open.window.findChild<QLabel *>(name); };
     const auto button = [&](const char *name) { return open.window.findChild<QPushButton *>(name); };
     QVERIFY(!label("replayBanner")->isVisible());
-    Client somebody, motors;
-    somebody.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
-    motors.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
-    QVERIFY(somebody.waitConnected().ok() && motors.waitConnected().ok());
+    ConnectedClient somebody(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
+    ConnectedClient motors(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
     const auto speed = [&] {
         return motors.callAndWait("motor.state")->toObject()["target"].toObject()["vx"].toDouble();
     };
@@ -204,20 +184,15 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
     robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
     Fleet fleet;
     robot.connectTo(fleet);
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
-                find<QLabel>("amount")->text().contains("seriallogger"));
-    Client lidar, serial;
-    lidar.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
-    serial.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
-    QVERIFY(lidar.waitConnected().ok() && serial.waitConnected().ok());
+    open(fleet, {"velodynelogger", "seriallogger"});
+    ConnectedClient lidar(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
+    ConnectedClient serial(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
     const auto records = [](Client &client) {
         return client.callAndWait("record.status")->toObject()["recording"].toBool();
     };
     click("record");
     QTRY_COMPARE(message(), QString("Recording run1."));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QTRY_COMPARE(button("record"), QString("S&top"));
     QVERIFY(records(lidar) && records(serial));
     robot.signal("seriallogger", SIGSTOP);
     click("record"); // before anybody knows that it is frozen
@@ -230,9 +205,8 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
     robot.signal("seriallogger", SIGCONT);
     QTRY_VERIFY_WITH_TIMEOUT(!records(serial), 10000);
     QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(button("record"), QString("Re&cord"));
     QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
-    panel_.reset();
 }
 
 void TestRecordPanel::aLoggerThatDiesIsTold() {
@@ -243,32 +217,27 @@ void TestRecordPanel::aLoggerThatDiesIsTold() {
     robot.start("seriallogger", settings);
     Fleet fleet;
     robot.connectTo(fleet);
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
-                find<QLabel>("amount")->text().contains("seriallogger"));
+    open(fleet, {"velodynelogger", "seriallogger"});
     auto *const lost = find<QLabel>("lost");
     click("record");
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QTRY_COMPARE(button("record"), QString("S&top"));
     QVERIFY(!lost->isVisible());
     robot.kill("seriallogger");
     QTRY_VERIFY(lost->isVisible());
     QCOMPARE(lost->text(), QString("seriallogger was recording run1 and is gone."));
     QVERIFY(lost->palette().color(QPalette::WindowText) != panel_->palette().color(QPalette::WindowText));
-    QCOMPARE(find<QPushButton>("record")->text(), QString("S&top")); // the other goes on
+    QCOMPARE(button("record"), QString("S&top")); // the other goes on
     robot.kill("velodynelogger");
     QTRY_VERIFY2(lost->text().contains("velodynelogger was recording run1 and is gone."),
                  qPrintable(lost->text()));
-    QCOMPARE(find<QLabel>("amount")->text(), QString("No logger is connected."));
+    QCOMPARE(text("amount"), QString("No logger is connected."));
     robot.start("seriallogger", settings);
     QTRY_VERIFY_WITH_TIMEOUT(lost->text().contains("seriallogger was gone while it recorded run1"), 20000);
-    QTRY_VERIFY(find<QPushButton>("record")->isEnabled() &&
-                !find<QPushButton>("record")->text().contains("top"));
+    QTRY_VERIFY(find<QPushButton>("record")->isEnabled() && !button("record").contains("top"));
     QTRY_COMPARE(find<QLineEdit>("name")->text(), QString("run2"));
     QTRY_COMPARE(message(), QString("The recording run1 has ended.\nseriallogger: it was cut off"));
     click("record"); // who begins anew has seen it
     QTRY_VERIFY(!lost->isVisible());
-    panel_.reset();
 }
 
 void TestRecordPanel::theNextFreeNameIsProposed_data() {
@@ -354,11 +323,10 @@ void TestRecordPanel::lossesAreToldByTheirNames() {
     RecordingState state;
     state.losses = {{"missing", 3}, {"kernel", 3}, {"too_long", 0}, {"disk_bytes", 7}};
     logger.writer.setState(state);
-    QTRY_VERIFY2(find<QLabel>("amount")->text().contains("; lidar lost: disk bytes 7, kernel 3, missing 3"),
-                 qPrintable(find<QLabel>("amount")->text()));
+    QTRY_VERIFY2(text("amount").contains("; lidar lost: disk bytes 7, kernel 3, missing 3"),
+                 qPrintable(text("amount")));
     click("record");
     QTRY_VERIFY(!logger.recording.isActive());
-    panel_.reset();
 }
 
 QTEST_MAIN(TestRecordPanel)
