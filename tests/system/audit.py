@@ -7,7 +7,7 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, Daemon, DaemonError, Process, free_port, wait_for, text_of
+from support import BINARIES, Daemon, Process, free_port, refusal, wait_for, text_of
 
 
 def lines_of(folder, name):
@@ -21,21 +21,13 @@ def lines_of(folder, name):
     return found
 
 
-def refusal(daemon, method, **params):
-    try:
-        daemon.call(method, **params)
-    except DaemonError as error:
-        return error.code
-    raise AssertionError(f"{method} was not refused")
-
-
 def check_lines(folder, log_folder):
     with Process(BINARIES, "softwaretrigger", free_port(0), log_folder, {"audit.folder": folder}) as process:
         with process.connect() as daemon:
             begun = time.time()
             daemon.call("settings.set", values={"limits": {"clients": 20}})
             daemon.call("settings.get")  # changes nothing
-            assert refusal(daemon, "trigger.fire", id="none") != 0
+            refusal(daemon, "trigger.fire", id="none")
             daemon.call("settings.reset", paths=["limits.clients"])
             health = {item["name"]: item for item in daemon.call("daemon.status")["health"]}
             daemon.call("daemon.shutdown")
@@ -55,14 +47,14 @@ def check_repeated(folder, log_folder):
                  {"audit.folder": folder, "controllers.1.url": line, "controllers.2.url": line, "access.plain": "observer"}) as process:
         with process.connect() as daemon:
             for _ in range(50):
-                assert refusal(daemon, "motor.drive", vx=0.1) != 0
+                refusal(daemon, "motor.drive", vx=0.1)
             for _ in range(3):
                 daemon.call("motor.estop")
         import hermes
         hermes.own_socket, own = lambda host, port: None, hermes.own_socket
         for _ in range(200):
             with Daemon(port=process.port) as stranger:
-                assert refusal(stranger, "settings.reset", paths=[]) == -32001
+                refusal(stranger, "settings.reset", -32001, paths=[])
         hermes.own_socket = own
         wait_for("the counts", lambda: sum(line.get("calls", 1) for line in lines_of(folder, "motorcontrol")) >= 253, 10)
     lines = lines_of(folder, "motorcontrol")

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import threading
 
-from support import BINARIES, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, Daemon, Process, free_port, refusal, wait_for
 import velodyne_reference as reference
 from lidar_decoders import write_capture
 
@@ -37,15 +37,6 @@ class Reader(threading.Thread):
 
     def wait(self, count):
         wait_for(f"{count} messages", lambda: len(self.seen) >= count)
-
-
-def refused(code, daemon, method, **params):
-    try:
-        daemon.call(method, **params)
-    except DaemonError as error:
-        assert error.code == code, (method, params, error)
-        return error
-    raise AssertionError(f"{method} {params} was not refused")
 
 
 def dropped_messages(logger):
@@ -150,7 +141,7 @@ def check_captures(logger, folder, capture, model):
         result = logger.call("capture.turn", name=model, format=kind)
         paths[kind] = result["path"]
         assert result["path"] == os.path.join(folder, f"{model}.{kind}") and result["points"] > 1000, result
-        refused(-32008, logger, "capture.turn", name=model, format=kind)  # it exists
+        refusal(logger, "capture.turn", -32008, name=model, format=kind)  # it exists
     sensor = {"hdl32e": reference.HDL32E, "vlp16": reference.VLP16}[model]
     check_csv(paths["csv"], turns)
     header, rows = read_rows(paths["pcd"], "DATA ascii")
@@ -162,8 +153,8 @@ def check_captures(logger, folder, capture, model):
     assert header[0] == "ply" and f"element vertex {len(rows)}" in header, header
     check_floats(rows, turns, sensor)
     assert not [name for name in os.listdir(folder) if ".part-" in name]
-    refused(-32602, logger, "capture.turn", name="x", format="xyz")
-    refused(-32602, logger, "capture.turn", name="../x")
+    refusal(logger, "capture.turn", -32602, name="x", format="xyz")
+    refusal(logger, "capture.turn", -32602, name="../x")
 
 
 def check_replay(logger, port, capture):
@@ -185,9 +176,9 @@ def check_replay(logger, port, capture):
     assert next(message for message in stream if message["data"]["stamp"] >= first_s + target_s - 0.01)
     logger.call("source.seek", t_s=2 * duration_s)
     wait_for("the end", lambda: status()["state"] == "ended")
-    refused(-32005, logger, "source.seek", t_s=0)
-    refused(-32005, logger, "source.pause")
-    refused(-32005, logger, "capture.turn", name="late")
+    refusal(logger, "source.seek", -32005, t_s=0)
+    assert refusal(logger, "source.pause").code == -32005
+    refusal(logger, "capture.turn", -32005, name="late")
 
 
 def check_sensors(logger, capture):
@@ -205,7 +196,7 @@ def check_sensors(logger, capture):
     wait_for("word of packets that nobody asked for", lambda: health()["level"] == "warn")
     told = rf"no data packet is decoded, those that came are of [\d.]+ to port {port}"
     assert re.fullmatch(told, health()["message"]), health()
-    refused(-32602, logger, "source.open", live=True, port=1)
+    refusal(logger, "source.open", -32602, live=True, port=1)
 
 
 def check_overload(logger, port, capture):

@@ -10,7 +10,7 @@ import struct
 import tempfile
 import time
 
-from support import DaemonError, SerialPort, simulated_hall, wait_for
+from support import SerialPort, refusal, simulated_hall, wait_for
 
 
 class RoboClaw(SerialPort):
@@ -44,15 +44,6 @@ class RoboClaw(SerialPort):
 def speed_of(simulator):
     twist = simulator.call("sim.state")["twist"]
     return math.hypot(twist["vx"], twist["vy"])
-
-
-def refused(simulator, expected, **params):
-    try:
-        simulator.call("sim.fault", **params)
-    except DaemonError as error:
-        assert expected in str(error), f"{error} does not say: {expected}"
-        return
-    raise AssertionError(f"{params} was accepted")
 
 
 def check_drive(simulator, client):
@@ -117,9 +108,9 @@ def check_faults(simulator, client, link):
     fault("controller2", "brownout", delay_s=0.2)
     assert client.read(0x81, 24, "H", 0.05) is None
     wait_for("the restarted controller", lambda: client.read(0x81, 15, "B", 0.1) == (0,))
-    refused(simulator, "controllers has no fault deaf", device="controllers", kind="deaf")
-    refused(simulator, "lidar has no fault blocked; it has: none, silence, loss", device="lidar", kind="blocked")
-    refused(simulator, "share line1", device="line2", kind="pulled")
+    refusal(simulator, "sim.fault", "controllers has no fault deaf", device="controllers", kind="deaf")
+    refusal(simulator, "sim.fault", "lidar has no fault blocked; it has: none, silence, loss", device="lidar", kind="blocked")
+    refusal(simulator, "sim.fault", "share line1", device="line2", kind="pulled")
 
     fault("line1", "pulled")
     wait_for("vanishing of the link", lambda: not os.path.lexists(link))

@@ -7,7 +7,7 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, DaemonError, Process, free_port, simulated_hall, wait_for
+from support import BINARIES, Process, free_port, refusal, simulated_hall, wait_for
 
 SPEED = 0.4  # m/s
 
@@ -39,15 +39,6 @@ def drive(simulator, motors):
     wait_for("driving", goes)
 
 
-def refusal(motors):
-    """The message with which a command to drive is refused."""
-    try:
-        motors.call("motor.drive", vx=SPEED)
-    except DaemonError as error:
-        return str(error)
-    raise AssertionError("the robot may drive")
-
-
 def compare_ways(simulator, motors):
     """Robot and odometry began at zero; when the robot stands they agree within 5 mm. Gives how far it has gone."""
     wait_for("standing", lambda: true_speed(simulator) == 0)
@@ -66,7 +57,7 @@ def pull_and_put_back(simulator, motors, line, lateness):
     lateness.take_longest()
     simulator.call("sim.fault", device=line, kind="pulled")
     noticed = seconds_until("notice of the pulled line", lambda: not is_ready(motors))
-    message = refusal(motors)
+    message = str(refusal(motors, "motor.drive", vx=SPEED))
     assert f"controller {line[-1]} (0x80 on serial://" in message, message
     stood = seconds_until("standing", lambda: true_speed(simulator) == 0)
     late = 2 * lateness.take_longest()  # what holds up a nap here holds up the daemons too

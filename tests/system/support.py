@@ -53,6 +53,16 @@ def wait_for(what, condition, limit_s=60):
         time.sleep(0.01)
 
 
+def refusal(daemon, method, expected="", **params):
+    """The error with which a call is refused: of the code that is expected, or with these words in its message."""
+    try:
+        result = daemon.call(method, **params)
+    except DaemonError as error:
+        assert error.code == expected if isinstance(expected, int) else expected in str(error), (method, params, error, expected)
+        return error
+    raise AssertionError(f"{method} {params} was not refused: {result}")
+
+
 def release(motors, limit_s=10):
     """Ends an emergency stop as a person does who confirms: once the motor control allows it."""
     def is_done():
