@@ -177,7 +177,7 @@ def check_replay(logger, port, capture):
     logger.call("source.seek", t_s=2 * duration_s)
     wait_for("the end", lambda: status()["state"] == "ended")
     refusal(logger, "source.seek", -32005, t_s=0)
-    assert refusal(logger, "source.pause").code == -32005
+    refusal(logger, "source.pause", -32005)
     refusal(logger, "capture.turn", -32005, name="late")
 
 
