@@ -19,6 +19,7 @@ private Q_SLOTS:
     void healthDegradesAndGoesStale();
     void whatIsPastIsNoWarning();
     void logIsATopic();
+    void theLogIsGivenUpToAMebibyte();
     void degreesForRadiansAreTold();
 };
 
@@ -155,6 +156,15 @@ void TestDaemon::logIsATopic() {
     const QJsonObject record = client.message()["params"].toObject()["data"].toObject();
     QCOMPARE(record["text"].toString(), QString("from a thread"));
     QCOMPARE(record["level"].toString(), QString("warning"));
+}
+
+void TestDaemon::theLogIsGivenUpToAMebibyte() {
+    for (int i = 0; i < 40; ++i)
+        logInfo("test", QString("%1 ").arg(i) + QString(60000, 'x'));
+    const QJsonArray records = RawClient(address()).ask("log.tail", QJsonArray{1000})["result"].toArray();
+    QVERIFY(compactJson(records).size() <= Log::mostTailBytes + 61000);
+    QVERIFY(records.size() > 10);
+    QVERIFY(records.last()["text"].toString().startsWith("39 "));
 }
 
 void TestDaemon::degreesForRadiansAreTold() {

@@ -67,7 +67,7 @@ class Advice(ThermometerCase):
             self.assertIn(text, self.fails(*words, status=2))
 
     def test_commands_that_people_try(self):
-        self.assertIn("hermesctl call motorcontrol motor.stop", self.fails("stop", status=2))
+        self.assertIn("no robot is there", self.fails("estop", self.daemon.address))
         self.assertEqual(ctl("help").stdout, ctl("--help").stdout)
         text = self.fails("call", "127.0.0.1:99999", "daemon.info", status=2)
         self.assertIn("the port is 99999, at most 65535", text)
