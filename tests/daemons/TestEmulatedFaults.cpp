@@ -37,7 +37,7 @@ void TestEmulatedFaults::init() {
 }
 
 void TestEmulatedFaults::driveOff() {
-    setQpps(*client_, 150000);
+    setQpps(*client_);
     for (const int address : {0x80, 0x81}) {
         QVERIFY(client_->write(address, 14, number(2, 1)));
         QVERIFY(client_->speeds(address, 20000, 20000, 1000000));
@@ -168,7 +168,7 @@ void TestEmulatedFaults::encoderRunsBackward() {
     QVERIFY(client_->write(0x80, 32, number(0, 2)));
     passTalking(0.5, 0x80);
     QVERIFY(speed(0) == 0);
-    setQpps(*client_, 150000);
+    setQpps(*client_);
     QVERIFY(client_->speeds(0x80, 20000, 0, 1000000)); // the velocity control pushes ever more
     passTalking(1, 0x80);
     QVERIFY(speed(0) > 100000);

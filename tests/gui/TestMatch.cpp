@@ -245,9 +245,9 @@ void TestMatch::badInput_data() {
 void TestMatch::badInput() {
     FETCH(QByteArray, text, QByteArray, message);
     put(path("in.csv"), text);
-    for (const QStringList &files :
+    for (const QStringList &pair :
          {QStringList{path("in.csv"), data("room.csv")}, QStringList{data("room.csv"), path("in.csv")}}) {
-        refused(run(QStringList{"match", "--out", path("out")} + files), 1, message);
+        refused(run(QStringList{"match", "--out", path("out")} + pair), 1, message);
         QCOMPARE(files(), QStringList{"in.csv"});
     }
 }
