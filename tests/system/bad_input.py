@@ -143,8 +143,12 @@ class BadInput(RobotCase):
         robot.write("motorcontrol", controllers={**before, "2": {"url": f"serial://{other}?baud=115200"}})
         self.restart("motorcontrol")
         self.tells("motorcontrol", "controller_2", other, "in use", since=since)
-        with self.assertRaisesRegex(DaemonError, "controller 2.*in use"):
-            robot.call("motorcontrol", "motor.drive", vx=0.2)
+
+        def is_refused():  # for controller 1 as long as that has not answered
+            with self.assertRaises(DaemonError) as refused:
+                robot.call("motorcontrol", "motor.drive", vx=0.2)
+            return re.search("controller 2.*in use", str(refused.exception))
+        wait_for("controller 2 is named", is_refused)
         self.assertTrue(self.stands())
         robot.write("motorcontrol", controllers=before)
         self.restart("motorcontrol")

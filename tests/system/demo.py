@@ -74,7 +74,7 @@ class DemoTest(unittest.TestCase):
         self.assertLess(summary["final_error_m"], 0.05)
         self.assertLess(summary["final_error_deg"], 1.0)
         # The wheels slip, and the matcher, which goes by them, puts it right.
-        self.assertGreater(summary["by_odometry"], 0.95 * summary["scans"], summary)
+        self.assertGreater(summary["by_odometry"], 0.9 * summary["scans"], summary)
         self.assertGreater(summary["final_drift_m"], 0.2)
         self.assertEqual(set(summary["exit_status"]), {"simulator", "motorcontrol", "velodynelogger", "scanmatcher"})
         self.assertLess(seconds, 60)

@@ -151,7 +151,7 @@ def script(ports):
                     ("pose.set", {"x": 0, "y": 0, "theta": 0}))
     yield from each("simulator", ("sim.halt", {}), ("sim.fault", {"device": "lidar", "kind": "none"}), ("sim.load", {"world": WORLD}),
                     ("sim.place", {"x": 0, "y": 0, "theta": 0}), ("sim.state", {}))
-    yield from each("motorcontrol", ("motor.estop", {}), ("motor.reset_estop", {}), ("odometry.reset", {}), ("control.release", {}))
+    yield from each("motorcontrol", ("motor.reset_estop", {}), ("motor.estop", {}), ("odometry.reset", {}), ("control.release", {}))
     for name in ("velodynelogger", "seriallogger"):
         yield from each(name, ("record.stop", {}), ("record.list", {}), ("source.open", {"recording": "drive", "paused": True}),
                         ("source.status", {}), ("source.seek", {"t_s": 1}), ("source.speed", {"speed": 0.5}),
