@@ -283,7 +283,7 @@ void TestSettingsPanel::theWheelChangesNothing() {
         QCOMPARE(slider->value(), before);
     }
     auto *const scroll = panel_->findChild<QScrollArea *>()->verticalScrollBar(); // which goes on scrolling
-    QTRY_VERIFY(scroll->maximum() > 0); // as soon as it is laid out
+    QTRY_VERIFY(scroll->maximum() > 0);                                           // as soon as it is laid out
     wheel(panel_->findChild<QScrollArea *>()->viewport());
     QVERIFY(scroll->value() > 0);
 }
