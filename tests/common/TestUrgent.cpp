@@ -149,8 +149,7 @@ void TestUrgent::isNeverRefusedForItsForm_data() {
 }
 
 void TestUrgent::isNeverRefusedForItsForm() {
-    QFETCH(QByteArray, request);
-    QFETCH(QByteArray, taken);
+    FETCH(QByteArray, request, QByteArray, taken);
     RawClient client(address());
     client.send(request);
     QVERIFY(client.message().contains("result"));

@@ -24,11 +24,8 @@ private Q_SLOTS:
 };
 
 void TestMotorClients::leaseIsExclusiveAndRunsOut() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    PatientClient other;
-    QVERIFY(other.connectTo(address()).ok());
-    QVERIFY(other.waitConnected().ok());
+    launchReady();
+    ConnectedClient other(address());
     QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 1}})["holder"].toString(),
              QString("anna"));
     const auto refused = other.callAndWait("motor.drive", QJsonObject{{"vx", 0.1}});
@@ -41,8 +38,7 @@ void TestMotorClients::leaseIsExclusiveAndRunsOut() {
 
 // Sent in one go: the stop is done first, and what was sent before it must not undo it.
 void TestMotorClients::whatAStopOvertakesIsVoid() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QTcpSocket socket;
     const QStringList place = address().split(':');
     socket.connectToHost("127.0.0.1", quint16(place.last().section(',', 0, 0).toUInt()));
@@ -75,11 +71,8 @@ void TestMotorClients::whatAStopOvertakesIsVoid() {
 }
 
 void TestMotorClients::takingOverStopsTheRobot() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    PatientClient other;
-    QVERIFY(other.connectTo(address()).ok());
-    QVERIFY(other.waitConnected().ok());
+    launchReady();
+    ConnectedClient other(address());
     call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QJsonObject ask{{"client", "bert"}, {"timeout_s", 10}};
@@ -106,8 +99,7 @@ void TestMotorClients::takingOverStopsTheRobot() {
 }
 
 void TestMotorClients::silentClientIsStopped() {
-    launch({"safety.command_timeout_s=0.25"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"safety.command_timeout_s=0.25"});
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
@@ -118,8 +110,7 @@ void TestMotorClients::silentClientIsStopped() {
 // Longer than the mail to it holds: the cycle goes on, and tells how much was not read.
 void TestMotorClients::aBusyMainThreadDelaysNoStop() {
     plugServer();
-    launch({"safety.command_timeout_s=0.25"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"safety.command_timeout_s=0.25"});
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     client_->notify("control.acquire", QJsonObject{{"timeout_s", 10}});
@@ -141,8 +132,7 @@ void TestMotorClients::aBusyMainThreadDelaysNoStop() {
 
 // More than the mail to the loop holds.
 void TestMotorClients::manyCommandsAtOnceAreAllAnswered() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     constexpr int count = 300;
     QStringList names;
     for (int i = 0; i < count; ++i)
@@ -157,8 +147,7 @@ void TestMotorClients::manyCommandsAtOnceAreAllAnswered() {
 }
 
 void TestMotorClients::clientThatGoesIsStopped() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QString where = address();

@@ -225,9 +225,9 @@ private:
 };
 
 void TestSerialFixStreams::everyMomentGivesOneFix_data() {
-    QTest::addColumn<unsigned>("seed");
-    QTest::newRow("the same each time") << 1U;
-    QTest::newRow("others each time") << std::random_device()();
+    const Rows<unsigned> row("seed");
+    row("the same each time", 1U);
+    row("others each time", std::random_device()());
 }
 
 void TestSerialFixStreams::everyMomentGivesOneFix() {

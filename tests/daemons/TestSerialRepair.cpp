@@ -51,31 +51,26 @@ void TestSerialRepair::whatWasCutOffIsRepaired() {
 }
 
 void TestSerialRepair::damageIsNamed_data() {
-    QTest::addColumn<QByteArray>("raw");
-    QTest::addColumn<QByteArray>("index");
-    QTest::addColumn<QString>("complaint");
+    const Rows<QByteArray, QByteArray, QString> row("raw", "index", "complaint");
     const QByteArray header = "HERMESIX" + QByteArray::fromHex("0100000018000000");
     const auto record = [](qint64 offset) {
         QByteArray bytes(24, 0);
         qToLittleEndian<qint64>(offset, bytes.data());
         return bytes;
     };
-    QTest::newRow("no header") << QByteArray("abc") << QByteArray() << "HERMESIX";
-    QTest::newRow("another file") << QByteArray("abc") << QByteArray(100, 'x') << "HERMESIX";
-    QTest::newRow("another version") << QByteArray("abc")
-                                     << "HERMESIX" + QByteArray::fromHex("0200000018000000") << "version 1";
-    QTest::newRow("no records") << QByteArray("abc") << header << "first record";
-    QTest::newRow("begins late") << QByteArray("abc") << header + record(1) << "first record";
-    QTest::newRow("turns back") << QByteArray("abcdef") << header + record(0) + record(3) + record(2)
-                                << "a record at byte 2 follows one at byte 3";
-    QTest::newRow("twice") << QByteArray("abcdef") << header + record(0) + record(0) << "at byte 0 follows";
-    QTest::newRow("negative") << QByteArray("abc") << header + record(-1) << "first record";
+    row("no header", "abc", QByteArray(), "HERMESIX");
+    row("another file", "abc", QByteArray(100, 'x'), "HERMESIX");
+    row("another version", "abc", "HERMESIX" + QByteArray::fromHex("0200000018000000"), "version 1");
+    row("no records", "abc", header, "first record");
+    row("begins late", "abc", header + record(1), "first record");
+    row("turns back", "abcdef", header + record(0) + record(3) + record(2),
+        "a record at byte 2 follows one at byte 3");
+    row("twice", "abcdef", header + record(0) + record(0), "at byte 0 follows");
+    row("negative", "abc", header + record(-1), "first record");
 }
 
 void TestSerialRepair::damageIsNamed() {
-    QFETCH(QByteArray, raw);
-    QFETCH(QByteArray, index);
-    QFETCH(QString, complaint);
+    FETCH(QByteArray, raw, QByteArray, index, QString, complaint);
     put(base() + ".raw", raw);
     put(base() + ".index", index);
     const auto pieces = readAll(base());
@@ -90,14 +85,11 @@ void TestSerialRepair::damageIsNamed() {
 }
 
 void TestSerialRepair::longChunksComeInPieces() {
-    ChunkQueue queue(1 << 20);
-    SerialRecorder recorder;
-    recorder.setPorts({{"a", "u", &queue}});
-    QVERIFY(recorder.begin(plan()).ok());
+    begin();
     const QByteArray large(SerialLogReader::mostBytes + 5, 'x');
-    push(queue, large, after(1));
-    push(queue, "end", after(2));
-    recorder.end();
+    push(*queue_, large, after(1));
+    push(*queue_, "end", after(2));
+    recorder_->end();
     const auto pieces = readAll(base());
     QCOMPARE(pieces->size(), 3);
     QCOMPARE(pieces->at(1).bytes.size(), 5);

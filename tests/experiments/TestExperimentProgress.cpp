@@ -94,10 +94,10 @@ private Q_SLOTS:
     }
 
     void isToldToTheEnd_data() {
-        QTest::addColumn<bool>("isShort");
+        const Rows<bool> row("isShort");
         QVERIFY(names().size() > 35);
         for (const QString &name : names())
-            QTest::newRow(qPrintable(name)) << short_.contains(name);
+            row(qPrintable(name), short_.contains(name));
     }
     void isToldToTheEnd() {
         QFETCH(bool, isShort);

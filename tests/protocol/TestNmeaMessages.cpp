@@ -55,34 +55,18 @@ private Q_SLOTS:
 };
 
 void TestNmeaMessages::workedRmcIsReadAndWritten_data() {
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<int>("minuteDecimals");
-    QTest::addColumn<double>("latitude");
-    QTest::addColumn<double>("longitude");
-    QTest::addColumn<double>("speed");
-    QTest::addColumn<double>("course");
-    QTest::addColumn<double>("variation");
-    QTest::addColumn<double>("stamp");
-    QTest::newRow("real") << realRmc << 4 << 37 + 7.8178 / 60 << -121 - 39.269 / 60 << 10.3 * 0.514444
-                          << 188.2 << 13.8 << 1437687666.0;
-    QTest::newRow("south of London")
-        << QByteArray("$GPRMC,220516,A,5133.82,N,00042.24,W,173.8,231.8,130694,004.2,W*70\r\n") << 2
-        << 51 + 33.82 / 60 << -42.24 / 60 << 173.8 * 0.514444 << 231.8 << -4.2 << 771545116.0;
-    QTest::newRow("Munich") << QByteArray(
-                                   "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n")
-                            << 3 << 48 + 7.038 / 60 << 11 + 31.0 / 60 << 22.4 * 0.514444 << 84.4 << -3.1
-                            << 764426119.0;
+    const Rows<QByteArray, int, double, double, double, double, double, double> row(
+        "text", "minuteDecimals", "latitude", "longitude", "speed", "course", "variation", "stamp");
+    row("real", realRmc, 4, 37 + 7.8178 / 60, -121 - 39.269 / 60, 10.3 * 0.514444, 188.2, 13.8, 1437687666.0);
+    row("south of London", "$GPRMC,220516,A,5133.82,N,00042.24,W,173.8,231.8,130694,004.2,W*70\r\n", 2,
+        51 + 33.82 / 60, -42.24 / 60, 173.8 * 0.514444, 231.8, -4.2, 771545116.0);
+    row("Munich", "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n", 3,
+        48 + 7.038 / 60, 11 + 31.0 / 60, 22.4 * 0.514444, 84.4, -3.1, 764426119.0);
 }
 
 void TestNmeaMessages::workedRmcIsReadAndWritten() {
-    QFETCH(QByteArray, text);
-    QFETCH(int, minuteDecimals);
-    QFETCH(double, latitude);
-    QFETCH(double, longitude);
-    QFETCH(double, speed);
-    QFETCH(double, course);
-    QFETCH(double, variation);
-    QFETCH(double, stamp);
+    FETCH(QByteArray, text, int, minuteDecimals, double, latitude, double, longitude, double, speed, double,
+          course, double, variation, double, stamp);
     Rmc rmc;
     const FieldFault fault = decodeText(text, rmc);
     QVERIFY2(!fault, fault.expected);
@@ -147,13 +131,12 @@ void TestNmeaMessages::emptyFieldsAreUnknown() {
 }
 
 void TestNmeaMessages::wrongFieldsAreNamed_data() {
-    QTest::addColumn<QByteArray>("body");
-    QTest::addColumn<int>("field");
-    const auto rmc = [](const char *name, int field, const char *value) {
+    const Rows<QByteArray, int> row("body", "field");
+    const auto rmc = [&](const char *name, int field, const char *value) {
         QList<QByteArray> fields =
             QByteArray("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D").split(',');
         fields[field] = value;
-        QTest::newRow(name) << fields.join(',') << field;
+        row(name, fields.join(','), field);
     };
     for (const char *time : {"24", "240000", "126000", "120061", "12000", "1200000", "1200.0", "12000x",
                              "-10000", "120000.-5", "120000.5.5", "nan", " 20000"})
@@ -175,13 +158,12 @@ void TestNmeaMessages::wrongFieldsAreNamed_data() {
     rmc("day 0", 9, "000715");
     rmc("month 13", 9, "011315");
     rmc("short date", 9, "23071");
-    QTest::newRow("too few fields") << QByteArray("GPRMC,214106,A") << 0;
-    QTest::newRow("another type") << QByteArray("GPGGA,,,,,,0,,,,M,,M,,") << 0;
+    row("too few fields", "GPRMC,214106,A", 0);
+    row("another type", "GPGGA,,,,,,0,,,,M,,M,,", 0);
 }
 
 void TestNmeaMessages::wrongFieldsAreNamed() {
-    QFETCH(QByteArray, body);
-    QFETCH(int, field);
+    FETCH(QByteArray, body, int, field);
     Rmc rmc;
     const FieldFault fault = decode(Sentence({body.constData(), std::size_t(body.size())}), rmc);
     QVERIFY(fault);
@@ -191,11 +173,11 @@ void TestNmeaMessages::wrongFieldsAreNamed() {
 
 /// As receivers send them: no variation is 999.9 or 0.0 without a side.
 void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing_data() {
-    QTest::addColumn<QByteArray>("tail");
+    const Rows<QByteArray> row("tail");
     for (const char *tail :
          {"999.9,E,A", "999.9,,D", "13.8,,A", ",W,A", "181,E,A", "-1.0,E,A", "13.8,N,A", "x,E,A", "13.8,E,d",
           "13.8,E,A,V", "13.8,E,A,", "13.8,E", "13.8", "", "a,b,c,d,e,f"})
-        QTest::newRow(tail) << QByteArray(tail);
+        row(tail, QByteArray(tail));
 }
 
 void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing() {

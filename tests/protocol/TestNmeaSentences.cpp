@@ -66,12 +66,12 @@ void TestNmeaSentences::gnsIsRead() {
 }
 
 void TestNmeaSentences::modesOfGns_data() {
-    QTest::addColumn<int>("quality");
+    const Rows<int> row("quality");
     const std::pair<const char *, int> modes[] = {
         {"A", 1},  {"NA", 1}, {"AD", 2}, {"DA", 2}, {"NNR", 4},  {"RF", 4}, {"F", 5},     {"P", 3},
         {"EN", 6}, {"M", 7},  {"S", 8},  {"N", 0},  {"NNNN", 0}, {"AE", 1}, {"AAAAAA", 1}};
     for (const auto &[mode, quality] : modes)
-        QTest::newRow(mode) << quality;
+        row(mode, quality);
 }
 
 void TestNmeaSentences::modesOfGns() {

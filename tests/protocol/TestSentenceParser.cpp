@@ -31,29 +31,26 @@ private Q_SLOTS:
 };
 
 void TestSentenceParser::findsSentences_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<QList<QByteArray>>("bodies");
+    const Rows<QByteArray, QList<QByteArray>> row("bytes", "bodies");
     const QList<QByteArray> one{"GPTXT,A"};
-    QTest::newRow("usual") << QByteArray("$GPTXT,A*22\r\n") << one;
-    QTest::newRow("lower case") << QByteArray("$GPTXT,o*0c\n") << QList<QByteArray>{"GPTXT,o"};
-    QTest::newRow("only LF") << QByteArray("$GPTXT,A*22\n") << one;
-    QTest::newRow("only CR") << QByteArray("$GPTXT,A*22\r") << one;
-    QTest::newRow("noise before") << QByteArray("xx\xff,4*1\r\n$GPTXT,A*22\r\n") << one;
-    QTest::newRow("cut short") << QByteArray("$GPTXT,$GPTXT,A*22\r\n") << one;
-    QTest::newRow("damaged") << QByteArray("$GPTXT,B*22\r\n$GPTXT,A*22\r\n") << one;
-    QTest::newRow("no end yet") << QByteArray("$GPTXT,A*22") << QList<QByteArray>();
-    QTest::newRow("one digit") << QByteArray("$GPTXT,A*2\r\n") << QList<QByteArray>();
-    QTest::newRow("three digits") << QByteArray("$GPTXT,A*220\r\n") << QList<QByteArray>();
-    QTest::newRow("no digits") << QByteArray("$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n")
-                               << QList<QByteArray>();
-    QTest::newRow("NUL inside") << QByteArray("$GPTXT,\0A*22\r\n", 14) << QList<QByteArray>();
-    QTest::newRow("encapsulated") << QByteArray("!AIVDM,A*3A\r\n") << QList<QByteArray>{"AIVDM,A"};
-    QTest::newRow("empty") << QByteArray("$*00\r\n$\r\n\r\n") << QList<QByteArray>{""};
+    row("usual", "$GPTXT,A*22\r\n", one);
+    row("lower case", "$GPTXT,o*0c\n", {"GPTXT,o"});
+    row("only LF", "$GPTXT,A*22\n", one);
+    row("only CR", "$GPTXT,A*22\r", one);
+    row("noise before", "xx\xff,4*1\r\n$GPTXT,A*22\r\n", one);
+    row("cut short", "$GPTXT,$GPTXT,A*22\r\n", one);
+    row("damaged", "$GPTXT,B*22\r\n$GPTXT,A*22\r\n", one);
+    row("no end yet", "$GPTXT,A*22", QList<QByteArray>());
+    row("one digit", "$GPTXT,A*2\r\n", QList<QByteArray>());
+    row("three digits", "$GPTXT,A*220\r\n", QList<QByteArray>());
+    row("no digits", "$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n", QList<QByteArray>());
+    row("NUL inside", QByteArray("$GPTXT,\0A*22\r\n", 14), QList<QByteArray>());
+    row("encapsulated", "!AIVDM,A*3A\r\n", {"AIVDM,A"});
+    row("empty", "$*00\r\n$\r\n\r\n", {""});
 }
 
 void TestSentenceParser::findsSentences() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(QList<QByteArray>, bodies);
+    FETCH(QByteArray, bytes, QList<QByteArray>, bodies);
     SentenceParser parser;
     QCOMPARE(sentencesOf(parser, bytes), bodies);
     QCOMPARE(parser.counts().sentences, quint64(bodies.size()));

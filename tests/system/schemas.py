@@ -8,7 +8,7 @@ import sys
 import tempfile
 import threading
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for, put
 
 try:
     import jsonschema
@@ -96,8 +96,7 @@ def start_all(folder, processes):
 
     def start(name, settings):
         config = os.path.join(folder, name + "-settings.json")
-        with open(config, "w", encoding="utf-8") as file:
-            file.write("{}")
+        put(config, "{}")
         processes.append(Process(BINARIES, name, free_port(0), folder, settings, ["--config", config]))
         ports[name] = processes[-1].port
 
