@@ -196,8 +196,7 @@ void DriveControl::turn() {
     if (isHeld && refusesForReplay())
         inputs_.needRest();
     if (isDriving_ && answered_.hasExpired(qint64(1000 * lease_s))) { // the control has run out
-        halt();
-        tell(tr("The drive has ended: %1 did not answer.").arg(shortLine(motors_->name())));
+        halt(tr("The drive has ended: %1 did not answer.").arg(shortLine(motors_->name())));
     }
     const bool wants = isHeld && !mustLetGo() && motors_ && motors_->isConnected() && !isStopped();
     if (!wants) {
@@ -261,10 +260,10 @@ void DriveControl::send() {
         if (!guard)
             return;
         answered_.start();
+        if (!isDriving_)
+            return; // it was on its way when the drive ended, which has its reason
         if (result)
             return tell({});
-        if (!isDriving_)
-            return; // it was on its way when the drive ended
         if (result.error().is(ErrorCode::ControlHeld))
             yieldControl();
         else if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
@@ -298,9 +297,11 @@ void DriveControl::yieldControl() {
     poll();
 }
 
-void DriveControl::halt() {
+void DriveControl::halt(const QString &reason) {
     end();
     inputs_.needRest();
+    if (!reason.isEmpty())
+        tell(reason);
     Q_EMIT changed();
 }
 

@@ -44,7 +44,8 @@ public:
     const StopControl &stopping() const { return stop_; }
     /// Ends driving softly; the control is given back.
     void yieldControl();
-    void halt();
+    /// The same, and what is held must be let go first. reason: why, for people.
+    void halt(const QString &reason = {});
     /// Ends the emergency stop and latched faults. A stop that was not pressed here is ended by the second
     /// call only, within five seconds.
     void release();

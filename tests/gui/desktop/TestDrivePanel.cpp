@@ -22,6 +22,7 @@ private Q_SLOTS:
     void cleanup();
     void stickDrivesAndLettingGoStops();
     void keysDriveTurnAndGoSlow();
+    void aKeyIsNotItsLetter();
     void openingAMenuStops();
     void keysInAFieldDoNotDrive();
     void keysInADialogDoNotDrive();
@@ -142,6 +143,17 @@ void TestDrivePanel::keysDriveTurnAndGoSlow() {
     QTRY_VERIFY(commanded("vy") > 0.1);
     QTest::keyRelease(window_.get(), Qt::Key_Left);
     QTRY_VERIFY(speed() < 0.01);
+}
+
+// Its letter may change while it is held: by another layout, or by another key.
+void TestDrivePanel::aKeyIsNotItsLetter() {
+    constexpr quint32 scanCode = 25;
+    QKeyEvent press(QEvent::KeyPress, Qt::Key_W, {}, scanCode, 0, 0, "w");
+    QApplication::sendEvent(window_.get(), &press);
+    awaitMotion();
+    QKeyEvent release(QEvent::KeyRelease, Qt::Key_Z, {}, scanCode, 0, 0, "z");
+    QApplication::sendEvent(window_.get(), &release);
+    QTRY_VERIFY(!drive_->isDriving());
 }
 
 // A menu or a list has the keys: the release of the drive key goes there.
