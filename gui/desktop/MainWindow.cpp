@@ -143,6 +143,7 @@ void MainWindow::restoreAll() {
     connect(&plotSets, &PlotSets::changed, this,
             [this, &plotSets] { layouts_.setValue("plotSets", compactText(plotSets.sets())); });
     restoreButtons();
+    drive_.setLimits(objectOf(layouts_.value("limits")));
     map_->setLayers(objectOf(layouts_.value("layers")).toVariantMap());
     showLayout();
     banners_->notify(
@@ -309,6 +310,7 @@ void MainWindow::keepAll() {
     layouts_.setLayout({saveGeometry(), saveState(), findChild<PlotsPanel *>()->state()});
     layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
+    layouts_.setValue("limits", compactText(drive_.limits()));
     layouts_.setValue("layers", compactText(QJsonObject::fromVariantMap(map_->layers())));
     layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()});
 }
