@@ -20,6 +20,7 @@
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/FloatingDock.h"
+#include "gui/desktop/widgets/FocusInSight.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
 #include "gui/desktop/widgets/WheelGuard.h"
 
@@ -131,6 +132,7 @@ void MainWindow::addKeys(TopBar &topBar) {
     connect(&topBar, &TopBar::robotTaken, this, giveKeysToDrive, Qt::QueuedConnection);
     connect(findChild<DaemonTree *>(), &DaemonTree::takenByMouse, this, giveKeysToDrive);
     new EnterKey(*typing, *this);
+    new FocusInSight(*centralWidget());
     new WheelGuard(*this);
     stopKeys_ = new StopKeys(drive_, topBar.stopButton()); // sees keys before the others
     stopKeys_->letEscapeStop(layouts_.value("escape") == "on");
@@ -143,6 +145,7 @@ void MainWindow::restoreAll() {
     connect(&plotSets, &PlotSets::changed, this,
             [this, &plotSets] { layouts_.setValue("plotSets", compactText(plotSets.sets())); });
     restoreButtons();
+    drive_.setLimits(objectOf(layouts_.value("limits")));
     map_->setLayers(objectOf(layouts_.value("layers")).toVariantMap());
     showLayout();
     banners_->notify(
@@ -161,6 +164,10 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     if (auto *const other = kind.tabbedWith ? findChild<QDockWidget *>(kind.tabbedWith) : nullptr)
         tabifyDockWidget(other, dock);
     docks_.push_back(dock);
+    connect(dock, &QDockWidget::visibilityChanged, this, [this, dock](bool isSeen) {
+        if (!isSeen && isVisible() && focusWidget() && dock->isAncestorOf(focusWidget()))
+            centralWidget()->setFocus(); // what is typed on is not for what lies behind now
+    });
     addActions(panel->actions()); // their keys act while the panel is out of sight, too
     panelActions_ += panel->actions();
 
@@ -309,6 +316,7 @@ void MainWindow::keepAll() {
     layouts_.setLayout({saveGeometry(), saveState(), findChild<PlotsPanel *>()->state()});
     layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
+    layouts_.setValue("limits", compactText(drive_.limits()));
     layouts_.setValue("layers", compactText(QJsonObject::fromVariantMap(map_->layers())));
     layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()});
 }
@@ -326,6 +334,10 @@ void MainWindow::showEvent(QShowEvent *event) {
         for (FloatingDock *const dock : docks_)
             dock->comeForward();
     });
+}
+
+bool MainWindow::focusNextPrevChild(bool isNext) {
+    return FocusInSight::move(*this, isNext);
 }
 
 void MainWindow::leave() {

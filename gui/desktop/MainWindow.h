@@ -41,6 +41,7 @@ public:
 protected:
     void showEvent(QShowEvent *event) override;
     void closeEvent(QCloseEvent *event) override;
+    bool focusNextPrevChild(bool isNext) override;
 
 private:
     void addKeys(TopBar &topBar);

@@ -11,6 +11,7 @@ namespace hermes::desktop {
 namespace {
 
 const QString driveMethod = "motor.drive";
+constexpr int mostKept = 200; // limits of robots
 
 } // namespace
 
@@ -82,9 +83,9 @@ void DriveControl::follow() {
         motors_->unsubscribe(settings_);
     }
     motors_ = found;
-    if (found && found != driven_) { // what the limit means is another robot's
-        limit_ = limits_.value(found->address(), usualLimit);
+    if (found && found != driven_) { // the limit is another robot's
         most_ = usualMost;
+        limit_ = limits_.value(found->address(), scaled(usualMost, usualShare));
     }
     if (found)
         driven_ = found;
@@ -136,7 +137,10 @@ void DriveControl::takeMost(const QJsonValue &motion) {
         return qBound(0.0, motion[QLatin1String(name)].toDouble(usual), 100.0);
     };
     most_ = {most("vx", most_.vx), most("vy", most_.vy), most("omega", most_.omega)};
-    Q_EMIT changed();
+    if (driven_ && !limits_.contains(driven_->address()) && !inputs_.isAnyHeld())
+        putLimit(scaled(most_, usualShare)); // nobody has set one yet
+    else
+        putLimit(least(limit_, most_));
 }
 
 void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
@@ -149,16 +153,40 @@ void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld)
         letGo_.start(repeatGap);
 }
 
-void DriveControl::setLimit(double share) {
-    limit_ = qBound(leastLimit, share, 1.0);
+bool DriveControl::setLimit(double share) {
+    const Twist2D wanted = scaled(most_, qBound(0.0, share, 1.0));
+    const bool isRaised = wanted.vx > limit_.vx || wanted.vy > limit_.vy || wanted.omega > limit_.omega;
+    const bool isRefused = isRaised && inputs_.isAnyHeld();
+    putLimit(isRefused ? least(limit_, wanted) : wanted);
+    return !isRefused;
+}
+
+void DriveControl::putLimit(const Twist2D &limit) {
+    limit_ = limit;
     if (driven_)
-        limits_[driven_->address()] = limit_;
+        limits_[driven_->address()] = limit;
+    if (limits_.size() > mostKept)
+        limits_.erase(limits_.begin());
     Q_EMIT changed();
+}
+
+QJsonObject DriveControl::limits() const {
+    QJsonObject all;
+    for (auto limit = limits_.begin(); limit != limits_.end(); ++limit)
+        all[limit.key()] = QJsonArray{limit->vx, limit->vy, limit->omega};
+    return all;
+}
+
+void DriveControl::setLimits(const QJsonObject &limits) {
+    for (auto limit = limits.begin(); limit != limits.end(); ++limit) {
+        const auto speed = [limit](int i) { return qBound(0.0, limit->toArray()[i].toDouble(), 100.0); };
+        limits_[limit.key()] = {speed(0), speed(1), speed(2)};
+    }
 }
 
 Twist2D DriveControl::wish() const {
     const Twist2D share = inputs_.wish();
-    return {share.vx * limit_ * most_.vx, share.vy * limit_ * most_.vy, share.omega * limit_ * most_.omega};
+    return {share.vx * limit_.vx, share.vy * limit_.vy, share.omega * limit_.omega};
 }
 
 void DriveControl::driveBlindly() {
@@ -196,8 +224,7 @@ void DriveControl::turn() {
     if (isHeld && refusesForReplay())
         inputs_.needRest();
     if (isDriving_ && answered_.hasExpired(qint64(1000 * lease_s))) { // the control has run out
-        halt();
-        tell(tr("The drive has ended: %1 did not answer.").arg(shortLine(motors_->name())));
+        halt(tr("The drive has ended: %1 did not answer.").arg(shortLine(motors_->name())));
     }
     const bool wants = isHeld && !mustLetGo() && motors_ && motors_->isConnected() && !isStopped();
     if (!wants) {
@@ -261,10 +288,10 @@ void DriveControl::send() {
         if (!guard)
             return;
         answered_.start();
+        if (!isDriving_)
+            return; // it was on its way when the drive ended, which has its reason
         if (result)
             return tell({});
-        if (!isDriving_)
-            return; // it was on its way when the drive ended
         if (result.error().is(ErrorCode::ControlHeld))
             yieldControl();
         else if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
@@ -298,9 +325,11 @@ void DriveControl::yieldControl() {
     poll();
 }
 
-void DriveControl::halt() {
+void DriveControl::halt(const QString &reason) {
     end();
     inputs_.needRest();
+    if (!reason.isEmpty())
+        tell(reason);
     Q_EMIT changed();
 }
 

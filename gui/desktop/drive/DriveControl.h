@@ -27,16 +27,20 @@ public:
     static constexpr std::chrono::milliseconds repeatGap{20};
     /// How long the control is kept without a command.
     static constexpr double lease_s = 1;
-    static constexpr double leastLimit = 0.05;
 
     explicit DriveControl(Fleet &fleet, QObject *parent = nullptr);
 
     /// What an input wishes: each of the three from -1 to 1 of the largest speed. isHeld: its dead-man key or
     /// button is down; released it wishes nothing.
     void steer(const QString &input, const Twist2D &wish, bool isHeld);
-    /// The share of the largest speed that the whole stick means, 0.05 to 1.
-    void setLimit(double share);
-    double limit() const { return limit_; }
+    /// What the whole stick means, in m/s and rad/s. Nothing but setLimit() raises one; smaller largest
+    /// speeds of the robot lower it.
+    const Twist2D &limit() const { return limit_; }
+    /// share: of the largest speeds, up to 1. False: something is held, so none was raised.
+    bool setLimit(double share);
+    /// Those of all robots, to be kept and, before one is connected, to be restored.
+    QJsonObject limits() const;
+    void setLimits(const QJsonObject &limits);
     /// The robot's largest speeds, in m/s and rad/s.
     const Twist2D &most() const { return most_; }
     /// The emergency stop of the robot: at once, without the control, latched until release().
@@ -44,7 +48,8 @@ public:
     const StopControl &stopping() const { return stop_; }
     /// Ends driving softly; the control is given back.
     void yieldControl();
-    void halt();
+    /// The same, and what is held must be let go first. reason: why, for people.
+    void halt(const QString &reason = {});
     /// Ends the emergency stop and latched faults. A stop that was not pressed here is ended by the second
     /// call only, within five seconds.
     void release();
@@ -89,15 +94,23 @@ Q_SIGNALS:
     void stopPressed();
 
 private:
-    static constexpr double usualLimit = 0.4;
+    static constexpr double usualShare = 0.4;
     static constexpr Twist2D usualMost{0.5, 0.5, 1};
 
+    static constexpr Twist2D scaled(const Twist2D &speeds, double share) {
+        return {speeds.vx * share, speeds.vy * share, speeds.omega * share};
+    }
+    /// The smaller of each.
+    static constexpr Twist2D least(const Twist2D &one, const Twist2D &other) {
+        return {std::min(one.vx, other.vx), std::min(one.vy, other.vy), std::min(one.omega, other.omega)};
+    }
     DaemonLink *motors() const;
     void follow();
     void onMoved(const DaemonLink *daemon, Robot *to);
     /// Why the robot may not be removed now; empty: it may.
     QString objection(const Robot &robot) const;
     void takeMost(const QJsonValue &motion);
+    void putLimit(const Twist2D &limit);
     void tick();
     void turn();
     void end();
@@ -133,8 +146,8 @@ private:
     int losses_ = 0; ///< of the control
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
-    double limit_ = usualLimit;
-    QHash<QString, double> limits_; ///< of each robot, by the address of its motor control
+    Twist2D limit_ = scaled(usualMost, usualShare);
+    QMap<QString, Twist2D> limits_; ///< of each robot, by the address of its motor control
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, isPolling_ = false;
     bool isBlindMeant_ = false;
     QString problem_;

@@ -14,7 +14,9 @@ namespace hermes::desktop {
 namespace {
 
 constexpr double slow = 0.3;
-constexpr qint64 rest_ms = 150; // what is pressed sooner after its release is held, and repeated
+constexpr qint64 rest_ms = 150;   // what is pressed sooner after its release is held, and repeated
+constexpr qint64 unseen_ms = 300; // what the display does not say to be held for so long is not
+constexpr std::chrono::milliseconds askEach{50};
 constexpr auto chord = Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier;
 
 /// Widgets that need arrows or letters themselves.
@@ -31,6 +33,12 @@ bool isDriveKey(int key) {
     return keys.contains(key);
 }
 
+/// The key itself, whatever letter it has: of two layouts, or while another key changes its letter. Events
+/// that no keyboard has sent know the letter only.
+qint64 idOf(const QKeyEvent &key) {
+    return key.nativeScanCode() ? qint64(key.nativeScanCode()) : -qint64(key.key());
+}
+
 } // namespace
 
 DriveKeys::DriveKeys(DriveControl &drive, const TypingWatch &typing, QWidget &window)
@@ -38,6 +46,8 @@ DriveKeys::DriveKeys(DriveControl &drive, const TypingWatch &typing, QWidget &wi
     , drive_(drive)
     , window_(window)
     , typing_(typing) {
+    asking_.setTimerType(Qt::PreciseTimer);
+    connect(&asking_, &QTimer::timeout, this, &DriveKeys::ask);
     qApp->installEventFilter(this);
 }
 
@@ -54,14 +64,14 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
         // key of a menu or a dialog.
         const auto *const key = static_cast<QKeyEvent *>(event);
         const bool isRelease = event->type() == QEvent::KeyRelease;
-        if (!key->isAutoRepeat() && isRelease && down_.remove(key->key())) {
+        if (!key->isAutoRepeat() && isRelease && down_.remove(idOf(*key))) {
             steer(key->modifiers());
             return true;
         }
-        if (isRepeat(*key) && stale_.contains(key->key()))
+        if (isRepeat(*key) && stale_.contains(idOf(*key)))
             return true;
         if (!isRelease && !isRepeat(*key))
-            stale_.remove(key->key());
+            stale_.remove(idOf(*key));
         if (!key->isAutoRepeat() && isRelease)
             noteRelease(*key);
     }
@@ -81,7 +91,7 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
     if (event->type() == QEvent::KeyPress)
         return press(*key);
     if (key->isAutoRepeat())
-        return down_.contains(key->key());
+        return down_.contains(idOf(*key));
     steer(key->modifiers()); // Shift
     return false;
 }
@@ -90,14 +100,14 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
 bool DriveKeys::isRepeat(const QKeyEvent &key) const {
     if (key.isAutoRepeat())
         return true;
-    const auto released = released_.constFind(key.key());
+    const auto released = released_.constFind(idOf(key));
     return key.type() == QEvent::KeyPress && released != released_.constEnd() &&
            ((key.timestamp() != 0 && key.timestamp() == released->stamp) ||
             !released->age.hasExpired(rest_ms));
 }
 
 void DriveKeys::noteRelease(const QKeyEvent &key) {
-    Release &release = released_[key.key()];
+    Release &release = released_[idOf(key)];
     release.stamp = key.timestamp();
     release.age.start();
 }
@@ -119,27 +129,54 @@ bool DriveKeys::press(const QKeyEvent &key) {
         return true; // else it would choose what begins with it, maybe another robot
     }
     if (!isRepeat(key))
-        down_.insert(key.key());
+        hold(key);
     steer(key.modifiers());
     return true;
 }
 
+void DriveKeys::hold(const QKeyEvent &key) {
+    if (held_.canAsk() && !asking_.isActive()) {
+        held_.begin();
+        asking_.start(askEach);
+    }
+    Held &held = down_[idOf(key)];
+    held.key = key.key();
+    held.seen.start();
+}
+
+// A release may never be told: another program has taken the keyboard, or the display has stopped.
+void DriveKeys::ask() {
+    const bool isAnswered = held_.ask(window_);
+    if (down_.isEmpty())
+        return asking_.stop();
+    if (held_.isLayoutChanged())
+        return letGo(tr("The drive has ended: the layout of the keyboard has changed."));
+    for (auto held = down_.begin(); held != down_.end(); ++held) {
+        if (held.key() < 0 || (isAnswered && held_.isDown(quint32(held.key()))))
+            held->seen.start();
+        else if (held->seen.hasExpired(unseen_ms))
+            return letGo(tr("The drive has ended: the display does not say that its key is held."));
+    }
+}
+
 void DriveKeys::steer(Qt::KeyboardModifiers modifiers) {
-    const auto either = [this](int one, int other) {
-        return double(down_.contains(one) || down_.contains(other));
+    const auto isDown = [this](int key) {
+        return std::any_of(down_.begin(), down_.end(), [&](const Held &held) { return held.key == key; });
     };
+    const auto either = [&](int one, int other) { return double(isDown(one) || isDown(other)); };
     const double share = modifiers & Qt::ShiftModifier ? slow : 1;
     const double ahead = either(Qt::Key_Up, Qt::Key_W) - either(Qt::Key_Down, Qt::Key_S);
     const double left = either(Qt::Key_Left, Qt::Key_A) - either(Qt::Key_Right, Qt::Key_D);
-    const double turn = double(down_.contains(Qt::Key_Q)) - double(down_.contains(Qt::Key_E));
+    const double turn = double(isDown(Qt::Key_Q)) - double(isDown(Qt::Key_E));
     drive_.steer("keys", {share * ahead, share * left, share * turn}, !down_.isEmpty());
 }
 
-void DriveKeys::letGo() {
-    stale_.unite(down_);
+void DriveKeys::letGo(const QString &reason) {
+    for (auto held = down_.keyBegin(); held != down_.keyEnd(); ++held)
+        stale_.insert(*held);
     down_.clear();
     drive_.steer("keys", {}, false);
-    drive_.halt();
+    drive_.halt(reason);
 }
 
 } // namespace hermes::desktop

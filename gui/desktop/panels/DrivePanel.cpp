@@ -16,7 +16,10 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int highPanel = 480; // pixels
+constexpr int highPanel = 480;      // pixels
+constexpr int leastPercent = 5;     // of the slider
+constexpr double leastSpeed = 0.01; // m/s
+constexpr std::chrono::seconds toRead{10};
 
 } // namespace
 
@@ -99,19 +102,18 @@ QWidget *DrivePanel::makeNumbers() {
 
 QLayout *DrivePanel::makeLimit() {
     limit_->setObjectName("limit");
-    limit_->setRange(qRound(100 * DriveControl::leastLimit), 100);
+    limit_->setRange(leastPercent, 100);
     limit_->setAccessibleName(tr("Speed limit"));
     speed_->setObjectName("speedLimit");
     speed_->setAccessibleName(tr("Speed limit in m/s"));
     speed_->setAlignment(Qt::AlignRight);
     speed_->setFixedWidth(fontMetrics().horizontalAdvance("00.000") + 16);
     turn_->setObjectName("turnLimit");
-    connect(limit_, &QSlider::valueChanged, this, [this](int percent) {
-        wrongLimit_.clear();
-        drive_.setLimit(percent / 100.0);
-    });
+    connect(limit_, &QSlider::valueChanged, this, [this](int percent) { setLimit(percent / 100.0); });
+    forget_.setSingleShot(true);
+    connect(&forget_, &QTimer::timeout, this, [this] { refuseLimit({}); });
     connect(speed_, &QLineEdit::editingFinished, this, &DrivePanel::takeTypedLimit);
-    connect(speed_, &QLineEdit::textEdited, this, [this] { wrongLimit_.clear(); });
+    connect(speed_, &QLineEdit::textEdited, this, [this] { refuseLimit({}); });
     connect(speed_, &QLineEdit::returnPressed, speed_, &QWidget::clearFocus); // so that the keys drive
     auto *const label = new PlainLabel(tr("Speed li&mit"));
     label->setBuddy(speed_);
@@ -138,25 +140,35 @@ void DrivePanel::takeTypedLimit() {
     const double speed = speed_->text().replace(',', '.').toDouble(&isNumber);
     const double most = drive_.most().vx;
     speed_->setModified(false);
-    wrongLimit_.clear();
-    if (isNumber && std::isfinite(speed) && speed > 0 && most > 0)
-        drive_.setLimit(speed / most);
+    if (isNumber && std::isfinite(speed) && speed >= leastSpeed && most > 0)
+        setLimit(speed / most);
     else
-        wrongLimit_ = tr("\"%1\" is no speed: the limit stays as it was.").arg(shortLine(speed_->text(), 20));
+        refuseLimit(tr("\"%1\" is no speed: the limit stays as it was.").arg(shortLine(speed_->text(), 20)));
+}
+
+void DrivePanel::setLimit(double share) {
+    refuseLimit(drive_.setLimit(share) ? QString() : tr("Let go first: what is held goes no faster."));
+}
+
+/// Told for as long as it takes to read, or until there is something else to tell.
+void DrivePanel::refuseLimit(const QString &why) {
+    wrongLimit_ = why;
+    problemThen_ = drive_.problem();
+    forget_.start(toRead);
     update();
 }
 
 void DrivePanel::showLimit() {
-    const Twist2D &most = drive_.most();
-    const double share = drive_.limit();
+    const Twist2D &most = drive_.most(), &limit = drive_.limit();
+    const double share = most.vx > 0 ? limit.vx / most.vx : most.omega > 0 ? limit.omega / most.omega : 0;
     const bool isKnown = drive_.isPossible();
     const QSignalBlocker silence(limit_);
     limit_->setValue(qRound(100 * share));
     speed_->setEnabled(isKnown && most.vx > 0);
-    const QString speed = isKnown ? shortNumber(share * most.vx, 2) : QString();
+    const QString speed = isKnown ? shortNumber(limit.vx, 2) : QString();
     if (!speed_->isModified() && speed_->text() != speed)
         speed_->setText(speed); // which forgets what is selected
-    turn_->setText(isKnown ? tr("%1 rad/s").arg(shortNumber(share * most.omega, 2)) : tr("rad/s"));
+    turn_->setText(isKnown ? tr("%1 rad/s").arg(shortNumber(limit.omega, 2)) : tr("rad/s"));
     const QString toolTip =
         tr("The speed of the whole stick: ahead, sideways and turning. "
            "The largest of this robot are %1 m/s, %2 m/s and %3 rad/s.")
@@ -198,6 +210,8 @@ void DrivePanel::update() {
                        : tr("Control: %1; %2 asks for it").arg(holder, shortLine(drive_.wanted(), 40)),
                    drive_.isPossible() ? drive_.stateAge() : Freshness());
     takeOver_->setVisible(!holder.isEmpty() && holder != tr("you"));
+    if (drive_.problem() != problemThen_)
+        wrongLimit_.clear();
     QString problem = wrongLimit_.isEmpty() ? drive_.problem() : wrongLimit_;
     if (!drive_.latched().isEmpty())
         problem = tr("Stopped: %1. Release it above.").arg(drive_.stopReason());

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/drive/DriveControl.h"
 
+#include <QTimer>
 #include <QWidget>
 
 class QBoxLayout;
@@ -36,6 +37,8 @@ private:
     QLayout *makeLimit();
     void showLimit();
     void takeTypedLimit();
+    void setLimit(double share);
+    void refuseLimit(const QString &why);
 
     DriveControl &drive_;
     QBoxLayout *top_; ///< the stick, and its limit beside or below it
@@ -48,7 +51,9 @@ private:
     PlainLabel *commanded_[3];
     AgedLabel *measured_[3];
     QPushButton *takeOver_, *blind_;
-    QString wrongLimit_; ///< why the last typed one was refused
+    QString wrongLimit_;  ///< why the last one was refused
+    QString problemThen_; ///< what was told then
+    QTimer forget_;
 };
 
 } // namespace hermes::desktop

@@ -1,5 +1,7 @@
 #include "gui/desktop/widgets/FloatingDock.h"
 
+#include "gui/desktop/widgets/FocusInSight.h"
+
 #include <QScreen>
 #include <algorithm>
 
@@ -20,6 +22,10 @@ void FloatingDock::moveOff(bool isFloating) {
          std::clamp(wanted.y(), room.top(), std::max(room.top(), room.bottom() - height())));
     place_ = pos();
     comeForward();
+}
+
+bool FloatingDock::focusNextPrevChild(bool isNext) {
+    return isWindow() ? FocusInSight::move(*this, isNext) : QDockWidget::focusNextPrevChild(isNext);
 }
 
 void FloatingDock::comeForward() {

@@ -18,6 +18,9 @@ public:
     /// Before the window, if it floats.
     void comeForward();
 
+protected:
+    bool focusNextPrevChild(bool isNext) override;
+
 private:
     void moveOff(bool isFloating);
 

@@ -23,6 +23,7 @@ private Q_SLOTS:
     void cleanup();
     void stickDrivesAndLettingGoStops();
     void keysDriveTurnAndGoSlow();
+    void aKeyIsNotItsLetter();
     void openingAMenuStops();
     void keysInAFieldDoNotDrive();
     void keysInADialogDoNotDrive();
@@ -41,6 +42,9 @@ private Q_SLOTS:
     void aHeldKeyDrivesOnlyOnce();
     void aRepeatedKeyOfAMenuDoesNotDrive();
     void speedLimitInItsUnit();
+    void nobodyElseRaisesTheLimit();
+    void theLimitIsKept();
+    void aRefusedLimitHidesNothing();
     void theBatteryIsTold();
 
 private:
@@ -79,6 +83,7 @@ private:
         });
         repeating_->start(20);
     }
+    void open(const QString &layoutFile = {});
     void awaitRest() { QTRY_VERIFY(!drive_->mustLetGo()); }
 
     std::unique_ptr<QTimer> repeating_;
@@ -89,15 +94,21 @@ private:
     std::unique_ptr<Client> client_; // an independent eye
 };
 
-void TestDrivePanel::init() {
-    robot_ = std::make_unique<FakeRobot>();
+void TestDrivePanel::open(const QString &layoutFile) {
+    window_.reset();
+    drive_.reset();
     fleet_ = std::make_unique<Fleet>();
     QVERIFY(fleet_->add(robot_->address()).ok());
     drive_ = std::make_unique<DriveControl>(*fleet_);
-    window_ = std::make_unique<MainWindow>(*fleet_, *drive_, QString());
+    window_ = std::make_unique<MainWindow>(*fleet_, *drive_, layoutFile);
     window_->show();
     window_->activateWindow();
     QVERIFY(QTest::qWaitForWindowActive(window_.get()));
+}
+
+void TestDrivePanel::init() {
+    robot_ = std::make_unique<FakeRobot>();
+    open();
     client_ = std::make_unique<ConnectedClient>(robot_->address());
     QTRY_VERIFY(find<Stick>("stick")->isEnabled() && drive_->stateAge().isFresh());
 }
@@ -141,6 +152,17 @@ void TestDrivePanel::keysDriveTurnAndGoSlow() {
     QTRY_VERIFY(commanded("vy") > 0.1);
     QTest::keyRelease(window_.get(), Qt::Key_Left);
     QTRY_VERIFY(speed() < 0.01);
+}
+
+// Its letter may change while it is held: by another layout, or by another key.
+void TestDrivePanel::aKeyIsNotItsLetter() {
+    constexpr quint32 scanCode = 25;
+    QKeyEvent press(QEvent::KeyPress, Qt::Key_W, {}, scanCode, 0, 0, "w");
+    QApplication::sendEvent(window_.get(), &press);
+    awaitMotion();
+    QKeyEvent release(QEvent::KeyRelease, Qt::Key_Z, {}, scanCode, 0, 0, "z");
+    QApplication::sendEvent(window_.get(), &release);
+    QTRY_VERIFY(!drive_->isDriving());
 }
 
 // A menu or a list has the keys: the release of the drive key goes there.
@@ -417,7 +439,7 @@ void TestDrivePanel::speedLimitInItsUnit() {
         QTest::keyClick(speed, Qt::Key_Return);
     };
     type("0.25");
-    QCOMPARE(drive_->limit(), 0.25);
+    QCOMPARE(drive_->limit().vx, 0.25);
     QCOMPARE(slider->value(), 25);
     QCOMPARE(find<QLabel>("turnLimit")->text(),
              QString("%1 rad/s").arg(0.25 * drive_->most().omega, 0, 'f', 2));
@@ -427,7 +449,7 @@ void TestDrivePanel::speedLimitInItsUnit() {
     QTest::keyRelease(window_.get(), Qt::Key_W);
     for (const char *const nonsense : {"fast", "-1", "0", ""}) {
         type(nonsense);
-        QCOMPARE(drive_->limit(), 0.25);
+        QCOMPARE(drive_->limit().vx, 0.25);
         QCOMPARE(speed->text(), QString("0.25"));
         QVERIFY(find<QLabel>("problem")->text().contains("is no speed"));
     }
@@ -437,13 +459,77 @@ void TestDrivePanel::speedLimitInItsUnit() {
     QTRY_VERIFY(told.count() > 2);
     QCOMPARE(speed->selectedText(), QString("0.25"));
     type("7"); // more than it can
-    QCOMPARE(drive_->limit(), 1.0);
+    QCOMPARE(drive_->limit().vx, 1.0);
     QCOMPARE(speed->text(), QString("1.00"));
     ConnectedClient owner(asOwner(robot_->address()));
     const QJsonObject slower{{"motion", QJsonObject{{"vx", 0.5}}}};
     QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", slower}}).ok());
     QTRY_COMPARE(speed->text(), QString("0.50")); // another largest speed
     QCOMPARE(slider->value(), 100);
+}
+
+// It is in m/s, whatever becomes of the robot's largest speed.
+void TestDrivePanel::nobodyElseRaisesTheLimit() {
+    auto *const speed = find<QLineEdit>("speedLimit");
+    auto *const problem = find<QLabel>("problem");
+    const auto type = [&](const QString &text) {
+        speed->setFocus();
+        speed->selectAll();
+        QTest::keyClicks(speed, text);
+        QTest::keyClick(speed, Qt::Key_Return);
+    };
+    QTRY_COMPARE(speed->text(), QString("0.40"));
+    type("0.30");
+    Client owner;
+    owner.connectTo(asOwner(robot_->address()));
+    QVERIFY(owner.waitConnected().ok());
+    const auto setMost = [&](double vx) {
+        const QJsonObject values{{"motion", QJsonObject{{"vx", vx}}}};
+        QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", values}}).ok());
+        QTRY_COMPARE(drive_->most().vx, vx);
+    };
+    setMost(1.5);
+    QCOMPARE(drive_->limit().vx, 0.3);
+    QCOMPARE(speed->text(), QString("0.30"));
+    press(0, 1);
+    QTRY_VERIFY(std::abs(commanded("vx") - 0.3) < 0.001);
+    find<QSlider>("limit")->setValue(100);
+    QVERIFY(problem->text().contains("Let go first"));
+    QCOMPARE(drive_->limit().vx, 0.3);
+    find<QSlider>("limit")->setValue(10); // lower goes at once
+    QTRY_VERIFY(std::abs(commanded("vx") - 0.15) < 0.001);
+    QVERIFY(!problem->text().contains("Let go first"));
+    letGo();
+    setMost(0.1);
+    setMost(1.5);
+    QCOMPARE(drive_->limit().vx, 0.1); // what a smaller one has lowered stays low
+}
+
+void TestDrivePanel::theLimitIsKept() {
+    const QTemporaryDir folder;
+    open(folder.filePath("gui.ini"));
+    QTRY_COMPARE(drive_->most().vx, 1.0);
+    drive_->setLimit(0.3);
+    window_->close();
+    open(folder.filePath("gui.ini"));
+    QTRY_COMPARE(find<QLineEdit>("speedLimit")->text(), QString("0.30"));
+}
+
+// Why a number was refused does not hide why the drive has ended.
+void TestDrivePanel::aRefusedLimitHidesNothing() {
+    auto *const speed = find<QLineEdit>("speedLimit");
+    speed->setFocus();
+    speed->selectAll();
+    QTest::keyClicks(speed, "fast");
+    QTest::keyClick(speed, Qt::Key_Return);
+    QVERIFY(find<QLabel>("problem")->text().contains("is no speed"));
+    press(0, 1);
+    awaitMotion();
+    robot_->freeze();
+    QTRY_VERIFY2(find<QLabel>("problem")->text().contains("did not answer"),
+                 qPrintable(find<QLabel>("problem")->text()));
+    robot_->thaw();
+    letGo();
 }
 
 void TestDrivePanel::theBatteryIsTold() {

@@ -3,6 +3,9 @@
 #include "tests/support/FakeRobot.h"
 #include "tests/support/PatientClient.h"
 
+#include <QAbstractNativeEventFilter>
+#include <QLibrary>
+
 using namespace hermes;
 using namespace hermes::desktop;
 
@@ -17,6 +20,8 @@ private Q_SLOTS:
     void drivesOnlyOnce();
     void refusedItDoesNotDriveLater();
     void repeatsDriveEvenly();
+    void whatEndsTheHoldingEndsTheDrive_data();
+    void whatEndsTheHoldingEndsTheDrive();
     void closesByCtrlQ();
 
 private:
@@ -132,6 +137,94 @@ void TestHeldKeys::repeatsDriveEvenly() {
     sinceRelease.start();
     QTRY_VERIFY(!open_->drive.isDriving());
     qInfo("figure stopped %lld ms after the key", sinceRelease.elapsed());
+}
+
+namespace {
+
+/// Another program on the same display.
+class OtherProgram {
+public:
+    OtherProgram()
+        : display_(call<void *>("XOpenDisplay", static_cast<const char *>(nullptr))) {}
+    ~OtherProgram() { call<int>("XCloseDisplay", display_); }
+    void lockGroup(unsigned group) {
+        constexpr unsigned coreKeyboard = 0x100;
+        call<int>("XkbLockGroup", display_, coreKeyboard, group);
+        call<int>("XSync", display_, 0);
+    }
+    bool grabKeyboard() {
+        constexpr int async = 1;
+        return call<int>("XGrabKeyboard", display_, call<unsigned long>("XDefaultRootWindow", display_), 0,
+                         async, async, 0UL) == 0;
+    }
+
+private:
+    template <typename Result, typename... Values>
+    Result call(const char *name, Values... values) {
+        return reinterpret_cast<Result (*)(Values...)>(QLibrary::resolve("X11", 6, name))(values...);
+    }
+
+    void *display_;
+};
+
+/// Loses each release of a key.
+class LostReleases : public QAbstractNativeEventFilter {
+public:
+    LostReleases() { qApp->installNativeEventFilter(this); }
+    bool nativeEventFilter(const QByteArray &type, void *message, long *) override {
+        constexpr quint8 xInput = 35, release = 3;
+        const auto *const bytes = static_cast<const quint8 *>(message);
+        return type == "xcb_generic_event_t" &&
+               ((bytes[0] & 0x7f) == release || ((bytes[0] & 0x7f) == xInput && bytes[8] == release));
+    }
+};
+
+} // namespace
+
+void TestHeldKeys::whatEndsTheHoldingEndsTheDrive_data() {
+    QTest::addColumn<QString>("end");
+    QTest::addColumn<QString>("reason");
+    for (const char *const end : {"layout", "other letter", "group"})
+        QTest::newRow(end) << end << "layout of the keyboard";
+    QTest::newRow("grab") << "grab" << QString();
+    QTest::newRow("lost release") << "lost release"
+                                  << "does not say that its key is held";
+}
+
+// Whatever becomes of the release: W has another place in the other layout.
+void TestHeldKeys::whatEndsTheHoldingEndsTheDrive() {
+    QFETCH(QString, end);
+    QFETCH(QString, reason);
+    const QString key = "25"; // the key itself: W of the layout us
+    QProcess::execute("setxkbmap", {end == "group" ? "us,fr" : "us"});
+    OtherProgram other;
+    const auto restore = qScopeGuard([&] {
+        letGo();
+        other.lockGroup(0);
+        QProcess::execute("setxkbmap", {"us"});
+    });
+    QTRY_VERIFY(speed() < 0.02 && !open_->drive.mustLetGo());
+    QTest::qWait(300); // a press sooner after a release would be a repeat
+    hold(key);
+    awaitMotion();
+    QVERIFY(open_->drive.isDriving());
+    std::optional<LostReleases> lost;
+    if (end == "layout")
+        QProcess::execute("setxkbmap", {"fr"});
+    else if (end == "other letter") {
+        QProcess::execute("setxkbmap", {"fr"});
+        xdotool("keyup w");
+    } else if (end == "group")
+        other.lockGroup(1);
+    else if (end == "grab") {
+        QVERIFY(other.grabKeyboard());
+        letGo();
+    } else {
+        lost.emplace();
+        letGo();
+    }
+    QTRY_VERIFY(!open_->drive.isDriving());
+    QVERIFY2(open_->drive.problem().contains(reason), qPrintable(open_->drive.problem()));
 }
 
 void TestHeldKeys::closesByCtrlQ() {

@@ -10,6 +10,8 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
+#include <QScrollArea>
+#include <QSplitter>
 #include <QToolTip>
 #include <QTreeWidget>
 #include <QtTest>
@@ -25,6 +27,9 @@ private Q_SLOTS:
     void cleanup();
     void mnemonicsAreUnique();
     void everyControlIsInTheTabOrder();
+    void tabLeadsToWhatIsSeen_data();
+    void tabLeadsToWhatIsSeen();
+    void whatIsOutOfSightGetsNoKeys();
     void docksComeByNumber();
     void keysThatDriveNothingAreTold();
     void enterPressesAndTicks();
@@ -95,6 +100,87 @@ void TestKeyboard::everyControlIsInTheTabOrder() {
         ++count;
     }
     QVERIFY(count > 25);
+}
+
+void TestKeyboard::tabLeadsToWhatIsSeen_data() {
+    QTest::addColumn<QString>("front");
+    QTest::addColumn<QString>("other");
+    for (const char *const front : {"daemons", "settings", "commands", "log", "plots", "drive", "recordings",
+                                    "setup", "events", "cloud"})
+        QTest::addRow("%s in front", front) << front << QString();
+    QTest::newRow("one floats") << "recordings"
+                                << "floating";
+    QTest::newRow("parts are drawn shut") << "commands"
+                                          << "shut";
+    QTest::newRow("low") << "settings"
+                         << "low";
+}
+
+namespace {
+
+/// It, or what covers all of it and belongs to it.
+bool isInSight(const QWidget &widget) {
+    const auto inner = widget.findChildren<QWidget *>(QString(), Qt::FindDirectChildrenOnly);
+    return !widget.visibleRegion().isEmpty() ||
+           std::any_of(inner.begin(), inner.end(), [](const QWidget *part) { return isInSight(*part); });
+}
+
+} // namespace
+
+// Forward and back, until it is where it began.
+void TestKeyboard::tabLeadsToWhatIsSeen() {
+    QFETCH(QString, front);
+    QFETCH(QString, other);
+    auto *const dock = window_->findChild<QDockWidget *>(front);
+    dock->raise();
+    dock->setFloating(other == "floating");
+    if (other == "shut")
+        for (auto *const splitter : dock->findChildren<QSplitter *>())
+            splitter->setSizes(QList<int>{0} + QVector<int>(splitter->count() - 1, 200).toList());
+    if (other == "low")
+        window_->resize(1024, 600);
+    window_->activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(window_.get()));
+    for (const Qt::Key key : {Qt::Key_Tab, Qt::Key_Backtab}) {
+        window_->centralWidget()->setFocus();
+        QWidget *const first = QApplication::focusWidget();
+        int count = 0;
+        do {
+            QTest::keyClick(QApplication::focusWidget(), key);
+            const QWidget *const focus = QApplication::focusWidget();
+            QVERIFY2(focus && isInSight(*focus),
+                     qPrintable(focus ? focus->metaObject()->className() + focus->objectName() : "none"));
+            QVERIFY(++count < 500);
+        } while (QApplication::focusWidget() != first);
+        QVERIFY2(count > 10, qPrintable(QString::number(count)));
+    }
+}
+
+void TestKeyboard::whatIsOutOfSightGetsNoKeys() {
+    auto *const recordings = window_->findChild<QDockWidget *>("recordings");
+    auto *const field = window_->findChild<QDockWidget *>("log")->findChild<QLineEdit *>("filter");
+    window_->findChild<QDockWidget *>("log")->raise();
+    field->setFocus();
+    window_->findChild<QDockWidget *>("plots")->raise(); // by its tab
+    QVERIFY(QApplication::focusWidget() != field);
+    field->setFocus(); // whatever does it
+    QTest::keyClick(field, Qt::Key_X);
+    QCOMPARE(field->text(), QString());
+    QVERIFY(QApplication::focusWidget() != field);
+
+    window_->findChild<QDockWidget *>("drive")->raise(); // behind it is Record
+    auto *const button = new QPushButton("Press &9", recordings->findChild<QScrollArea *>()->widget());
+    button->show();
+    QSignalSpy clicked(button, &QPushButton::clicked);
+    button->setFocus();
+    QTest::keyClick(button, Qt::Key_Return);
+    QTest::keyClick(window_.get(), Qt::Key_9, Qt::AltModifier);
+    QVERIFY(!button->isDown()); // else it would click a moment later
+    QCOMPARE(clicked.count(), 0);
+    recordings->raise();
+    QTRY_VERIFY(!button->visibleRegion().isEmpty());
+    QTest::keyClick(window_.get(), Qt::Key_9, Qt::AltModifier);
+    QTRY_COMPARE(clicked.count(), 1);
 }
 
 void TestKeyboard::docksComeByNumber() {

@@ -1,0 +1,44 @@
+#include "gui/desktop/widgets/FocusInSight.h"
+
+#include "gui/desktop/widgets/Seen.h"
+
+#include <QApplication>
+#include <QEvent>
+
+namespace hermes::desktop {
+
+FocusInSight::FocusInSight(QWidget &fallback)
+    : QObject(&fallback)
+    , fallback_(fallback) {
+    qApp->installEventFilter(this);
+}
+
+bool FocusInSight::eventFilter(QObject *watched, QEvent *event) {
+    const auto *const widget = qobject_cast<QWidget *>(watched);
+    if (event->type() == QEvent::Shortcut)
+        return widget && !widget->isWindow() && !isSeen(*widget, true);
+    if (event->type() != QEvent::KeyPress || !widget || widget != QApplication::focusWidget() ||
+        isSeen(*widget, true) || widget == &fallback_ || fallback_.isAncestorOf(widget))
+        return false;
+    fallback_.setFocus();
+    return true;
+}
+
+bool FocusInSight::move(const QWidget &window, bool isNext) {
+    const auto follow = [isNext](const QWidget *widget) {
+        return isNext ? widget->nextInFocusChain() : widget->previousInFocusChain();
+    };
+    const QWidget *const first = window.focusWidget() ? window.focusWidget() : &window;
+    for (QWidget *next = follow(first); next != first; next = follow(next))
+        if ((next->focusPolicy() & Qt::TabFocus) == Qt::TabFocus && next->window() == &window &&
+            next->isEnabled() && !next->focusProxy() && isSeen(*next, true)) {
+            next->setFocus(isNext ? Qt::TabFocusReason : Qt::BacktabFocusReason);
+            for (QWidget *outer = next->parentWidget(); outer; outer = outer->parentWidget())
+                if (auto *const area = qobject_cast<QScrollArea *>(outer))
+                    area->ensureWidgetVisible(next);
+            return true;
+        }
+    return false;
+}
+
+} // namespace hermes::desktop
