@@ -156,6 +156,14 @@ void TestSerialFixes::oneFixForEachMoment_data() {
                    sentence("GPRMC,,V,,,,,,,,,,N");
         },
         three({-1, false, -1}));
+    row(
+        "three decimals, and two of them rounded",
+        [](const QByteArray &t) { return R::gga(t.left(6) + ".30") + R::rmc(t.left(6) + ".295"); },
+        three({noon + 0.3, true, 48.5, speed, 520.5}));
+    row(
+        "three decimals, and two of them cut",
+        [](const QByteArray &t) { return R::gga(t.left(6) + ".299") + R::rmc(t.left(6) + ".29"); },
+        three({noon + 0.299, true, 48.5, speed, 520.5}));
     row("neither fix", [](auto t) { return R::zda(t) + R::vtg() + sentence("GPGSV,1,1,00"); }, {});
 }
 
@@ -258,7 +266,7 @@ void TestSerialFixes::dateOfTheDay_data() {
         << QByteArrayList{R::rmc("000000", "GP", "020130"), R::gga("235959"), R::gga("000000")}
         << QList<double>{86400, 86399, 86400};
     QTest::newRow("an impossible date")
-        << QByteArrayList{R::rmc("120000", "GP", "310230"), R::gga("120001")} << QList<double>{-1};
+        << QByteArrayList{R::rmc("120000", "GP", "310230"), R::gga("120001")} << QList<double>{-1, -1};
 }
 
 void TestSerialFixes::dateOfTheDay() {
