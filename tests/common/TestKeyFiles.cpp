@@ -18,6 +18,7 @@ class TestKeyFiles : public QObject {
 
 private Q_SLOTS:
     void aFullDiskLeavesNoHalfLine();
+    void aFullDiskTakesNoKey();
     void onlyAnAbsentListIsNone();
     void aFolderTakesThePlaceOfAnEmptyOne();
     void anEmptyFolderStaysWhereNothingTakesItsPlace();
@@ -41,6 +42,18 @@ void TestKeyFiles::aFullDiskLeavesNoHalfLine() {
     QCOMPARE(contentOf(list), before);
     QVERIFY(authority.revoke("anna"));
     QCOMPARE(KeyFolder::revoked(folder.filePath("keys"))->size(), 1);
+}
+
+void TestKeyFiles::aFullDiskTakesNoKey() {
+    QTemporaryDir folder;
+    const Authority authority(folder.filePath("keys"));
+    QVERIFY(authority.init("owner", 10, 10));
+    const QByteArray before = contents(folder.filePath("keys/own.key"));
+    {
+        const LongestFile limit(100);
+        QVERIFY(!writeKeyFile(folder.filePath("keys/own.key"), QByteArray(200, 'k')));
+    }
+    QCOMPARE(contents(folder.filePath("keys/own.key")), before);
 }
 
 void TestKeyFiles::onlyAnAbsentListIsNone() {

@@ -25,6 +25,10 @@ private Q_SLOTS:
     void aFileThatIsRemovedEndsTheRecording_data();
     void aFileThatIsRemovedEndsTheRecording();
     void aFileThatIsRemovedJustBeforeTheStopIsMissed();
+    void aFileThatIsCutIsMissed_data();
+    void aFileThatIsCutIsMissed();
+    void whatLinksLeadToStays_data();
+    void whatLinksLeadToStays();
     void aStopWhileItBeginsEndsIt_data();
     void aStopWhileItBeginsEndsIt();
     void aStopOfAnotherSessionEndsNothing();
@@ -130,6 +134,67 @@ void TestRecordingEnds::aFileThatIsRemovedJustBeforeTheStopIsMissed() {
     QVERIFY(!stopped.ok());
     QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a/logger-0001.txt");
     QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
+}
+
+void TestRecordingEnds::aFileThatIsCutIsMissed_data() {
+    QTest::addColumn<int>("told"); // bytes that the writer says it wrote
+    QTest::newRow("shorter than it was") << 0;
+    QTest::newRow("shorter than what was written") << 11;
+}
+
+void TestRecordingEnds::aFileThatIsCutIsMissed() {
+    QFETCH(int, told);
+    QTemporaryDir root;
+    Logger logger(root.path());
+    const QString path = root.path() + "/a/logger-0001.txt";
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    RecordingState state;
+    state.files.append(QJsonObject{{"name", "logger-0001.txt"}, {"bytes", told}});
+    logger.writer.setState(state);
+    QVERIFY(QFile::resize(path, 5));
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QVERIFY(!stopped);
+    QVERIFY2(stopped.error().message.contains("was cut"), qPrintable(stopped.error().message));
+    QCOMPARE(stopped.error().data.toObject().value("path").toString(), path);
+    QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
+}
+
+void TestRecordingEnds::whatLinksLeadToStays_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<QString>("target");
+    QTest::newRow("draft of the sidecar") << "cut/.logger.json.new"
+                                          << "victim";
+    QTest::newRow("room for the sidecar") << "cut/.logger.reserve"
+                                          << "victim";
+    QTest::newRow("lock") << ".logger.lock"
+                          << "none";
+    QTest::newRow("a recording elsewhere") << "linked"
+                                           << "cut";
+}
+
+/// Beside recordings that are completed, and in the folder of one that begins.
+void TestRecordingEnds::whatLinksLeadToStays() {
+    QFETCH(QString, name);
+    QFETCH(QString, target);
+    QTemporaryDir root, other, recorded;
+    put(other.filePath("victim"), "precious");
+    Logger killed(recorded.path());
+    const QString folder = folderOf(killed.call("record.start", {{"name", "a"}}));
+    const bool isElsewhere = target == "cut";
+    copyUnfinished(folder, isElsewhere ? other.path() : root.path());
+    QFile::remove(root.filePath(name));
+    QVERIFY(QFile::link(other.filePath(target), root.filePath(name)));
+    Logger next(root.path());
+    const bool isCompleted = QTest::qWaitFor([&] { return next.level("recording") == "warn"; }, 2000);
+    QCOMPARE(isCompleted, !isElsewhere);
+    next.call("record.start", {{"name", "cut"}, {"session", "s"}});
+    QCOMPARE(QDir(other.path()).entryList(QDir::AllEntries | QDir::NoDotAndDotDot),
+             QStringList(isElsewhere ? QStringList{"cut", "victim"} : QStringList{"victim"}));
+    QFile victim(other.filePath("victim"));
+    QVERIFY(victim.open(QIODevice::ReadOnly));
+    QCOMPARE(victim.readAll(), QByteArray("precious"));
+    if (isElsewhere)
+        QVERIFY(sidecarOf(other.filePath("cut")).value("ended").isNull());
 }
 
 void TestRecordingEnds::aStopWhileItBeginsEndsIt_data() {

@@ -314,6 +314,16 @@ void TestRecorder::repairOfDamagedFiles() {
     QCOMPARE(refused.error().data.toObject().value("path").toString(),
              folder.filePath("velodynelogger-0002.pcap"));
     QCOMPARE(QFileInfo(folder.filePath("velodynelogger-0002.pcap")).size(), 5000); // left alone
+    QVERIFY(QFile::remove(folder.filePath("velodynelogger-0002.pcap")));
+    QTemporaryDir other; // a capture of somebody else's, with something behind its packets
+    QFile victim(other.filePath("victim"));
+    QVERIFY(QFile::copy(folder.filePath("velodynelogger-0001.pcap"), victim.fileName()));
+    QVERIFY(victim.open(QIODevice::Append) && victim.write("precious") == 8);
+    victim.close();
+    const qint64 size = victim.size();
+    QVERIFY(QFile::link(victim.fileName(), folder.filePath("velodynelogger-0002.pcap")));
+    QVERIFY(!recorder.repair(planIn(folder), sidecar).ok());
+    QCOMPARE(victim.size(), size);
 }
 
 QTEST_GUILESS_MAIN(TestRecorder)

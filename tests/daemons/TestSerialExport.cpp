@@ -68,6 +68,13 @@ void TestSerialExport::exportsFailInOrder() {
     }
     QVERIFY(!QFile::exists(job.target));
     QCOMPARE(job.run(false).value(), 1000.0);
+    const QByteArray whole = contentOf(job.target);
+    QVERIFY(QFile::remove(job.target));
+    {
+        const FileSizeLimit almost(whole.size() - 10); // what is in the buffer at the end has no room
+        QCOMPARE(job.run(false).error().code, int(ErrorCode::InputOutput));
+    }
+    QVERIFY(!QFile::exists(job.target));
 }
 
 QTEST_GUILESS_MAIN(TestSerialExport)

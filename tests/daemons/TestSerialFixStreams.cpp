@@ -145,9 +145,9 @@ private:
                 text.replace(angle(moment_.latitude, 2, "NS"), "9000.0001,N");
                 return sentence(text);
             }
-            ++damaged;
             QByteArray bad = good;
             const int at = std::uniform_int_distribution<>(1, good.indexOf('*') - 1)(random_);
+            damaged += at > good.indexOf(','); // what has no address is no sentence
             bad[at] = char(bad[at] ^ 1 << pick({0, 1, 2, 3, 4, 5, 6, 7}));
             if (bad[at] == '$') // the rest of one in 256 would pass for a sentence
                 bad[at] = '#';

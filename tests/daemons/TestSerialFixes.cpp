@@ -156,6 +156,14 @@ void TestSerialFixes::oneFixForEachMoment_data() {
                    sentence("GPRMC,,V,,,,,,,,,,N");
         },
         three({-1, false, -1}));
+    row(
+        "three decimals, and two of them rounded",
+        [](const QByteArray &t) { return R::gga(t.left(6) + ".30") + R::rmc(t.left(6) + ".295"); },
+        three({noon + 0.3, true, 48.5, speed, 520.5}));
+    row(
+        "three decimals, and two of them cut",
+        [](const QByteArray &t) { return R::gga(t.left(6) + ".299") + R::rmc(t.left(6) + ".29"); },
+        three({noon + 0.299, true, 48.5, speed, 520.5}));
     row("neither fix", [](auto t) { return R::zda(t) + R::vtg() + sentence("GPGSV,1,1,00"); }, {});
 }
 
@@ -251,7 +259,7 @@ void TestSerialFixes::dateOfTheDay_data() {
     row("leap second", {R::rmc("235959"), R::gga("235960"), R::gga("000000")}, {86399, 86400, 86400});
     row("back over midnight", {R::rmc("000000", "GP", "020130"), R::gga("235959"), R::gga("000000")},
         {86400, 86399, 86400});
-    row("an impossible date", {R::rmc("120000", "GP", "310230"), R::gga("120001")}, {-1});
+    row("an impossible date", {R::rmc("120000", "GP", "310230"), R::gga("120001")}, {-1, -1});
 }
 
 void TestSerialFixes::dateOfTheDay() {

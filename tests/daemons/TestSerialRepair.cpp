@@ -3,6 +3,7 @@
 #include "common/recording/Sidecar.h"
 
 #include <limits>
+#include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::seriallogger;
@@ -12,6 +13,8 @@ class TestSerialRepair : public QObject, SerialFilesFixture {
 private Q_SLOTS:
     void init() { folder_ = std::make_unique<QTemporaryDir>(); }
     void whatWasCutOffIsRepaired();
+    void whatLinksLeadToStays_data();
+    void whatLinksLeadToStays();
     void damageIsNamed_data();
     void damageIsNamed();
     void longChunksComeInPieces();
@@ -48,6 +51,36 @@ void TestSerialRepair::whatWasCutOffIsRepaired() {
     const QJsonObject again = sidecar;
     QVERIFY(recorder.repair(plan(), sidecar).ok());
     QCOMPARE(sidecar, again);
+}
+
+void TestSerialRepair::whatLinksLeadToStays_data() {
+    QTest::addColumn<QString>("file");
+    QTest::addColumn<bool>("isHard");
+    for (const char *file : {"logger-a.index", "logger-events.jsonl"}) {
+        QTest::addRow("%s, a link", file) << file << false;
+        QTest::addRow("%s, a second name", file) << file << true;
+    }
+}
+
+void TestSerialRepair::whatLinksLeadToStays() {
+    QFETCH(QString, file);
+    QFETCH(bool, isHard);
+    ChunkQueue queue(1000);
+    SerialRecorder recorder;
+    recorder.setPorts({{"a", "u", &queue}});
+    QVERIFY(recorder.begin(plan()).ok());
+    recorder.end();
+    QTemporaryDir other;
+    const QString victim = other.filePath("victim"), link = folder_->filePath(file);
+    put(victim, contentOf(base() + ".index") + "precious"); // both would be cut
+    QVERIFY(QFile::remove(link));
+    const auto make = isHard ? ::link : ::symlink;
+    QCOMPARE(make(QFile::encodeName(victim), QFile::encodeName(link)), 0);
+    QJsonObject sidecar{{"files", recorder.state().files}};
+    const auto repaired = recorder.repair(plan(), sidecar);
+    QVERIFY(!repaired);
+    QCOMPARE(repaired.error().data.toObject().value("path").toString(), link);
+    QVERIFY(contentOf(victim).endsWith("precious"));
 }
 
 void TestSerialRepair::damageIsNamed_data() {

@@ -24,6 +24,7 @@ class TestSentenceParser : public QObject {
 private Q_SLOTS:
     void findsSentences_data();
     void findsSentences();
+    void aPieceEndsASentence();
     void countsWhatItDrops();
     void isInStepWhereverItBegins();
     void withoutChecksumOnlyWhenLenient();
@@ -41,6 +42,11 @@ void TestSentenceParser::findsSentences_data() {
     row("cut short", "$GPTXT,$GPTXT,A*22\r\n", one);
     row("damaged", "$GPTXT,B*22\r\n$GPTXT,A*22\r\n", one);
     row("no end yet", "$GPTXT,A*22", QList<QByteArray>());
+    row("no line end between", "$GPTXT,A*22$GPTXT,A*22\r", one + one);
+    row("binary behind", "$GPTXT,A*22\xb5\x62\r", one);
+    row("a star inside", "$GPTXT,A*220,1*22\r\n", QList<QByteArray>());
+    row("blank behind", "$GPTXT,A*22 \r\n", one);
+    row("doubled start", "$$GPTXT,A*22\r\n", one);
     row("one digit", "$GPTXT,A*2\r\n", QList<QByteArray>());
     row("three digits", "$GPTXT,A*220\r\n", QList<QByteArray>());
     row("no digits", "$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n", QList<QByteArray>());
@@ -56,10 +62,27 @@ void TestSentenceParser::findsSentences() {
     QCOMPARE(parser.counts().sentences, quint64(bodies.size()));
 }
 
+void TestSentenceParser::aPieceEndsASentence() {
+    SentenceParser parser;
+    QCOMPARE(sentencesOf(parser, "$GPTXT,A*22").size(), 0);
+    QCOMPARE(parser.endPiece(), SentenceParser::Result::Done);
+    QCOMPARE(toBytes(parser.sentence().body()), QByteArray("GPTXT,A"));
+    for (const char *begun :
+         {"\r\n", "$", "$GPTXT", "$GPTXT,A*", "$GPTXT,A*2", "$GPTXT,A*23"}) { // more may come
+        QCOMPARE(sentencesOf(parser, begun).size(), 0);
+        QCOMPARE(parser.endPiece(), SentenceParser::Result::Incomplete);
+    }
+    QCOMPARE(parser.counts().sentences, quint64(1));
+    parser.reset();
+    QCOMPARE(sentencesOf(parser, "$GPTXT,A*2").size(), 0);
+    parser.endPiece();
+    QCOMPARE(sentencesOf(parser, "2\n").size(), 1);
+}
+
 void TestSentenceParser::countsWhatItDrops() {
     SentenceParser parser;
-    const QByteArray endless = '$' + QByteArray(int(maxSentence) * 3, 'A');
-    QCOMPARE(sentencesOf(parser, endless + "\n$GPT\x80XT\n$GPT$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
+    const QByteArray endless = "$GPTXT," + QByteArray(int(maxSentence) * 3, 'A');
+    QCOMPARE(sentencesOf(parser, endless + "\n$GPTXT,\x80XT\n$GPTXT,$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
     const SentenceParser::Counts &counts = parser.counts();
     QCOMPARE(counts.tooLong, quint64(1));
     QCOMPARE(counts.badByte, quint64(1));
@@ -69,6 +92,13 @@ void TestSentenceParser::countsWhatItDrops() {
     // The endless one is dropped with the byte that is too much; behind it and behind 0x80 all is noise.
     QCOMPARE(counts.skippedBytes, quint64(endless.size()) - maxSentence - 1 + 2);
     QCOMPARE(sentencesOf(parser, realRmc).size(), 1);
+    // Binary messages between sentences are no sentences.
+    const SentenceParser::Counts before = counts;
+    const QByteArray binary("\xb5\x62$\x01!AB,\x02$GP,\x03$\n$Gp123,4\n$*12\n", 27);
+    QCOMPARE(sentencesOf(parser, binary + realRmc).size(), 1);
+    QCOMPARE(counts.badByte + counts.cutShort + counts.noChecksum + counts.badChecksum,
+             before.badByte + before.cutShort + before.noChecksum + before.badChecksum);
+    QVERIFY(counts.skippedBytes > before.skippedBytes + 15);
 }
 
 void TestSentenceParser::isInStepWhereverItBegins() {

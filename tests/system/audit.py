@@ -87,6 +87,44 @@ def check_rotation(folder, log_folder):
     assert clients[-2:] == [116, 116] or 116 in clients[-4:], clients[-8:]
 
 
+def check_flood(folder, log_folder):
+    """Who commands without end does not push out what was told before; they are counted, and a warning tells it."""
+    settings = {"audit.folder": folder, "audit.file_bytes": 65536, "audit.files": 4}
+    process = Process(BINARIES, "softwaretrigger", free_port(0), log_folder, settings)
+    total = 3000
+    try:
+        with process.connect() as daemon:
+            daemon.call("settings.set", values={"limits": {"clients": 77}})
+        for number in range(10):
+            with process.connect() as daemon:  # under another name
+                for _ in range(total // 10):
+                    assert refusal(daemon, "trigger.fire", id="none" * 20) != 0
+        with process.connect() as daemon:
+            wait_for("a warning", lambda: "summed up" in audit_of(daemon)["message"], 10)
+            assert audit_of(daemon)["level"] == "warn", audit_of(daemon)
+    finally:
+        process.stop()
+    lines = lines_of(folder, "softwaretrigger")
+    assert lines[0]["params"] == {"values": {"limits": {"clients": 77}}}, lines[0]
+    fired = [line for line in lines if line["method"] == "trigger.fire"]
+    assert sum(line.get("calls", 1) for line in fired) == total, len(fired)
+
+
+def check_long(folder, log_folder):
+    """What is too long is shortened, and what matters is told."""
+    process = Process(BINARIES, "supervisor", free_port(0), log_folder, {"audit.folder": folder, "processes": "[]"})
+    try:
+        with process.connect() as daemon:
+            daemon.call("process.add", name="x", program="/bin/true", arguments=["y" * 90] * 40)
+            refusal(daemon, "process.add", name="z" * 9000, program="/bin/false", arguments=[])
+    finally:
+        process.stop()
+    lines = [line for line in lines_of(folder, "supervisor") if line["method"] == "process.add"]
+    assert lines[0]["params"]["program"] == "/bin/true" and lines[0]["params"]["name"] == "x", lines[0]
+    assert lines[0]["params"]["arguments"][-1] == "... (40)" and lines[0]["params"]["arguments"][0] == "y" * 90, lines[0]
+    assert lines[1]["params"]["program"] == "/bin/false" and lines[1]["params"]["name"].endswith("... (9000)"), lines[1]
+
+
 def audit_of(daemon):
     return {item["name"]: item for item in daemon.call("daemon.status")["health"]}["audit"]
 
@@ -106,7 +144,7 @@ def check_trouble(folder, log_folder):
 
 
 def main():
-    for check in (check_lines, check_repeated, check_rotation, check_trouble):
+    for check in (check_lines, check_repeated, check_rotation, check_flood, check_long, check_trouble):
         with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as log_folder:
             check(folder, log_folder)
     return 0
