@@ -4,6 +4,7 @@
 #include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
 #include "tests/support/Latex.h"
+#include "vectorlib/experiments/Commands.h"
 #include "vectorlib/experiments/ExperimentCommand.h"
 
 #include <vectorlib/mapping/MapAligner.h>
