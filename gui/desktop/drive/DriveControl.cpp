@@ -90,7 +90,7 @@ void DriveControl::follow() {
     if (found)
         driven_ = found;
     hold_ = {};
-    measured_ = {};
+    measured_ = target_ = {};
     measuredAge_.forget();
     stateAge_.forget();
     isHolding_ = isAsking_ = isPolling_ = false;
@@ -254,6 +254,7 @@ void DriveControl::acquire(bool takeOver) {
                       isAsking_ = false;
                       isHolding_ = result.ok();
                       tell(result ? QString() : result.error().message);
+                      heldProblem_ = problem_;
                       if (!result)
                           inputs_.needRest();
                       else if (!takeOver && (!inputs_.isAnyHeld() || mustLetGo()))
@@ -293,7 +294,7 @@ void DriveControl::send() {
         if (result)
             return tell({});
         if (result.error().is(ErrorCode::ControlHeld))
-            yieldControl();
+            heldProblem_ = result.error().message, yieldControl();
         else if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
             halt();
         tell(result.error().message);
@@ -335,7 +336,7 @@ void DriveControl::halt(const QString &reason) {
 
 /// Because it was let go: the next press counts at once.
 void DriveControl::end() {
-    commanded_ = {};
+    commanded_ = target_ = {};
     if (isDriving_ && motors_) {
         // Calls, which are repeated where frames are lost.
         motors_->client().call(
@@ -413,6 +414,7 @@ void DriveControl::onState(const QJsonValue &state) {
     stateAge_.heard(motors_);
     const bool wasStopped = isStopped(), wasLatched = !hold_.latched.isEmpty();
     hold_ = std::move(*hold);
+    target_ = readMessage<Twist2D>(WireValue(state["target"]), report).value_or(Twist2D());
     if (!isDriving_ && hold_.control.holder != ownName())
         isHolding_ = false; // it ran out
     if (isStopped() && !wasStopped) {
@@ -420,7 +422,7 @@ void DriveControl::onState(const QJsonValue &state) {
         commanded_ = {};
         inputs_.needRest();
     }
-    if (wasLatched && hold_.latched.isEmpty())
+    if ((wasLatched && hold_.latched.isEmpty()) || (!hold_.control.held && problem_ == heldProblem_))
         tell({}); // what was refused because of it
     Q_EMIT changed();
 }
@@ -431,6 +433,13 @@ QString DriveControl::stopReason() const {
     for (const QString &reason : hold_.latched)
         reasons.append(readableStop(reason, isOurs));
     return reasons.join("; ");
+}
+
+bool DriveControl::isStanding() const {
+    constexpr double slowest = 0.02; // m/s or rad/s
+    const bool isMoving = measuredAge_.isFresh() && std::max(std::hypot(measured_.vx, measured_.vy),
+                                                             std::abs(measured_.omega)) > slowest;
+    return stop_.phase() == StopPhase::Confirmed && !isMoving;
 }
 
 QString DriveControl::holder() const {

@@ -75,12 +75,14 @@ public:
     const QMap<QString, QString> &latched() const { return hold_.latched; }
     /// The same for people; empty: nothing stops it.
     QString stopReason() const;
+    /// It has confirmed that it stands, and its odometry does not say otherwise.
+    bool isStanding() const;
     /// Who holds the control: "" nobody, "you", or the name of another client.
     QString holder() const;
     /// Who asks for the control that this program has; empty: nobody.
     QString wanted() const;
-    /// The velocity that is commanded, and the one that odometry measures.
-    const Twist2D &commanded() const { return commanded_; }
+    /// The velocity that is commanded, by whoever drives, and the one that odometry measures.
+    const Twist2D &commanded() const { return isDriving_ || !isPossible() ? commanded_ : target_; }
     const Twist2D &measured() const { return measured_; }
     /// How old that is, and what the motor control says of its state.
     const Freshness &measuredAge() const { return measuredAge_; }
@@ -143,6 +145,7 @@ private:
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;
+    Twist2D target_; ///< of the motor control
     int losses_ = 0; ///< of the control
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
@@ -150,7 +153,7 @@ private:
     QMap<QString, Twist2D> limits_; ///< of each robot, by the address of its motor control
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, isPolling_ = false;
     bool isBlindMeant_ = false;
-    QString problem_;
+    QString problem_, heldProblem_; ///< the second: it ends when nobody else has the control
 };
 
 } // namespace hermes::desktop

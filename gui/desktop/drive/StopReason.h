@@ -13,10 +13,13 @@ inline QString readableStop(const QString &reason, bool isOurs) {
     static const QString by = "emergency stop by ";
     if (isOurs && reason.startsWith(by + ownName()))
         return by + QObject::tr("you (this window)");
-    static const QRegularExpression behindAName(R"(, [a-z]+://\S+( \([^)]*\))?)"),
+    static const QRegularExpression here(
+        R"([a-z]+://(?:@[a-z]+:)?(127\.\S+|localhost|\[::1\]):\d+( \([^)]*\))?)"),
+        behindAName(R"(, [a-z]+://\S+( \([^)]*\))?)"),
         alone(R"([a-z]+://(?:@[a-z]+:)?(\S+):\d+( \([^)]*\))?)");
     QString text = reason;
     text.remove(behindAName);
+    text.replace(here, QObject::tr("a program on the robot's own computer"));
     return text.replace(alone, QObject::tr("a program on \\1"));
 }
 

@@ -103,8 +103,9 @@ bool Events::isWaiting(const Event &event) {
 const Event *Events::loudest() const {
     const Event *found = nullptr;
     const auto rank = [](const Event &event) {
-        const bool isPast = event.isOver && !event.key.isEmpty();
-        return std::tuple(event.level, !isPast, event.began);
+        const bool isPast =
+            event.isOver && (!event.key.isEmpty() || monotonicNow() - event.over > sameWithin_s);
+        return std::tuple(!isPast, event.level, event.began); // what is so now hides behind nothing
     };
     for (const Event &event : events_)
         if (isWaiting(event) && (!found || rank(event) >= rank(*found)))

@@ -56,7 +56,8 @@ public:
     const std::deque<Event> &all() const { return events_; }
     /// How many were left out because there were too many.
     quint64 forgotten() const { return forgotten_; }
-    /// The worst that waits to be acknowledged; of those what goes on, then the latest; null: none.
+    /// Of those that wait to be acknowledged, what goes on or came within a minute; of those the worst, then
+    /// the latest. Null: none.
     const Event *loudest() const;
     /// How many wait.
     int waiting() const;

@@ -214,7 +214,9 @@ void DrivePanel::update() {
         wrongLimit_.clear();
     QString problem = wrongLimit_.isEmpty() ? drive_.problem() : wrongLimit_;
     if (!drive_.latched().isEmpty())
-        problem = tr("Stopped: %1. Release it above.").arg(drive_.stopReason());
+        problem = (drive_.isStanding() ? tr("Stopped: %1. Release it above.")
+                                       : tr("STOP holds, but that the robot stands is not known: %1."))
+                      .arg(drive_.stopReason());
     problem_->setToolTip(toolTipOf(QStringList(drive_.latched().values()).join("; ")));
     blind_->setVisible(drive_.refusesForReplay());
     if (drive_.refusesForReplay())

@@ -120,7 +120,9 @@ void MapMenu::startNew() {
             call("map.clear", {}, [this](const QJsonValue &) {
                 path_.clear();
                 update();
-                Q_EMIT told(tr("A new map has begun. Map, Undo brings the last one back."), false);
+                Q_EMIT told(tr("A new map has begun. Map, Undo brings back the last that had walls, if there "
+                               "is one."),
+                            false);
             });
         });
 }
@@ -166,9 +168,10 @@ void MapMenu::load(const QString &path) {
     call("map.load", {{"path", path}}, [this, path](const QJsonValue &loaded) {
         path_ = path.endsWith(".csv") ? path : QString();
         update();
-        const QString opened = tr("Opened %1: %2 walls. Map, Undo brings back the one before, saved or not.")
-                                   .arg(shortLine(path, longestPath))
-                                   .arg(loaded["segments"].toDouble());
+        const QString opened =
+            tr("Opened %1: %2 walls. Map, Undo brings back the last that had walls, if there is one.")
+                .arg(shortLine(path, longestPath))
+                .arg(loaded["segments"].toDouble());
         Q_EMIT told(opened + ' ' + tr("The robot is sought in it; until it is found nothing is mapped."),
                     false);
         Q_EMIT sought(opened);

@@ -159,6 +159,7 @@ void RecordPanel::start() {
     const QString name = name_->text().trimmed();
     recorder().start(name, [this, name](const Result<SessionReplies> &replies) {
         message_->tell(replies ? tr("Recording %1.").arg(name) : replies.error().message, !replies);
+        begun_ = replies ? message_->text() : QString();
         if (replies) {
             watch_.forgetLost();
             name_->setModified(false); // the next one is proposed
@@ -286,8 +287,11 @@ void RecordPanel::setReplaying(bool isReplaying) {
 
 void RecordPanel::update() {
     const bool isRecording = watch_.isRecording();
-    if (std::exchange(wasRecording_, isRecording) != isRecording)
+    if (std::exchange(wasRecording_, isRecording) != isRecording) {
         Q_EMIT recordingChanged(isRecording);
+        if (!isRecording && message_->text() == begun_)
+            message_->hide(); // whatever became of it
+    }
     record_->setText(isRecording ? tr("S&top") : tr("Re&cord"));
     record_->setIcon(theme::icon(isRecording ? "stop" : "record"));
     record_->setEnabled(!watch_.members().all.empty() && (isRecording || !name_->text().trimmed().isEmpty()));

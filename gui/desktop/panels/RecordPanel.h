@@ -70,6 +70,7 @@ private:
     int listing_ = 0;             ///< counts the times that it was asked for
     QSet<QString> listed_;        ///< the sessions that were under way then
     QMap<QString, QString> ends_; ///< names of recordings that ended otherwise, by session; to be told
+    QString begun_;               ///< what was told of the recording that was begun here last
     QString played_;              ///< the id of the session
     QString playedBy_;            ///< the title of its robot
     QSet<QString> markedIn_;      ///< the sessions that the number is of

@@ -6,6 +6,17 @@
 #include <QEvent>
 
 namespace hermes::desktop {
+namespace {
+
+/// Or can be scrolled to.
+bool isInReach(const QWidget &widget) {
+    if (isSeen(widget, true))
+        return true;
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest); // it may only now get its place
+    return isSeen(widget, true);
+}
+
+} // namespace
 
 FocusInSight::FocusInSight(QWidget &fallback)
     : QObject(&fallback)
@@ -16,9 +27,9 @@ FocusInSight::FocusInSight(QWidget &fallback)
 bool FocusInSight::eventFilter(QObject *watched, QEvent *event) {
     const auto *const widget = qobject_cast<QWidget *>(watched);
     if (event->type() == QEvent::Shortcut)
-        return widget && !widget->isWindow() && !isSeen(*widget, true);
+        return widget && !widget->isWindow() && !isInReach(*widget);
     if (event->type() != QEvent::KeyPress || !widget || widget != QApplication::focusWidget() ||
-        isSeen(*widget, true) || widget == &fallback_ || fallback_.isAncestorOf(widget))
+        widget == &fallback_ || fallback_.isAncestorOf(widget) || isInReach(*widget))
         return false;
     fallback_.setFocus();
     return true;

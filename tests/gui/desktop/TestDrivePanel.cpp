@@ -32,6 +32,10 @@ private Q_SLOTS:
     void stopIsLatchedAndNeedsNoControl();
     void afterAReleaseTheStickMustBeCentred();
     void aReleaseByAnotherIsSeen();
+    void stoppedIsToldWhenItStands();
+    void whoStoppedOnTheRobotIsToldSo();
+    void whatAnotherCommandsIsShown();
+    void whoseControlItWasEndsWithIt();
     void losingTheFocusStops();
     void closingTheWindowStops();
     void heldByAnotherAndTakenOver();
@@ -283,6 +287,57 @@ void TestDrivePanel::aReleaseByAnotherIsSeen() {
     find<QPushButton>("stop")->pressed();
     QTRY_COMPARE(find<QLabel>("problem")->text(),
                  QString("Stopped: emergency stop by you (this window). Release it above."));
+}
+
+void TestDrivePanel::stoppedIsToldWhenItStands() {
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    awaitMotion();
+    const auto *const problem = find<QLabel>("problem");
+    QStringList untrue;
+    connect(drive_.get(), &DriveControl::changed, this, [&] {
+        const double shown = find<QLabel>("measured0")->text().toDouble();
+        if (problem->isVisible() && problem->text().startsWith("Stopped") && shown > 0.05)
+            untrue.append(QString("%1 beside %2").arg(problem->text()).arg(shown));
+    });
+    QVERIFY(client_->callAndWait("motor.estop", QJsonObject{{"client", "anna"}}).ok());
+    QTRY_VERIFY2(problem->text().startsWith("Stopped"), qPrintable(problem->text()));
+    disconnect(drive_.get(), &DriveControl::changed, this, nullptr);
+    QVERIFY2(untrue.isEmpty(), qPrintable(untrue.join('\n')));
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+}
+
+void TestDrivePanel::whoStoppedOnTheRobotIsToldSo() {
+    Client nameless; // over TCP, as a program on the robot
+    nameless.connectTo(asOwner(robot_->address()));
+    QVERIFY(nameless.waitConnected().ok());
+    QVERIFY(nameless.callAndWait("motor.estop").ok());
+    QTRY_VERIFY2(find<QLabel>("problem")->text().contains("by a program on the robot's own computer"),
+                 qPrintable(find<QLabel>("problem")->text()));
+}
+
+void TestDrivePanel::whatAnotherCommandsIsShown() {
+    QVERIFY(client_->callAndWait("control.acquire", QJsonObject{{"timeout_s", 30}}).ok());
+    QVERIFY(client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}}).ok());
+    QTimer again;
+    connect(&again, &QTimer::timeout, this, [this] {
+        client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}});
+    });
+    again.start(100);
+    QTRY_COMPARE(find<QLabel>("commanded0")->text(), QString("0.30"));
+    again.stop();
+    QTRY_COMPARE(find<QLabel>("commanded0")->text(), QString("0.00"));
+}
+
+// Who has the control is told in one place only, when it is free.
+void TestDrivePanel::whoseControlItWasEndsWithIt() {
+    const QJsonObject patrol{{"client", "patrol"}, {"timeout_s", 30}};
+    QVERIFY(client_->callAndWait("control.acquire", patrol).ok());
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(find<QLabel>("problem")->text().contains("patrol"));
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QVERIFY(client_->callAndWait("control.release").ok());
+    QTRY_VERIFY(find<QLabel>("control")->text().startsWith("Control: free"));
+    QCOMPARE(find<QLabel>("problem")->text(), QString());
 }
 
 void TestDrivePanel::losingTheFocusStops() {

@@ -122,6 +122,9 @@ void TestEvents::whatGoesOnComesFirst() {
     QCOMPARE(events.loudest()->text, QString("no connection"));
     QCOMPARE(events.loudest()->times, 1);
     QCOMPARE(int(events.all().size()), 3);
+    events.ends("a");
+    events.goesOn("battery", Event::Level::Warning, "carla", "less than a minute");
+    QCOMPARE(events.loudest()->from, QString("carla")); // no error that is over hides it
 }
 
 void TestEvents::worseHasToBeSeenAgain() {
