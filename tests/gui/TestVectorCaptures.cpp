@@ -107,9 +107,9 @@ private Q_SLOTS:
         QCOMPARE(ring.status, 0);
         QCOMPARE(rangesOf(ring.out), QSet<double>{range});
         QCOMPARE(ring.out.count('\n'), 4801);
-        for (const char *told :
-             {"192.168.1.201 to port 2368 (400 packets)", "192.168.1.202 to port 2369 (400 packets)",
-              "192.168.1.203 to port 2368 (400 packets)", "--port", "--sender"})
+        for (const char *told : {"192.168.1.201:2368 to port 2368 (400 packets)",
+                                 "192.168.1.202:2369 to port 2369 (400 packets)",
+                                 "192.168.1.203:2368 to port 2368 (400 packets)", "--port", "--sender"})
             QVERIFY2(ring.err.contains(told), ring.err.constData());
         const Result map = run(QStringList{"map", path("c.pcap"), "--out-map", path("m.csv")} + options);
         QVERIFY2(map.status == 0, map.err.constData());
@@ -132,8 +132,9 @@ private Q_SLOTS:
         QTest::addColumn<QStringList>("options");
         QTest::addColumn<QByteArray>("told");
         QTest::newRow("port") << QStringList{"--port", "2370"}
-                              << QByteArray("found data packets of 192.168.1.201 to port 4711 (400 packets) "
-                                            "only, expected some to port 2370");
+                              << QByteArray(
+                                     "found data packets of 192.168.1.201:4711 to port 4711 (400 packets) "
+                                     "only, expected some to port 2370");
         QTest::newRow("sender") << QStringList{"--sender", "10.0.0.1"}
                                 << QByteArray("only, expected some from 10.0.0.1");
     }
@@ -146,6 +147,28 @@ private Q_SLOTS:
             QCOMPARE(r.status, 1);
             QVERIFY2(r.err.contains(told), r.err.constData());
             QCOMPARE(folder_.files(), QStringList{"c.pcap"});
+        }
+    }
+
+    // As tcpdump writes that keeps the beginnings of frames only.
+    void whatIsLeftOutIsTold() {
+        writeCapture(path("c.pcap"), 400);
+        const QByteArray whole = contents(path("c.pcap"));
+        const int header = int(hermes::PcapWriter::fileHeaderBytes), record = (whole.size() - header) / 400;
+        QByteArray cut = whole.left(header);
+        for (int i = 0; i < 400; ++i) {
+            QByteArray one = whole.mid(header + i * record, 16 + 96);
+            qToLittleEndian<quint32>(96, one.data() + 8);
+            cut += one;
+        }
+        write(path("cut.pcap"), cut);
+        write(path("half.pcap"), whole + cut.mid(header));
+        for (const char *command : {"ring", "map"}) {
+            const Result none = run({command, path("cut.pcap")}), half = run({command, path("half.pcap")});
+            QCOMPARE(none.status, 1);
+            QVERIFY2(none.err.contains("400 cut to their beginning"), none.err.constData());
+            QCOMPARE(half.status, 0);
+            QVERIFY2(half.err.contains("of 800 records were left out: 400 cut"), half.err.constData());
         }
     }
 

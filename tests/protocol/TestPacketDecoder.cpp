@@ -87,7 +87,7 @@ void TestPacketDecoder::faultsAreNamed_data() {
     QTest::newRow("first flag") << 1206 << 0 << 0xFE << int(PacketFault::Flag);
     QTest::newRow("last flag") << 1206 << 1101 << 0 << int(PacketFault::Flag);
     QTest::newRow("azimuth") << 1206 << 3 << 0x8D << int(PacketFault::Value);
-    QTest::newRow("stamp") << 1206 << 1203 << 0xFF << int(PacketFault::Value);
+    QTest::newRow("stamp beyond the hour") << 1206 << 1203 << 0xFF << int(PacketFault::None);
     QTest::newRow("VLP-16") << 1206 << 1205 << 0x22 << int(PacketFault::None);
     QTest::newRow("VLP-32C") << 1206 << 1205 << 0x28 << int(PacketFault::Model);
     QTest::newRow("model without mode") << 1206 << 1204 << 0 << int(PacketFault::Model);
