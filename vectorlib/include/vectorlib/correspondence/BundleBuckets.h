@@ -41,6 +41,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/BundleBuckets.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/BundleBuckets.cpp")

@@ -63,6 +63,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/BundleCombinations.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/BundleCombinations.cpp")

@@ -59,6 +59,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/CollinearBundles.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/CollinearBundles.cpp")

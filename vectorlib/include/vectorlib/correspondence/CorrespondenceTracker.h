@@ -88,6 +88,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/CorrespondenceTracker.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/CorrespondenceTracker.cpp")

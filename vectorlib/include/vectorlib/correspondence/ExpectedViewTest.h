@@ -44,6 +44,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/ExpectedViewTest.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/ExpectedViewTest.cpp")

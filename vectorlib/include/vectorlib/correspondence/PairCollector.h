@@ -28,6 +28,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/PairCollector.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/PairCollector.cpp")

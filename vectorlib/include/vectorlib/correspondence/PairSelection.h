@@ -56,6 +56,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/PairSelection.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/PairSelection.cpp")

@@ -30,6 +30,4 @@ bool mayCorrespond(const LineSegment2D<double> &fixed, const LineSegment2D<doubl
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/PotentialPairs.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/PotentialPairs.cpp")

@@ -65,6 +65,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/PublishedSearch.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/PublishedSearch.cpp")

@@ -52,6 +52,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/QuadrangleMatcher.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/QuadrangleMatcher.cpp")

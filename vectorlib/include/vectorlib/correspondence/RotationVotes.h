@@ -26,6 +26,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/RotationVotes.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/RotationVotes.cpp")

@@ -65,6 +65,4 @@ struct SearchResult {
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/SearchResult.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/SearchResult.cpp")

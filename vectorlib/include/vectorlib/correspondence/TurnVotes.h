@@ -40,6 +40,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/correspondence/TurnVotes.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/correspondence/TurnVotes.cpp")

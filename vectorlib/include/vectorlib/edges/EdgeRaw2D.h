@@ -32,6 +32,4 @@ EdgeRaw2D merged(const EdgeRaw2D &edge, const EdgeRaw2D &other);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/edges/EdgeRaw2D.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/edges/EdgeRaw2D.cpp")

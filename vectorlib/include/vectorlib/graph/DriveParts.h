@@ -57,6 +57,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/DriveParts.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/DriveParts.cpp")

@@ -96,6 +96,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/DriveRefiner.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/DriveRefiner.cpp")

@@ -37,6 +37,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/DriveUncertainty.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/DriveUncertainty.cpp")

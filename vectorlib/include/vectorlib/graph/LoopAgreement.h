@@ -51,6 +51,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/LoopAgreement.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/LoopAgreement.cpp")

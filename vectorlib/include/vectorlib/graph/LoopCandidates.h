@@ -93,6 +93,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/LoopCandidates.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/LoopCandidates.cpp")

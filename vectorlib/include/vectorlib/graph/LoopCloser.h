@@ -188,6 +188,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/LoopCloser.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/LoopCloser.cpp")

@@ -64,6 +64,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/MappedDrive.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/MappedDrive.cpp")

@@ -24,6 +24,4 @@ struct PoseConstraint {
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/PoseConstraint.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/PoseConstraint.cpp")

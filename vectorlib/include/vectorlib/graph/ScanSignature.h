@@ -23,6 +23,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/graph/ScanSignature.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/graph/ScanSignature.cpp")

@@ -64,6 +64,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/CarmenDrive.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/CarmenDrive.cpp")

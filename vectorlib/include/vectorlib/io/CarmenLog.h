@@ -117,6 +117,4 @@ inline Expected<CarmenLog> readCarmenLog(std::istream &in, std::string name, Car
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/CarmenLog.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/CarmenLog.cpp")

@@ -21,6 +21,4 @@ Expected<PairTable> readCsvPairs(std::istream &in, std::string name);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/CsvPairs.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/CsvPairs.cpp")

@@ -34,6 +34,4 @@ void writeCsvSegments(std::ostream &out, const std::vector<LineSegment2D<Scalar>
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/CsvSegments.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/CsvSegments.cpp")

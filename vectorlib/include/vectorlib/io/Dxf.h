@@ -14,6 +14,4 @@ void writeDxf(std::ostream &out, const std::vector<MapEdge> &map);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Dxf.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Dxf.cpp")

@@ -14,6 +14,4 @@ void writeG2o(std::ostream &out, const PoseGraph &graph);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/G2o.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/G2o.cpp")

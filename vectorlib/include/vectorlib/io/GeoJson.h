@@ -13,6 +13,4 @@ void writeGeoJson(std::ostream &out, const std::vector<MapEdge> &map);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/GeoJson.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/GeoJson.cpp")

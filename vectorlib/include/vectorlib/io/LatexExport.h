@@ -74,6 +74,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/LatexExport.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/LatexExport.cpp")

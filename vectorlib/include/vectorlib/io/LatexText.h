@@ -29,6 +29,4 @@ std::string latexText(const std::string &text);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/LatexText.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/LatexText.cpp")

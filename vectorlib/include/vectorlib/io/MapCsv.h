@@ -29,6 +29,4 @@ Expected<std::vector<MapEdge>> readMapCsv(std::istream &in, std::string name);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/MapCsv.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/MapCsv.cpp")

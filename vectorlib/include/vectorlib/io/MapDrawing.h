@@ -23,6 +23,4 @@ void drawMap(std::ostream &out, const MapDrawing &map);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/MapDrawing.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/MapDrawing.cpp")

@@ -63,6 +63,4 @@ Expected<std::vector<Vector2D<Scalar>>> readPcd(std::istream &in, std::string na
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Pcd.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Pcd.cpp")

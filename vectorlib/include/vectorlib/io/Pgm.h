@@ -49,6 +49,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Pgm.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Pgm.cpp")

@@ -122,6 +122,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Picture.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Picture.cpp")

@@ -48,6 +48,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Svg.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Svg.cpp")

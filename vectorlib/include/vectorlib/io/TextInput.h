@@ -79,6 +79,4 @@ std::string quoted(std::string_view text);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/TextInput.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/TextInput.cpp")

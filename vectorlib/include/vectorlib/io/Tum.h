@@ -38,6 +38,4 @@ Expected<std::vector<StampedPose>> readTum(std::istream &in, std::string name);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Tum.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Tum.cpp")

@@ -19,6 +19,4 @@ Utf8Character nextCharacter(const std::string &text, std::size_t at);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/io/Utf8.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/io/Utf8.cpp")

@@ -42,6 +42,4 @@ struct GlobalPairMatch {
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/GlobalPairMatch.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/GlobalPairMatch.cpp")

@@ -133,6 +133,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/GlobalPairMatcher.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/GlobalPairMatcher.cpp")

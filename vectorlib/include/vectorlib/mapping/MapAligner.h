@@ -101,6 +101,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MapAligner.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MapAligner.cpp")

@@ -140,6 +140,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MapBuilder.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MapBuilder.cpp")

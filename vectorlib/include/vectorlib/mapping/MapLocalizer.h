@@ -113,6 +113,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MapLocalizer.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MapLocalizer.cpp")

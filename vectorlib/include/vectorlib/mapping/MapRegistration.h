@@ -49,6 +49,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MapRegistration.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MapRegistration.cpp")

@@ -98,6 +98,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MapReview.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MapReview.cpp")

@@ -39,6 +39,4 @@ struct MatchProbability {
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MatchProbability.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MatchProbability.cpp")

@@ -16,6 +16,4 @@ void mergeMap(VectorMap &map, const std::vector<MapEdge> &added, const Transform
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/MergeMap.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/MergeMap.cpp")

@@ -78,6 +78,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/ParallelTwins.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/ParallelTwins.cpp")

@@ -33,6 +33,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/PoseTrust.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/PoseTrust.cpp")

@@ -166,6 +166,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/ScanTracker.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/ScanTracker.cpp")

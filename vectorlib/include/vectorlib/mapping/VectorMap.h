@@ -86,6 +86,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/VectorMap.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/VectorMap.cpp")

@@ -72,6 +72,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/WallEvidence.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/WallEvidence.cpp")

@@ -34,6 +34,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/mapping/WallFinder.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/mapping/WallFinder.cpp")

@@ -21,6 +21,4 @@ void compensateMotion(std::vector<Vector2D<float>> &points, const std::vector<fl
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/motion/MotionCompensation.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/motion/MotionCompensation.cpp")

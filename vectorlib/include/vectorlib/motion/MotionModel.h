@@ -36,6 +36,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/motion/MotionModel.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/motion/MotionModel.cpp")

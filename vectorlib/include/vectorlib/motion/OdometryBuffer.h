@@ -46,6 +46,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/motion/OdometryBuffer.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/motion/OdometryBuffer.cpp")

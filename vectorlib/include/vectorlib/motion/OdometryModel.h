@@ -75,6 +75,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/motion/OdometryModel.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/motion/OdometryModel.cpp")

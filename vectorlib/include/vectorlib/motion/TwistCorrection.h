@@ -69,6 +69,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/motion/TwistCorrection.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/motion/TwistCorrection.cpp")

@@ -49,6 +49,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/observation/Discrepancy.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/observation/Discrepancy.cpp")

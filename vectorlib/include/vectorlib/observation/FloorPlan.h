@@ -64,6 +64,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/observation/FloorPlan.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/observation/FloorPlan.cpp")

@@ -31,6 +31,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/observation/Frontier.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/observation/Frontier.cpp")

@@ -42,6 +42,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/observation/NearestEdges.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/observation/NearestEdges.cpp")

@@ -54,6 +54,4 @@ void cutBehind(Vector2D<double> right, Vector2D<double> left, std::size_t edge, 
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/observation/Sector.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/observation/Sector.cpp")

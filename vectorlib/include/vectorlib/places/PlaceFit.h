@@ -45,6 +45,4 @@ struct PlaceFit {
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/PlaceFit.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/PlaceFit.cpp")

@@ -53,6 +53,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/PlaceFitter.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/PlaceFitter.cpp")

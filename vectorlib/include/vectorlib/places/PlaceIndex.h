@@ -87,6 +87,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/PlaceIndex.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/PlaceIndex.cpp")

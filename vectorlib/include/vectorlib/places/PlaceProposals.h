@@ -100,6 +100,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/PlaceProposals.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/PlaceProposals.cpp")

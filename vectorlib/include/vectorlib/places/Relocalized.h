@@ -67,6 +67,4 @@ const char *name(Relocalized::Outcome outcome);
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/Relocalized.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/Relocalized.cpp")

@@ -48,6 +48,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/ScanObjects.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/ScanObjects.cpp")

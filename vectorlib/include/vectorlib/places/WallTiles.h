@@ -102,6 +102,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/places/WallTiles.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/places/WallTiles.cpp")

@@ -47,6 +47,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/PointAgreement.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/PointAgreement.cpp")

@@ -58,6 +58,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/PointCovariance.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/PointCovariance.cpp")

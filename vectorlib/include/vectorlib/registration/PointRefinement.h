@@ -68,6 +68,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/PointRefinement.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/PointRefinement.cpp")

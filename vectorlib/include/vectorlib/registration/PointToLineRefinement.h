@@ -43,6 +43,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/PointToLineRefinement.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/PointToLineRefinement.cpp")

@@ -38,6 +38,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/RegistrationCovariance.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/RegistrationCovariance.cpp")

@@ -50,6 +50,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/ScanSurface.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/ScanSurface.cpp")

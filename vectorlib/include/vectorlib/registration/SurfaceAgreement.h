@@ -54,6 +54,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/SurfaceAgreement.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/SurfaceAgreement.cpp")

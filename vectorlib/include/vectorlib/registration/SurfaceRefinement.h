@@ -35,6 +35,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/registration/SurfaceRefinement.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/registration/SurfaceRefinement.cpp")

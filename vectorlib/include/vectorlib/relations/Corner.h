@@ -86,6 +86,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/Corner.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/Corner.cpp")

@@ -45,6 +45,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/LocalMap.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/LocalMap.cpp")

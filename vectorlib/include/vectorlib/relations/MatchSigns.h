@@ -35,6 +35,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/MatchSigns.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/MatchSigns.cpp")

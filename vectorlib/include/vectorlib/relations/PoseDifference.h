@@ -29,6 +29,4 @@ bool poseDifference(const std::vector<CorrespondencePair> &pairs, const std::vec
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/PoseDifference.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/PoseDifference.cpp")

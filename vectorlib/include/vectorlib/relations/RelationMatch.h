@@ -53,6 +53,4 @@ struct RelationMatch {
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/RelationMatch.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/RelationMatch.cpp")

@@ -88,6 +88,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/RelationMatcher.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/RelationMatcher.cpp")

@@ -42,6 +42,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/RelationScan.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/RelationScan.cpp")

@@ -70,6 +70,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/RelationScores.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/RelationScores.cpp")

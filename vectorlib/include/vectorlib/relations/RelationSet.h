@@ -98,6 +98,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/RelationSet.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/RelationSet.cpp")

@@ -64,6 +64,4 @@ bool parametersMatch(const CornerRelation &a, const CornerRelation &b, float win
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/Relations.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/Relations.cpp")

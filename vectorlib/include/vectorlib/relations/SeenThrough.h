@@ -30,6 +30,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/SeenThrough.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/SeenThrough.cpp")

@@ -39,6 +39,4 @@ double relativeAngle(const LineSegment2D<double> &from, const LineSegment2D<doub
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/TypedSegment.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/TypedSegment.cpp")

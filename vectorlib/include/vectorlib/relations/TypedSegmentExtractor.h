@@ -73,6 +73,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/relations/TypedSegmentExtractor.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/relations/TypedSegmentExtractor.cpp")

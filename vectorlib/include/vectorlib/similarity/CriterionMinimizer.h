@@ -48,6 +48,4 @@ private:
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/similarity/CriterionMinimizer.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/similarity/CriterionMinimizer.cpp")

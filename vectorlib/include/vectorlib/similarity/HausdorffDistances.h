@@ -25,6 +25,4 @@ double perpendicularHausdorffDistance(const LineSegment2D<double> &p, const Line
 
 } // namespace vectorlib
 
-#ifdef VECTORLIB_HEADER_ONLY
-#include "vectorlib/src/similarity/HausdorffDistances.cpp"
-#endif
+#include VECTORLIB_BODIES("vectorlib/src/similarity/HausdorffDistances.cpp")
