@@ -1,11 +1,8 @@
 #include "common/capture/CaptureRecords.h"
-
-#include "common/capture/ClassicPcap.h"
 #include "common/capture/Pcapng.h"
 
 #include <cerrno>
 #include <cstring>
-#include <limits>
 
 namespace hermes {
 
@@ -60,29 +57,74 @@ bool CaptureRecords::read(std::uint8_t *bytes, std::size_t size, const char *wha
     return done;
 }
 
-CaptureRecords::Next CaptureRecords::fail(std::string why) {
-    error_ = std::move(why);
-    return Next::Failed;
+namespace {
+
+constexpr std::uint32_t ofMicroseconds = 0xA1B2C3D4, ofNanoseconds = 0xA1B23C4D;
+// As patched versions of libpcap wrote it: interface, protocol and kind stand behind the lengths of each
+// record.
+constexpr std::uint32_t modified = 0xA1B2CD34;
+constexpr std::size_t fileHeaderBytes = 24, modifiedHeaderBytes = 24;
+constexpr std::uint32_t modifiedFrameBytes = 14; // by which frames may be longer than the limit
+
+} // namespace
+
+std::unique_ptr<CaptureRecords> ClassicPcap::open(std::istream &stream, const std::uint8_t *magic,
+                                                  std::string &error) {
+    std::unique_ptr<ClassicPcap> file(new ClassicPcap(stream));
+    bool isModified = false;
+    const auto isOneOfOurs = [&] {
+        const std::uint32_t number = file->word(magic);
+        isModified = number == modified;
+        file->hasMicroseconds_ = number == ofMicroseconds || isModified;
+        return file->hasMicroseconds_ || number == ofNanoseconds;
+    };
+    if (!isOneOfOurs()) {
+        file->bigEndian_ = true;
+        if (!isOneOfOurs())
+            return nullptr;
+    }
+    std::uint8_t header[fileHeaderBytes - 4];
+    if (!file->read(header, sizeof header, "the file's header")) {
+        error = file->error_;
+        return nullptr;
+    }
+    const int version = file->half(header), part = file->half(header + 2);
+    if (version != 2 || part > 4) {
+        error = "version " + std::to_string(version) + '.' + std::to_string(part) + ", expected 2.4";
+        return nullptr;
+    }
+    file->isOld_ = part < 4;
+    file->longest_ = longestFrame(file->word(header + 12));
+    if (isModified) {
+        file->recordHeaderBytes_ = modifiedHeaderBytes;
+        file->longest_ += modifiedFrameBytes;
+    }
+    file->linkTypes_ = {int(file->word(header + 16) & 0xFFFF)}; // above it: checksums of the link layer
+    file->offset_ = fileHeaderBytes;
+    return file;
 }
 
-bool CaptureRecords::refuse(std::string why) {
-    error_ = std::move(why);
-    return false;
-}
-
-// As in libpcap: no limit, or one that is none, stands for the usual one.
-std::uint32_t CaptureRecords::longestFrame(std::uint32_t told) {
-    return told == 0 || told > std::uint32_t(std::numeric_limits<std::int32_t>::max()) ? usualLongestFrame
-                                                                                       : told;
-}
-
-std::uint16_t CaptureRecords::half(const std::uint8_t *bytes) const {
-    return std::uint16_t(bigEndian_ ? bytes[0] << 8 | bytes[1] : bytes[1] << 8 | bytes[0]);
-}
-
-std::uint32_t CaptureRecords::word(const std::uint8_t *bytes) const {
-    return bigEndian_ ? std::uint32_t(half(bytes)) << 16 | half(bytes + 2)
-                      : std::uint32_t(half(bytes + 2)) << 16 | half(bytes);
+CaptureRecords::Next ClassicPcap::next(CaptureRecord &record) {
+    std::uint8_t header[modifiedHeaderBytes];
+    bool atEnd = false;
+    if (!read(header, recordHeaderBytes_, "a record's header", atEnd))
+        return atEnd ? Next::End : Next::Failed;
+    std::uint32_t length = word(header + 8);
+    if (isOld_)
+        length = std::min(length, word(header + 12));
+    if (length > usualLongestFrame)
+        return fail("found a frame of " + std::to_string(length) + " bytes, expected at most " +
+                    std::to_string(usualLongestFrame));
+    record.frame.resize(length);
+    if (!read(record.frame.data(), length, "the frame"))
+        return Next::Failed;
+    record.frame.resize(std::min(length, longest_));
+    record.offset = offset_;
+    record.linkType = linkTypes_.front();
+    record.seconds = word(header);
+    record.nanoseconds = std::int64_t(word(header + 4)) * (hasMicroseconds_ ? 1000 : 1);
+    offset_ += std::int64_t(recordHeaderBytes_ + length);
+    return Next::Record;
 }
 
 } // namespace hermes

@@ -1,6 +1,86 @@
 #include "common/capture/LidarStream.h"
 
+#include <cstdlib>
+#include <sstream>
+
 namespace hermes {
+
+namespace {
+
+/// Noise that looks like packets of ever more sensors must not fill the memory.
+constexpr std::size_t mostSensors = 16;
+constexpr std::int64_t anew_ns = 1000000000; ///< a sensor that begins anew has been silent for longer
+
+bool isOf(const SensorChoice::Sensor &sensor, const Datagram &datagram) {
+    return sensor.address == datagram.source && sensor.from == datagram.sourcePort &&
+           sensor.port == datagram.destinationPort;
+}
+
+} // namespace
+
+bool SensorChoice::takes(const Datagram &packet) {
+    const std::size_t found = find(packet);
+    ++sensors_[found].packets;
+    if (!isWanted(packet))
+        return false;
+    if (taken_ && taken_ != found) {
+        if (!lastTaken_ns_)
+            lastTaken_ns_ = packet.stamp_ns;
+        const bool mayBeginAnew =
+            sensors_[*taken_].address == packet.source && sensors_[*taken_].port == packet.destinationPort;
+        const auto patience_ns = options_.patience_ns || !mayBeginAnew ? options_.patience_ns : anew_ns;
+        if (!patience_ns || std::abs(packet.stamp_ns - *lastTaken_ns_) <= *patience_ns)
+            return false;
+    }
+    taken_ = found;
+    lastTaken_ns_ = packet.stamp_ns;
+    return true;
+}
+
+bool SensorChoice::mayTake(const Datagram &datagram) const {
+    return isWanted(datagram) && (!taken_ || isOf(sensors_[*taken_], datagram));
+}
+
+std::size_t SensorChoice::find(const Datagram &packet) {
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        if (isOf(sensors_[i], packet))
+            return i;
+    }
+    if (sensors_.size() < mostSensors)
+        sensors_.emplace_back();
+    const std::size_t last = sensors_.size() - 1;
+    const std::size_t place = taken_ == last ? last - 1 : last;
+    sensors_[place] = {packet.source, packet.sourcePort, packet.destinationPort, 0};
+    return place;
+}
+
+std::optional<std::uint32_t> addressFrom(const std::string &text) {
+    std::istringstream in(text);
+    std::uint32_t address = 0;
+    int parts = 0;
+    for (std::string part; std::getline(in, part, '.'); ++parts) {
+        const bool isDecimal = !part.empty() && part.size() <= 3 &&
+                               part.find_first_not_of("0123456789") == std::string::npos &&
+                               (part == "0" || part[0] != '0');
+        const unsigned long number = isDecimal ? std::stoul(part) : 256;
+        if (number > 255)
+            return std::nullopt;
+        address = address << 8 | std::uint32_t(number);
+    }
+    return parts == 4 && text.back() != '.' ? std::optional(address) : std::nullopt;
+}
+
+std::string addressText(std::uint32_t address) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8)
+        text += std::to_string(address >> shift & 0xFF) + (shift > 0 ? "." : "");
+    return text;
+}
+
+std::string toText(const SensorChoice::Sensor &sensor) {
+    return addressText(sensor.address) + ':' + std::to_string(sensor.from) + " to port " +
+           std::to_string(sensor.port);
+}
 
 using velodyne::PacketFault;
 using velodyne::TurnAssembler;

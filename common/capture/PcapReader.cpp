@@ -1,8 +1,5 @@
 #include "common/capture/PcapReader.h"
 
-#include "common/capture/CaptureRecords.h"
-#include "common/capture/Frame.h"
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -118,10 +115,6 @@ PcapReader::Next PcapReader::fail(std::int64_t offset, const std::string &what) 
     return Next::Failed;
 }
 
-PcapReader::Place PcapReader::place() const {
-    return {records_ ? records_->offset() : 0, counts_.records};
-}
-
 Outcome<void> PcapReader::seek(const Place &place) {
     if (place.offset == 0)
         return open(std::string(path_));
@@ -133,11 +126,6 @@ Outcome<void> PcapReader::seek(const Place &place) {
     }
     counts_.records = place.records;
     return {};
-}
-
-void PcapReader::close() {
-    records_.reset();
-    file_.reset();
 }
 
 } // namespace hermes

@@ -2,7 +2,7 @@
 
 #include "common/Outcome.h"
 #include "common/capture/CaptureRecords.h"
-#include "common/capture/Datagram.h"
+#include "common/capture/Frame.h"
 
 #include <istream>
 #include <memory>
@@ -46,10 +46,13 @@ public:
     Outcome<void> open(std::istream &stream, const std::string &name);
     /// The payload stays valid until the next call.
     Next next(Datagram &datagram);
-    void close();
+    void close() {
+        records_.reset();
+        file_.reset();
+    }
 
     /// Of the next record.
-    Place place() const;
+    Place place() const { return {records_ ? records_->offset() : 0, counts_.records}; }
     /// Only classic pcap can be read from a place in the middle; a pcapng tells on the way what to know.
     bool canSeek() const { return canSeek_; }
     /// Goes on at a place that a reader of the same file told. To the beginning, or after the end, it opens

@@ -1,12 +1,28 @@
 #pragma once
 
 #include "common/Outcome.h"
-#include "common/capture/Datagram.h"
+#include "common/capture/Frame.h"
 
+#include <cstdio>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace hermes {
+
+/// What stands in a file of PcapWriter from some byte on.
+struct PcapTail {
+    std::uint64_t packets = 0;
+    std::uint64_t wholeBytes = 0; ///< where the last whole record ends
+    std::uint64_t fileBytes = 0;
+    std::int64_t first_ns = 0; ///< stamps of the first and last of the packets
+    std::int64_t last_ns = 0;
+};
+
+/// Reads the records from a byte on where one begins, the first of the file where from is less than that of
+/// the first; stops at the first that is not whole or not ours. sink sees each datagram.
+Outcome<PcapTail> readPcapTail(const std::string &path, std::uint64_t from,
+                               const std::function<void(const Datagram &)> &sink);
 
 /// Writes datagrams to a classic pcap file with nanosecond stamps, each in an Ethernet frame with made-up
 /// link addresses. Not for several threads at once. After a write error the file is cut back to whole
@@ -18,7 +34,7 @@ public:
     static constexpr std::size_t recordHeaderBytes = 16;
 
     PcapWriter() = default;
-    ~PcapWriter();
+    ~PcapWriter() { close(); }
     PcapWriter(const PcapWriter &) = delete;
     PcapWriter &operator=(const PcapWriter &) = delete;
 
@@ -42,9 +58,18 @@ public:
 
 private:
     Outcome<void> fail(const std::string &what);
-    Outcome<void> sinceOpen() const; // what an earlier call failed by
-    void append(const void *bytes, std::size_t size);
-    void appendLittleEndian(std::uint32_t value);
+    Outcome<void> sinceOpen() const {
+        return error_.empty() ? Outcome<void>() : error_;
+    } // what an earlier call failed by
+    void append(const void *bytes, std::size_t size) {
+        const auto *begin = static_cast<const std::uint8_t *>(bytes);
+        buffer_.insert(buffer_.end(), begin, begin + size);
+    }
+    void appendLittleEndian(std::uint32_t value) {
+        const std::uint8_t bytes[4] = {std::uint8_t(value), std::uint8_t(value >> 8),
+                                       std::uint8_t(value >> 16), std::uint8_t(value >> 24)};
+        append(bytes, sizeof bytes);
+    }
 
     int file_ = -1;
     std::string path_;

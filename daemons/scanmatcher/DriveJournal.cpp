@@ -1,8 +1,6 @@
 #include "daemons/scanmatcher/DriveJournal.h"
-
 #include "common/files/Folder.h"
 #include "common/files/WriteAll.h"
-#include "daemons/scanmatcher/JournalTables.h"
 
 #include <QDir>
 #include <QFile>
@@ -156,11 +154,6 @@ QByteArray header(const MappedDrive &drive) {
 }
 
 } // namespace
-
-DriveJournal::~DriveJournal() {
-    settle();
-    file_.close();
-}
 
 void DriveJournal::begin() {
     settle();

@@ -1,5 +1,4 @@
 #include "daemons/scanmatcher/DriveJournal.h"
-#include "daemons/scanmatcher/JournalTables.h"
 #include "protocol/serial/Crc32c.h"
 
 #include <Eigen/Cholesky>

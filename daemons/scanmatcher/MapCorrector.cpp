@@ -1,6 +1,5 @@
 #include "daemons/scanmatcher/MapCorrector.h"
 
-#include <algorithm>
 #include <chrono>
 
 namespace hermes::scanmatcher {
@@ -21,12 +20,6 @@ constexpr quint64 fewLeft = 2;                      // scans that the matching p
 constexpr int mostRounds = 20;                      // in which the thread catches up
 
 } // namespace
-
-MapCorrector::MapCorrector(Corrected corrected, Grown grown, QString folder, QString journal)
-    : corrected_(std::move(corrected))
-    , grown_(std::move(grown))
-    , journal_(std::move(folder), std::move(journal))
-    , thread_([this] { run(); }) {}
 
 void MapCorrector::stop() {
     {
@@ -137,12 +130,6 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     push(std::move(item));
 }
 
-// Those below this number of the drive: the other thread has them.
-void MapCorrector::forgetPending(quint64 end) {
-    for (; !pending_.empty() && added_ - pending_.size() < end; pending_.pop_front())
-        lastTaken_ = pending_.front().pose;
-}
-
 bool MapCorrector::apply(ScanTracker &tracker, Correction &correction) {
     const auto begin = Clock::now();
     const bool isOfThisDrive = correction.drive == drive_ && pose_;
@@ -172,17 +159,6 @@ void MapCorrector::goOn() {
         isHandedOver_ = false;
     }
     wake_.notify_all();
-}
-
-void MapCorrector::dispose(std::shared_ptr<Correction> old) {
-    Item item;
-    item.old = std::move(old);
-    push(std::move(item));
-}
-
-bool MapCorrector::isEnding() const {
-    const std::lock_guard lock(mutex_);
-    return ending_;
 }
 
 CorrectorState MapCorrector::state() const {
@@ -301,12 +277,6 @@ void MapCorrector::tellMemory() {
     state_.loops = memory_.loops.counts();
     state_.isDue = state_.isUnderWay || memory_.loops.hasNews();
     state_.bytes = memory_.bytes();
-}
-
-// Once the last correction is applied.
-void MapCorrector::tellFull() {
-    const std::lock_guard lock(mutex_);
-    state_.isFull = drive_ == remembered_;
 }
 
 void MapCorrector::tellUnderWay(bool isUnderWay) {

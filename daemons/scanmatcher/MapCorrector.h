@@ -1,10 +1,11 @@
 #pragma once
 
 #include "daemons/scanmatcher/DriveJournal.h"
-#include "protocol/messages/DriveGraph.h"
+#include "protocol/messages/VectorMap.h"
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -52,7 +53,11 @@ public:
     using Grown = std::function<void(const GraphMessage &)>;
 
     /// The drive is written down in a journal of that name below the folder; without a name it is not.
-    MapCorrector(Corrected corrected, Grown grown, QString folder, QString journal);
+    MapCorrector(Corrected corrected, Grown grown, QString folder, QString journal)
+        : corrected_(std::move(corrected))
+        , grown_(std::move(grown))
+        , journal_(std::move(folder), std::move(journal))
+        , thread_([this] { run(); }) {}
     ~MapCorrector() { stop(); }
     /// Ends the thread; nothing is told from then on.
     void stop();
@@ -80,7 +85,11 @@ public:
     // In any thread.
 
     /// Frees what may take its time.
-    void dispose(std::shared_ptr<Correction> old);
+    void dispose(std::shared_ptr<Correction> old) {
+        Item item;
+        item.old = std::move(old);
+        push(std::move(item));
+    }
     CorrectorState state() const;
 
 private:
@@ -107,8 +116,15 @@ private:
     static bool isStill(const Seen &seen);
     void beginDrive(quint64 scans);
     void forget(std::vector<vectorlib::MapEdge> known);
-    void forgetPending(quint64 end);
-    bool isEnding() const;
+    // Those below this number of the drive: the other thread has them.
+    void forgetPending(quint64 end) {
+        for (; !pending_.empty() && added_ - pending_.size() < end; pending_.pop_front())
+            lastTaken_ = pending_.front().pose;
+    }
+    bool isEnding() const {
+        const std::lock_guard lock(mutex_);
+        return ending_;
+    }
     void push(Item item);
     void run();
     bool wait();
@@ -117,7 +133,11 @@ private:
     void remember(const Item &item);
     void tellMemory();
     void tellUnderWay(bool isUnderWay);
-    void tellFull();
+    // Once the last correction is applied.
+    void tellFull() {
+        const std::lock_guard lock(mutex_);
+        state_.isFull = drive_ == remembered_;
+    }
     void correct();
     void tellGrown();
     GraphMessage graph(std::size_t first, std::size_t constraint) const;

@@ -2,8 +2,6 @@
 
 #include "common/files/Folder.h"
 #include "common/files/NamedFile.h"
-#include "vectorlib/io/Dxf.h"
-#include "vectorlib/io/GeoJson.h"
 #include "vectorlib/io/MapCsv.h"
 
 #include <QDateTime>

@@ -1,14 +1,35 @@
 #pragma once
 
 #include "protocol/messages/VectorMap.h"
-#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/VectorMap.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <map>
 #include <vector>
 
 namespace hermes::scanmatcher {
+
+/// A copy of the drive's graph for the main thread: what subscriptions to `graph` begin with.
+class GraphMirror {
+public:
+    void replace(GraphMessage &&graph) {
+        const qint64 revision = all_.revision + 1;
+        all_ = std::move(graph);
+        all_.revision = revision;
+    }
+    /// Takes new key scans in and gives the data of the topic.
+    GraphMessage grow(GraphMessage &&more);
+    /// At most partKeys key scans from the number `cursor` on, which moves behind them, or below 0 with the
+    /// last; `cleared` is true in the first part, from 0 on.
+    GraphMessage part(qint64 &cursor) const;
+    static constexpr qint64 partKeys = 1000;
+
+private:
+    GraphMessage all_;
+};
 
 /// What changed in a map since the last time.
 struct MapChanges {

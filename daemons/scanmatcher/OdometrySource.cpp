@@ -2,7 +2,6 @@
 
 #include "common/Log.h"
 #include "common/daemon/Health.h"
-#include "daemons/scanmatcher/ReadMessages.h"
 #include "protocol/wire/Fields.h"
 
 namespace hermes::scanmatcher {

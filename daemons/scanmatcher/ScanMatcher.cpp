@@ -17,15 +17,8 @@ namespace {
 constexpr double longestSilence_s = 3;
 
 QString toText(ScanReport::Outcome outcome) {
-    switch (outcome) {
-    case ScanReport::Outcome::Matched:
-        return "matched";
-    case ScanReport::Outcome::Lost:
-        return "lost";
-    case ScanReport::Outcome::Skipped:
-        return "skipped";
-    }
-    return {};
+    static constexpr const char *texts[] = {"matched", "lost", "skipped"};
+    return QString(texts[int(outcome)]); // in the order of the enumeration
 }
 
 // Nothing where the pairs leave a direction open.

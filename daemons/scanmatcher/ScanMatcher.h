@@ -3,7 +3,6 @@
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
 #include "common/daemon/PastFaults.h"
-#include "daemons/scanmatcher/GraphMirror.h"
 #include "daemons/scanmatcher/MapCorrector.h"
 #include "daemons/scanmatcher/MapFile.h"
 #include "daemons/scanmatcher/MapMirror.h"

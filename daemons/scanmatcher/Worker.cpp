@@ -1,12 +1,6 @@
 #include "daemons/scanmatcher/Worker.h"
 
-#include <algorithm>
-
 namespace hermes::scanmatcher {
-
-Worker::Worker(Done done)
-    : whenDone_(std::move(done))
-    , thread_([this] { run(); }) {}
 
 Worker::~Worker() {
     {
@@ -42,16 +36,6 @@ void Worker::post(Job job) {
 void Worker::setQueueLimit(size_t count) {
     const std::lock_guard lock(mutex_);
     limit_ = std::max<size_t>(1, count);
-}
-
-quint64 Worker::dropped() const {
-    const std::lock_guard lock(mutex_);
-    return lost_;
-}
-
-size_t Worker::waiting() const {
-    const std::lock_guard lock(mutex_);
-    return scans_;
 }
 
 void Worker::run() {

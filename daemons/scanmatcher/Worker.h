@@ -1,8 +1,9 @@
 #pragma once
 
-#include "daemons/scanmatcher/ReadMessages.h"
+#include "daemons/scanmatcher/MatcherMessages.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -19,15 +20,23 @@ public:
     /// Called in the worker's thread after each scan; the scan has its motion compensated.
     using Done = std::function<void(vectorlib::ScanTracker &, const Scan &)>;
 
-    explicit Worker(Done done);
+    explicit Worker(Done done)
+        : whenDone_(std::move(done))
+        , thread_([this] { run(); }) {}
     /// Finishes what waits, then ends the thread.
     ~Worker();
 
     void push(Scan scan);
     void post(Job job);
     void setQueueLimit(size_t scans);
-    quint64 dropped() const;
-    size_t waiting() const;
+    quint64 dropped() const {
+        const std::lock_guard lock(mutex_);
+        return lost_;
+    }
+    size_t waiting() const {
+        const std::lock_guard lock(mutex_);
+        return scans_;
+    }
 
 private:
     struct Item {

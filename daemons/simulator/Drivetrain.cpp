@@ -1,8 +1,6 @@
 #include "daemons/simulator/Drivetrain.h"
-
 #include "vectorlib/geometry/Angle.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hermes::simulator {
@@ -13,18 +11,6 @@ constexpr double electronics = 0.3; // A that are always drawn
 constexpr double patch = 1;         // metres of like ground under a wheel
 
 } // namespace
-
-std::array<RoboClawEmulator::Options, Drivetrain::controllers> Drivetrain::twoAddresses() {
-    std::array<RoboClawEmulator::Options, controllers> options;
-    options[1].address = std::uint8_t(options[0].address + 1);
-    return options;
-}
-
-Drivetrain::Drivetrain(const Options &options)
-    : options_(options)
-    , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
-    , battery_(options.battery)
-    , random_(options.seed) {}
 
 std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::uint8_t *data,
                                                           std::size_t size, double now) {
@@ -53,11 +39,6 @@ void Drivetrain::delayAnswer(RoboClawEmulator::Answer &answer, int line, double 
     answer.delay = end - now;
 }
 
-void Drivetrain::setSwapped(bool swapped) {
-    for (std::size_t i = 0; i < controllers_.size(); ++i)
-        controllers_[i].setAddress(options_.controller[swapped ? 1 - i : i].address);
-}
-
 Twist2D Drivetrain::advance(double seconds) {
     double current = electronics;
     for (RoboClawEmulator &controller : controllers_) {
@@ -79,11 +60,6 @@ std::array<double, 4> Drivetrain::gripping(double seconds) {
         speeds[i] *= 1 - std::clamp(options_.slip + ground.slip, 0.0, 1.0);
     }
     return speeds;
-}
-
-MotorChannel &Drivetrain::wheel(int number) {
-    const Mount &mount = options_.wheels[std::size_t(number)];
-    return controller(mount.controller).channel(mount.motor);
 }
 
 std::array<double, 4> Drivetrain::wheelSpeeds() const {

@@ -1,12 +1,50 @@
 #pragma once
 
-#include "daemons/simulator/Battery.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
+#include <algorithm>
 #include <random>
 
 namespace hermes::simulator {
+
+/// A battery whose voltage falls as it is emptied, and under load: evenly at first, and with the last of the
+/// charge it collapses. By default two lead-acid batteries in series (thesis 4.1.2).
+class Battery {
+public:
+    struct Options {
+        double full = 25.4;  ///< V, without load
+        double empty = 23.4; ///< V, without load, before it collapses
+        double capacity_Ah = 26;
+        double resistance = 0.02; ///< ohm
+    };
+
+    Battery() = default;
+    explicit Battery(const Options &options)
+        : options_(options) {}
+
+    /// 1 is full, 0 empty.
+    void setCharge(double share) { charge_ = std::clamp(share, 0.0, 1.0); }
+    double charge() const { return charge_; }
+    void draw(double amperes, double seconds) {
+        current_ = amperes;
+        setCharge(charge_ - amperes * seconds / 3600 / options_.capacity_Ah);
+    }
+    double voltage() const {
+        const double resting = options_.empty + (options_.full - options_.empty) * charge_;
+        const double collapsed =
+            std::max(0.0, options_.empty - exhausted) * std::max(0.0, 1 - charge_ / last);
+        return std::max(0.0, resting - collapsed - current_ * options_.resistance);
+    }
+
+private:
+    static constexpr double last = 0.05;    // of the charge
+    static constexpr double exhausted = 20; // V, without load and charge
+
+    Options options_;
+    double charge_ = 1;
+    double current_ = 0;
+};
 
 /// What drives the robot: two RoboClaws with two motors each, four wheels, a battery. Time comes from
 /// outside.
@@ -33,7 +71,11 @@ public:
 
     Drivetrain()
         : Drivetrain(Options()) {}
-    explicit Drivetrain(const Options &options);
+    explicit Drivetrain(const Options &options)
+        : options_(options)
+        , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
+        , battery_(options.battery)
+        , random_(options.seed) {}
 
     /// Bytes from a line (0 or 1), now: seconds of any clock; gives what is answered, in order.
     std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
@@ -44,12 +86,18 @@ public:
     RoboClawEmulator &controller(int number) { return controllers_[std::size_t(number)]; }
     const RoboClawEmulator &controller(int number) const { return controllers_[std::size_t(number)]; }
     /// The motor of a wheel.
-    MotorChannel &wheel(int number);
+    MotorChannel &wheel(int number) {
+        const Mount &mount = options_.wheels[std::size_t(number)];
+        return controller(mount.controller).channel(mount.motor);
+    }
     Battery &battery() { return battery_; }
     const Battery &battery() const { return battery_; }
     void setSlip(double share) { options_.slip = share; }
     /// The controllers have exchanged their addresses.
-    void setSwapped(bool swapped);
+    void setSwapped(bool swapped) {
+        for (std::size_t i = 0; i < controllers_.size(); ++i)
+            controllers_[i].setAddress(options_.controller[swapped ? 1 - i : i].address);
+    }
     /// The host's adapter of a line (0 or 1) hands on what it receives in bunches, each so many seconds after
     /// its first byte, as the latency timer of an FTDI chip does.
     void setLatency(int line, double seconds) { latency_[std::size_t(line)] = seconds; }
@@ -59,7 +107,11 @@ public:
 
 private:
     void delayAnswer(RoboClawEmulator::Answer &answer, int line, double now);
-    static std::array<RoboClawEmulator::Options, controllers> twoAddresses();
+    static std::array<RoboClawEmulator::Options, controllers> twoAddresses() {
+        std::array<RoboClawEmulator::Options, controllers> options;
+        options[1].address = std::uint8_t(options[0].address + 1);
+        return options;
+    }
     /// The wheels' speeds less their slip.
     std::array<double, 4> gripping(double seconds);
 

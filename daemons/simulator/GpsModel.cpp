@@ -20,18 +20,8 @@ constexpr nmea::Decimals onTheLine{6, 2};
 
 } // namespace
 
-GpsModel::GpsModel(const Options &options)
-    : options_(options)
-    , random_(options.seed) {}
-
 std::int64_t GpsModel::timeOfFix(std::int64_t number) const {
     return number / options_.rate_hz * second_ns + number % options_.rate_hz * second_ns / options_.rate_hz;
-}
-
-velodyne::Pps GpsModel::pps() const {
-    if (fault_.kind == Fault::Kind::Silence || fault_.kind == Fault::Kind::NoFix)
-        return velodyne::Pps::Absent;
-    return lidarSentence_.empty() ? velodyne::Pps::Synchronizing : velodyne::Pps::Locked;
 }
 
 std::string_view GpsModel::take(std::int64_t now_ns, const Pose2D &pose, const Twist2D &twist) {

@@ -38,7 +38,9 @@ public:
     static constexpr std::int64_t delay_ns = 60000000;
 
     GpsModel() = default;
-    explicit GpsModel(const Options &options);
+    explicit GpsModel(const Options &options)
+        : options_(options)
+        , random_(options.seed) {}
 
     void setFault(const Fault &fault) { fault_ = fault; }
     const Fault &fault() const { return fault_; }
@@ -53,7 +55,11 @@ public:
     /// What the lidar got last: a $GPRMC without CR LF, at most 72 characters.
     const std::string &lidarSentence() const { return lidarSentence_; }
     /// How the lidar's clock follows the pulses of this receiver.
-    velodyne::Pps pps() const;
+    velodyne::Pps pps() const {
+        if (fault_.kind == Fault::Kind::Silence || fault_.kind == Fault::Kind::NoFix)
+            return velodyne::Pps::Absent;
+        return lidarSentence_.empty() ? velodyne::Pps::Synchronizing : velodyne::Pps::Locked;
+    }
 
 private:
     static constexpr std::int64_t never = INT64_MAX;

@@ -1,7 +1,6 @@
 #include "daemons/simulator/LidarModel.h"
-
 #include "vectorlib/geometry/Angle.h"
-#include "vectorlib/observation/Ray.h"
+#include "vectorlib/observation/Observer.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/simulator/People.h"
+#include "daemons/simulator/RobotBody.h"
 #include "protocol/velodyne/DataPacket.h"
 #include "protocol/velodyne/Hdl32e.h"
 #include "vectorlib/geometry/LineSegment2D.h"
@@ -10,6 +10,22 @@
 #include <vector>
 
 namespace hermes::simulator {
+
+/// What the simulated sensor does wrong.
+struct LidarFault {
+    enum class Kind { None, Silence, Loss };
+
+    Kind kind = Kind::None;
+    double share = 0; ///< of the packets that a Loss drops, 0 to 1
+
+    /// Whether the next packet is not sent.
+    template <typename Random>
+    bool swallows(Random &random) const {
+        if (kind == Kind::Loss)
+            return std::uniform_real_distribution<double>()(random) < share;
+        return kind == Kind::Silence;
+    }
+};
 
 /// What an HDL-32E measures in a world of upright walls and people on a level floor. The sensor stands
 /// upright at the robot's pose.

@@ -1,8 +1,5 @@
 #include "daemons/simulator/MotorChannel.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace hermes::simulator {
 
 namespace {
@@ -30,12 +27,6 @@ void MotorChannel::driveDuty(double duty, double slope) {
     moves_.clear();
     moving_ = false;
     take(Mode::Duty, std::clamp(duty, -1.0, 1.0), slope);
-}
-
-void MotorChannel::driveSpeed(double speed, double acceleration) {
-    moves_.clear();
-    moving_ = false;
-    take(Mode::Speed, std::clamp(speed, -pid_.qpps, pid_.qpps), acceleration);
 }
 
 bool MotorChannel::addMove(const Move &move, bool now) {
@@ -96,11 +87,6 @@ void MotorChannel::advance(double seconds, double voltage, bool powered) {
     turn(seconds, voltage, powered);
 }
 
-void MotorChannel::ramp(double seconds) {
-    const double change = slope_ * seconds; // infinite: at once
-    setpoint_ += std::clamp(target_ - setpoint_, -change, change);
-}
-
 void MotorChannel::control() {
     if (mode_ != Mode::Speed)
         return;
@@ -141,10 +127,6 @@ void MotorChannel::countOn(double counts) {
     const std::int64_t before = round();
     count_ += counts;
     wraps_ |= round() < before ? underflow : round() > before ? overflow : 0;
-}
-
-std::int64_t MotorChannel::count() const {
-    return std::int64_t(std::floor(count_));
 }
 
 } // namespace hermes::simulator

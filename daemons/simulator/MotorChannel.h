@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -47,7 +49,11 @@ public:
     /// duty: -1 to 1; slope: change a second.
     void driveDuty(double duty, double slope = atOnce);
     /// Limited to QPPS. acceleration: counts/s^2.
-    void driveSpeed(double speed, double acceleration = atOnce);
+    void driveSpeed(double speed, double acceleration = atOnce) {
+        moves_.clear();
+        moving_ = false;
+        take(Mode::Speed, std::clamp(speed, -pid_.qpps, pid_.qpps), acceleration);
+    }
     /// Queues a stretch; with now it begins at once and drops what is queued. False when the queue is full.
     bool addMove(const Move &move, bool now);
     /// Duty 0 at once.
@@ -72,7 +78,7 @@ public:
     double speed() const { return speed_; }   ///< of the shaft
     /// As the encoder tells it.
     double measuredSpeed() const { return encoderBroken_ ? 0 : encoderBackward_ ? -speed_ : speed_; }
-    std::int64_t count() const;
+    std::int64_t count() const { return std::int64_t(std::floor(count_)); }
     /// Since it was asked last the counter of 32 bits ran below 0 (1), over its end (4), both (5).
     int takeWraps() { return std::exchange(wraps_, 0); }
     double duty() const { return duty_; }
@@ -90,7 +96,10 @@ private:
     void beginMove();
     void followMove(double travelled);
     void steerToPosition();
-    void ramp(double seconds);
+    void ramp(double seconds) {
+        const double change = slope_ * seconds; // infinite: at once
+        setpoint_ += std::clamp(target_ - setpoint_, -change, change);
+    }
     void control();
     void turn(double seconds, double voltage, bool powered);
     void countOn(double counts);

@@ -1,8 +1,6 @@
 #include "daemons/simulator/PosePath.h"
-
 #include "vectorlib/geometry/Angle.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hermes::simulator {
@@ -74,6 +72,28 @@ Twist2D PosePath::twistAt(double progress, double rate) const {
     const double heading = poseAt(progress).theta;
     const double c = std::cos(heading), s = std::sin(heading);
     return {c * dx + s * dy, c * dy - s * dx, (b.theta - a.theta) * scale};
+}
+
+namespace {
+
+constexpr double arrival = 1e-6; // seconds at full speed: a micrometre at 1 m/s
+
+} // namespace
+
+void PathFollower::advance(double seconds) {
+    if (!driving_ && rate_ == 0)
+        return;
+    const double rest = path_.length() - progress_;
+    const double change = acceleration_ * seconds;
+    // The rate from which it can still come to rest where the path ends.
+    const double brake = std::sqrt(2 * acceleration_ * std::max(0.0, rest));
+    rate_ = driving_ ? std::min({1.0, rate_ + change, brake}) : std::max(0.0, rate_ - change);
+    progress_ += rate_ * seconds;
+    if (path_.length() - progress_ > arrival)
+        return;
+    progress_ = path_.length();
+    rate_ = 0;
+    driving_ = false;
 }
 
 } // namespace hermes::simulator

@@ -16,12 +16,6 @@ constexpr double hot = 85, tooHot = 100;      // data sheet: the current falls f
 
 } // namespace
 
-RoboClawEmulator::RoboClawEmulator(const Options &options)
-    : options_(options)
-    , parser_(options.dialect)
-    , channels_{MotorChannel(options.motor), MotorChannel(options.motor)}
-    , random_(options.seed) {}
-
 void RoboClawEmulator::Options::setFirmware(const std::string &number) {
     version = "RoboClaw 2x45A v" + number;
     status = number == "4.1.28" ? Dialect::Other : Dialect::Usual;
@@ -90,10 +84,6 @@ std::optional<RoboClawEmulator::Answer> RoboClawEmulator::damaged(const Bytes &b
     for (std::size_t i = 0; i < bytes.size(); ++i)
         answer.bytes.push(std::uint8_t(bytes[i] ^ (bit / 8 == i ? 1 << bit % 8 : 0)));
     return answer;
-}
-
-bool RoboClawEmulator::chance(double probability) {
-    return probability > 0 && std::uniform_real_distribution<double>()(random_) < probability;
 }
 
 void RoboClawEmulator::advance(double seconds, double voltage, double ambient) {

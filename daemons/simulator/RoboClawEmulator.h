@@ -1,7 +1,7 @@
 #pragma once
 
 #include "daemons/simulator/MotorChannel.h"
-#include "protocol/roboclaw/RequestParser.h"
+#include "protocol/roboclaw/Packet.h"
 #include "protocol/roboclaw/Status.h"
 
 #include <map>
@@ -58,7 +58,11 @@ public:
 
     RoboClawEmulator()
         : RoboClawEmulator(Options()) {}
-    explicit RoboClawEmulator(const Options &options);
+    explicit RoboClawEmulator(const Options &options)
+        : options_(options)
+        , parser_(options.dialect)
+        , channels_{MotorChannel(options.motor), MotorChannel(options.motor)}
+        , random_(options.seed) {}
 
     /// One byte from the line, now: seconds of any clock, to know the gaps between bytes.
     std::vector<Answer> receive(std::uint8_t byte, double now);
@@ -101,7 +105,9 @@ private:
     std::optional<Answer> damaged(const roboclaw::Bytes &bytes);
     bool isStopped() const;
     bool isDead() const { return faults_.silent || startsIn_ > 0; }
-    bool chance(double probability);
+    bool chance(double probability) {
+        return probability > 0 && std::uniform_real_distribution<double>()(random_) < probability;
+    }
 
     Options options_;
     roboclaw::RequestParser parser_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/simulator/People.h"
+#include "common/world/World.h"
 #include "protocol/messages/Motion.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
@@ -9,6 +9,38 @@
 #include <vector>
 
 namespace hermes::simulator {
+
+/// The people of a world: upright cylinders, each walking along its way and back. Who would come too near to
+/// the robot waits, and after a while turns back. Time comes from outside.
+class People {
+public:
+    using Vector = vectorlib::Vector2D<double>;
+    struct Person {
+        World::Person walk;
+        double length = 0; ///< of the way; metres
+        Vector position;
+        double progress = 0; ///< along the way; metres
+        bool forward = true; ///< to the end of the way, else back to its begin
+        double waiting = 0;  ///< for the robot; seconds
+    };
+
+    static constexpr double radius = 0.25;  ///< metres
+    static constexpr double height = 1.75;  ///< metres
+    static constexpr double distance = 0.4; ///< kept between the outlines of person and robot; metres
+    static constexpr double patience = 2;   ///< seconds, then one who waits turns back
+
+    People() = default;
+    /// They begin at the first points of their ways. robotRadius: of its outline; metres.
+    People(const std::vector<World::Person> &walks, double robotRadius);
+
+    /// Short steps: one is the way that a person makes without looking.
+    void advance(double seconds, Vector robot);
+    const std::vector<Person> &all() const { return people_; }
+
+private:
+    std::vector<Person> people_;
+    double nearest_ = 0; ///< to the robot, centre to centre; metres
+};
 
 /// Four wheels under a robot, in the order front left, front right, rear left, rear right.
 struct WheelBase {

@@ -38,18 +38,6 @@ bool Simulation::drive() {
     return true;
 }
 
-void Simulation::restart() {
-    placed_ = false;
-    follower_.halt();
-    follower_.restart();
-}
-
-void Simulation::place(const Pose2D &pose) {
-    restart();
-    placed_ = true;
-    place_ = pose;
-}
-
 void Simulation::advanceWheels() {
     rolling_ = drivetrain_.advance(packetPeriod);
     const bool following = follower_.isDriving() || follower_.rate() > 0;
@@ -86,12 +74,6 @@ std::array<std::uint8_t, velodyne::positionPacketSize> Simulation::positionPacke
     position_.pps = gps_.pps();
     position_.nmea = gps_.lidarSentence();
     return encodePosition(position_);
-}
-
-std::string_view Simulation::sentences() {
-    if (!gps_.isDue(now_ns()))
-        return {};
-    return gps_.take(now_ns(), pose(), placed_ ? rolling_ : follower_.twist());
 }
 
 void Simulation::skip(std::uint64_t packets) {

@@ -3,7 +3,7 @@
 #include "daemons/simulator/Drivetrain.h"
 #include "daemons/simulator/GpsModel.h"
 #include "daemons/simulator/LidarModel.h"
-#include "daemons/simulator/PathFollower.h"
+#include "daemons/simulator/PosePath.h"
 
 namespace hermes::simulator {
 
@@ -42,9 +42,17 @@ public:
     bool drive();
     void halt() { follower_.halt(); }
     /// Back to the first pose of the path, standing.
-    void restart();
+    void restart() {
+        placed_ = false;
+        follower_.halt();
+        follower_.restart();
+    }
     /// Puts the robot anywhere, off its path; restart() brings it back.
-    void place(const Pose2D &pose);
+    void place(const Pose2D &pose) {
+        restart();
+        placed_ = true;
+        place_ = pose;
+    }
     LidarModel &lidar() { return lidar_; }
     GpsModel &gps() { return gps_; }
 
@@ -53,7 +61,11 @@ public:
     /// The position packet that the sensor sends after its last packet.
     std::array<std::uint8_t, velodyne::positionPacketSize> positionPacket();
     /// What the GPS receiver sends now, most often nothing; valid until the next call.
-    std::string_view sentences();
+    std::string_view sentences() {
+        if (!gps_.isDue(now_ns()))
+            return {};
+        return gps_.take(now_ns(), pose(), placed_ ? rolling_ : follower_.twist());
+    }
     /// Time passes without packets being made.
     void skip(std::uint64_t packets);
 

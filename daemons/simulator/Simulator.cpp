@@ -3,8 +3,7 @@
 #include "common/Log.h"
 #include "common/files/FilesSetting.h"
 #include "common/files/NamedFile.h"
-#include "common/world/WorldFile.h"
-#include "daemons/simulator/FaultNames.h"
+#include "common/world/World.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/wire/Fields.h"
 #include "vectorlib/geometry/Angle.h"
@@ -29,15 +28,8 @@ TruthMessage messageOf(const Simulation::Truth &truth) {
 }
 
 QString toText(LidarFault::Kind kind) {
-    switch (kind) {
-    case LidarFault::Kind::None:
-        return "none";
-    case LidarFault::Kind::Silence:
-        return "silence";
-    case LidarFault::Kind::Loss:
-        return "loss";
-    }
-    return {};
+    static constexpr const char *texts[] = {"none", "silence", "loss"};
+    return QString(texts[int(kind)]); // in the order of the enumeration
 }
 
 } // namespace
@@ -172,12 +164,6 @@ Result<void> Simulator::start() {
     if (loaded && settings().flag("robot.autostart"))
         drive(false);
     return loaded;
-}
-
-void Simulator::stop() {
-    lines_.close();
-    pump_.stop();
-    gpsLine_.close();
 }
 
 void Simulator::settingsChanged(const QStringList &paths) {

@@ -2,7 +2,7 @@
 
 #include "common/daemon/Daemon.h"
 #include "common/daemon/PastFaults.h"
-#include "daemons/simulator/MotorLines.h"
+#include "daemons/simulator/DeviceLines.h"
 #include "daemons/simulator/SimulatorMessages.h"
 
 namespace hermes::simulator {
@@ -15,7 +15,11 @@ public:
 
 protected:
     Result<void> start() override;
-    void stop() override;
+    void stop() override {
+        lines_.close();
+        pump_.stop();
+        gpsLine_.close();
+    }
     void settingsChanged(const QStringList &paths) override;
 
 private:

@@ -1,12 +1,23 @@
 #pragma once
 
-#include "daemons/simulator/GpsLine.h"
+#include "daemons/simulator/DeviceLines.h"
 #include "daemons/simulator/PacketPump.h"
 #include "protocol/messages/Motion.h"
+
+#include <QStringList>
 
 #include <optional>
 
 namespace hermes::simulator {
+
+/// What sim.fault can make fail: the lidar, the lines and controllers of the motors, the battery, the wheels.
+QStringList faultDevices();
+/// All that any of them can do wrong, with "none".
+QStringList faultKinds();
+/// Why the device has no such fault, or an empty text.
+QString faultMismatch(const QString &device, const QString &kind);
+/// Of a wheel by its name, in the order of WheelBase; -1 for other devices.
+int wheelNumber(const QString &device);
 
 /// A world that was read.
 struct LoadedWorld {

@@ -1,6 +1,6 @@
 #include "common/Log.h"
-#include "daemons/simulator/FaultNames.h"
 #include "daemons/simulator/Simulator.h"
+#include "daemons/simulator/SimulatorMessages.h"
 
 namespace hermes::simulator {
 

@@ -1,5 +1,4 @@
 #include "daemons/softwaretrigger/FiringLog.h"
-
 #include "common/Log.h"
 #include "common/files/Folder.h"
 
@@ -10,6 +9,7 @@
 #include <sys/stat.h>
 
 namespace hermes::softwaretrigger {
+
 namespace {
 
 constexpr int mostWaiting = 1000; // rows
@@ -72,12 +72,6 @@ void FiringLog::write(const QByteArray &row) {
     state_.path = file_.fileName();
 }
 
-// Somebody has removed it, or its folder: rows in it would be lost.
-bool FiringLog::isRemoved() const {
-    struct stat status {};
-    return ::fstat(file_.handle(), &status) != 0 || status.st_nlink == 0;
-}
-
 // A new file with its header; gives what is wrong.
 QString FiringLog::begin() {
     file_.close();
@@ -101,9 +95,9 @@ QString FiringLog::begin() {
     return QString("cannot make %1: %2").arg(file_.fileName(), file_.errorString());
 }
 
-FiringLog::State FiringLog::state() const {
-    const std::lock_guard lock(mutex_);
-    return state_;
+bool FiringLog::isRemoved() const {
+    struct stat status {};
+    return ::fstat(file_.handle(), &status) != 0 || status.st_nlink == 0;
 }
 
 } // namespace hermes::softwaretrigger

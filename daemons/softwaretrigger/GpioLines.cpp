@@ -1,8 +1,10 @@
 #include "daemons/softwaretrigger/GpioLines.h"
 
 #include <QFileInfo>
+#include <QTimer>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fcntl.h>
 #include <linux/gpio.h>
@@ -12,6 +14,22 @@
 #include <unistd.h>
 
 namespace hermes::softwaretrigger {
+
+void Pulses::start(const QString &line, double length_s, const Set &set, const Done &done) {
+    if (active_.contains(line))
+        return done(Error(ErrorCode::NotReady, line + ": a pulse is under way"));
+    const auto on = set(true);
+    if (!on)
+        return done(on.error());
+    active_.insert(line);
+    QTimer::singleShot(std::chrono::milliseconds(qint64(std::ceil(length_s * 1000))), Qt::PreciseTimer, this,
+                       [this, line, set, done] {
+                           active_.remove(line);
+                           const auto off = set(false);
+                           done(off ? Result<QJsonValue>(QJsonValue()) : Result<QJsonValue>(off.error()));
+                       });
+}
+
 namespace {
 
 QString chipPath(const QString &chip) {

@@ -2,7 +2,7 @@
 #include "common/client/DaemonAddress.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "daemons/softwaretrigger/Definition.h"
-#include "protocol/wire/JsonTextWriter.h"
+#include "protocol/wire/JsonWriters.h"
 
 #include <QHash>
 #include <QJsonArray>

@@ -1,15 +1,69 @@
 #pragma once
 
 #include <QObject>
+#include <QSocketNotifier>
+#include <QTime>
+#include <QtGlobal>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 namespace hermes::softwaretrigger {
+
+/// When a daily time comes, by a wall clock that may be set at any moment. No I/O: told the time, in seconds
+/// since the epoch. A time that a step forward jumps over, or that is noticed more than a second late, is
+/// missed, not made up for; one that a step back of less than 12 hours brings again does not fire again.
+class DayTime {
+public:
+    static constexpr double tolerance_s = 1;
+    struct Verdict {
+        bool fires = false;
+        bool missed = false;
+        double due = 0; ///< the time that was judged
+    };
+
+    DayTime(const QTime &at, bool utc, double now)
+        : at_(at)
+        , utc_(utc)
+        , next_(firstAfter(now)) {}
+    /// The next time, seconds since the epoch.
+    double next() const { return next_; }
+    /// To be asked at next(), and after each step of the clock.
+    Verdict judge(double now);
+
+private:
+    double firstAfter(double stamp) const;
+
+    QTime at_;
+    bool utc_;
+    double next_;
+    double last_ = 0; // that fired
+};
+
+/// Calls a function at a time of each day, by the clock of the system, which tells when it is set.
+class DayAlarm : public QObject {
+    Q_OBJECT
+public:
+    using Function = std::function<void(const DayTime::Verdict &)>;
+
+    DayAlarm(const DayTime &time, Function function);
+    ~DayAlarm() override;
+
+private:
+    void arm();
+    void awake();
+
+    DayTime time_;
+    Function function_;
+    int descriptor_;
+    std::unique_ptr<QSocketNotifier> notifier_;
+};
 
 /// Calls functions at t0 + n T, for any number of periods at a time. A thread of its own waits for absolute
 /// times of the monotonic clock, so that delays do not add up and steps of the wall clock do not matter. What
@@ -33,7 +87,10 @@ public:
 
     /// t0 is now. Gives a key for remove().
     quint64 add(std::chrono::nanoseconds period, Function function);
-    void remove(quint64 key);
+    void remove(quint64 key) {
+        const std::lock_guard lock(mutex_);
+        entries_.erase(key);
+    }
     /// Whether the thread runs before all ordinary ones; false also before it has begun.
     bool isRealtime() const { return realtime_; }
 

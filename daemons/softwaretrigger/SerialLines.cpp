@@ -2,7 +2,6 @@
 
 #include "common/Time.h"
 
-#include <QJsonObject>
 #include <QTimer>
 
 namespace hermes::softwaretrigger {
@@ -12,10 +11,6 @@ constexpr std::chrono::milliseconds sendLimit{2000};
 constexpr qint64 writeLimit = 64 << 10; // bytes that may wait
 
 } // namespace
-
-SerialLines::~SerialLines() {
-    use({});
-}
 
 void SerialLines::use(const Wanted &wanted) {
     for (auto line = lines_.begin(); line != lines_.end();) {

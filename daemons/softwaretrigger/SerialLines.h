@@ -2,6 +2,7 @@
 
 #include "common/interface/SerialInterface.h"
 
+#include <QJsonObject>
 #include <QSet>
 #include <deque>
 #include <functional>
@@ -22,7 +23,7 @@ public:
 
     explicit SerialLines(QObject *parent)
         : QObject(parent) {}
-    ~SerialLines() override;
+    ~SerialLines() override { use({}); }
 
     /// Opens what is wanted and not open yet, closes what is not wanted.
     void use(const Wanted &wanted);

@@ -58,12 +58,6 @@ void TopicWatch::fire(const TopicUpdate &update, quint64 missed, const FiringCau
     listener_.fire({{}, update.stamp, missed, cause});
 }
 
-TravelWatch::TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
-    : TopicWatch(definition, client, listener)
-    , travel_(definition.cause() == Cause::Distance
-                  ? Travel(Travel::Kind::Distance, definition.number("distance_m"))
-                  : Travel(Travel::Kind::Angle, definition.number("angle_rad"))) {}
-
 WatchedState TravelWatch::state() const {
     WatchedState state = TopicWatch::state();
     state.travelled = travel_.total();
@@ -84,11 +78,6 @@ QString TravelWatch::take(const TopicUpdate &update) {
     fire(update, (*passed)->missed, cause);
     return {};
 }
-
-ConditionWatch::ConditionWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
-    : TopicWatch(definition, client, listener)
-    , path_(definition.text("path"))
-    , condition_(path_, definition.text("op"), definition.when.value("value")) {}
 
 QString ConditionWatch::take(const TopicUpdate &update) {
     const QJsonValue data = update.json();

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "daemons/softwaretrigger/Condition.h"
-#include "daemons/softwaretrigger/Travel.h"
 #include "daemons/softwaretrigger/Watch.h"
 
 #include <QPointer>
@@ -38,7 +36,11 @@ private:
 /// Fires each distance or angle travelled.
 class TravelWatch : public TopicWatch {
 public:
-    TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener);
+    TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
+        : TopicWatch(definition, client, listener)
+        , travel_(definition.cause() == Cause::Distance
+                      ? Travel(Travel::Kind::Distance, definition.number("distance_m"))
+                      : Travel(Travel::Kind::Angle, definition.number("angle_rad"))) {}
     WatchedState state() const override;
 
 protected:
@@ -52,7 +54,10 @@ private:
 /// Fires when a condition becomes true.
 class ConditionWatch : public TopicWatch {
 public:
-    ConditionWatch(const TriggerDefinition &definition, Client &client, const Listener &listener);
+    ConditionWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
+        : TopicWatch(definition, client, listener)
+        , path_(definition.text("path"))
+        , condition_(path_, definition.text("op"), definition.when.value("value")) {}
 
 protected:
     QString take(const TopicUpdate &update) override;

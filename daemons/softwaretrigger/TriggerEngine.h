@@ -1,9 +1,7 @@
 #pragma once
 
 #include "daemons/softwaretrigger/ActionRunner.h"
-#include "daemons/softwaretrigger/Firing.h"
 #include "daemons/softwaretrigger/FiringLog.h"
-#include "daemons/softwaretrigger/JitterWindow.h"
 
 #include "common/daemon/PastFaults.h"
 

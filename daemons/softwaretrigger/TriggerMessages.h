@@ -1,7 +1,6 @@
 #pragma once
 
 #include "daemons/softwaretrigger/FiringLog.h"
-#include "daemons/softwaretrigger/JitterWindow.h"
 #include "protocol/messages/Motion.h"
 
 #include <QJsonValue>

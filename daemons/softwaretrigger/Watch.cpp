@@ -1,12 +1,106 @@
 #include "daemons/softwaretrigger/Watch.h"
-
 #include "common/Time.h"
-#include "daemons/softwaretrigger/DayAlarm.h"
 #include "daemons/softwaretrigger/TopicWatch.h"
+#include "protocol/wire/Fields.h"
 
-#include <cmath>
+#include <QJsonArray>
+#include <QJsonObject>
+#include <QStringList>
+
+#include <algorithm>
+#include <utility>
 
 namespace hermes::softwaretrigger {
+
+namespace {
+
+constexpr double noise = 1e-3;     // m or rad
+constexpr double allowance = 0.05; // m or rad that a step may exceed what the speed explains
+
+} // namespace
+
+const Fields<TravelPoint> &fieldsOf(Of<TravelPoint>) {
+    static const auto fields = Fields<TravelPoint>()
+                                   .add("pose", &TravelPoint::pose, "As in odometry")
+                                   .add("twist", &TravelPoint::twist, "As in odometry")
+                                   .add("mono", &TravelPoint::mono, "As in odometry", "s");
+    return fields;
+}
+
+Result<std::optional<Travel::Passed>> Travel::add(WireView message) {
+    ReadReport report;
+    const auto now = readMessage<TravelPoint>(message, report);
+    if (!now)
+        return Error(ErrorCode::InvalidParams, "no odometry: " + report.text());
+    if (last_) {
+        const double fastest = std::max(speed(*last_), speed(*now));
+        const double explained = 2 * fastest * (now->mono - last_->mono) + allowance;
+        if (now->mono <= last_->mono || between(*last_, *now) > explained) {
+            ++jumps_;
+            last_.reset();
+        }
+    }
+    if (!last_) {
+        sum_ += pending_;
+        anchor_ = now;
+    }
+    last_ = now;
+    pending_ = between(*anchor_, *now);
+    if (pending_ >= noise) {
+        sum_ += pending_;
+        pending_ = 0;
+        anchor_ = now;
+    }
+    // One part in 1e9: the sum of many small steps may fall short by rounding.
+    const auto reached = quint64(std::floor(total() / step_ * (1 + 1e-9)));
+    if (reached <= passed_)
+        return std::optional<Passed>();
+    const Passed result{reached, reached - passed_ - 1, now->pose};
+    passed_ = reached;
+    return std::optional<Passed>(result);
+}
+
+QJsonValue lookUp(QJsonValue data, const QString &path) {
+    if (path.isEmpty())
+        return data;
+    for (const QString &key : path.split('.')) {
+        if (!data.isArray()) {
+            data = data.toObject().value(key);
+            continue;
+        }
+        bool isNumber = false;
+        const int index = key.toInt(&isNumber);
+        const QJsonArray array = data.toArray();
+        data = isNumber && index >= 0 && index < array.size() ? array.at(index)
+                                                              : QJsonValue(QJsonValue::Undefined);
+    }
+    return data;
+}
+
+std::optional<bool> Condition::holds(const QJsonValue &value) const {
+    if (value.isUndefined())
+        return std::nullopt;
+    if (op_ == "==")
+        return value == limit_;
+    if (op_ == "!=")
+        return value != limit_;
+    if (!value.isDouble())
+        return std::nullopt;
+    const double number = value.toDouble(), limit = limit_.toDouble();
+    if (op_ == "<")
+        return number < limit;
+    if (op_ == "<=")
+        return number <= limit;
+    return op_ == ">" ? number > limit : number >= limit;
+}
+
+std::optional<bool> Condition::becomesTrue(const QJsonValue &data) {
+    const auto now = holds(lookUp(data, path_));
+    if (!now)
+        return std::nullopt;
+    return !std::exchange(held_, *now) && *now;
+}
+
 namespace {
 
 class PeriodWatch : public Watch {

@@ -2,7 +2,7 @@
 
 #include "daemons/supervisor/PortUsers.h"
 #include "protocol/nmea/SentenceParser.h"
-#include "protocol/roboclaw/ReplyParser.h"
+#include "protocol/roboclaw/Packet.h"
 
 #include <QElapsedTimer>
 #include <QFile>

@@ -7,7 +7,7 @@
 #include "daemons/supervisor/PortUsers.h"
 #include "daemons/supervisor/SettingsCheck.h"
 #include "daemons/supervisor/SetupProposal.h"
-#include "protocol/velodyne/PacketFormat.h"
+#include "protocol/velodyne/SensorModel.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 

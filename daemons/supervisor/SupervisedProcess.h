@@ -1,7 +1,7 @@
 #pragma once
 
 #include "daemons/supervisor/ProcessGuard.h"
-#include "protocol/messages/Processes.h"
+#include "protocol/messages/Daemons.h"
 
 #include <QJsonArray>
 #include <QObject>

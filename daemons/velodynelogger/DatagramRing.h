@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/capture/Datagram.h"
+#include "common/capture/Frame.h"
 
 #include <atomic>
 #include <chrono>

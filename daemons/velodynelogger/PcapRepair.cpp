@@ -1,6 +1,6 @@
 #include "daemons/velodynelogger/PcapRepair.h"
 
-#include "common/capture/PcapTail.h"
+#include "common/capture/PcapWriter.h"
 #include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "daemons/velodynelogger/PacketAccount.h"

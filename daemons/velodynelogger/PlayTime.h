@@ -1,8 +1,8 @@
 #pragma once
 
-#include "common/capture/Datagram.h"
+#include "common/capture/Frame.h"
 #include "protocol/velodyne/DataPacket.h"
-#include "protocol/velodyne/StampClock.h"
+#include "protocol/velodyne/PacketDecoder.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/Outcome.h"
-#include "common/capture/Datagram.h"
+#include "common/capture/Frame.h"
 
 #include <memory>
 #include <string>

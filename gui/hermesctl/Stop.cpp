@@ -3,8 +3,8 @@
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/NetworkBrowser.h"
 #include "gui/hermesctl/Output.h"
+#include "protocol/messages/Daemons.h"
 #include "protocol/messages/Motors.h"
-#include "protocol/messages/Processes.h"
 #include "protocol/wire/Fields.h"
 
 #include <QEventLoop>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/Outcome.h"
-#include "vectorlib/io/InputError.h"
+#include "vectorlib/io/TextInput.h"
 
 #include <stdexcept>
 

@@ -1,18 +1,40 @@
 #include "gui/vector/Input.h"
-
 #include "common/platform/ReadableFile.h"
 #include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
-
-#include <zlib.h>
+#include "vectorlib/io/CsvPoints.h"
+#include "vectorlib/io/Pcd.h"
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string_view>
+#include <zlib.h>
 
 namespace hermes::vector {
+
+namespace fs = std::filesystem;
+
+std::string worldFile(const std::string &nameOrPath) {
+    const fs::path path = fs::u8path(nameOrPath);
+    std::error_code error;
+    if (nameOrPath == "-" || path.has_parent_path() || fs::exists(path, error))
+        return nameOrPath;
+    const fs::path installed = installedWorlds() / fs::u8path(nameOrPath + ".json");
+    if (fs::exists(installed, error))
+        return installed.u8string();
+    std::set<std::string> names;
+    for (fs::directory_iterator file(installedWorlds(), error), end; !error && file != end;
+         file.increment(error))
+        if (file->path().extension() == ".json")
+            names.insert(file->path().stem().u8string());
+    std::string list;
+    for (const std::string &name : names)
+        list += (list.empty() ? "" : ", ") + name;
+    throw Failure(nameOrPath + ": found no such file, expected one, or the name of a world: " + list);
+}
 
 namespace fs = std::filesystem;
 
@@ -165,6 +187,33 @@ bool hasExtension(const std::string &path, const std::string &extension) {
     if (endsWith(lower, ".gz"))
         lower.resize(lower.size() - 3);
     return endsWith(lower, extension);
+}
+
+namespace {
+
+[[noreturn]] void refuse(const std::string &path, const char *found) {
+    throw Failure(path + ": found a " + found +
+                  ", expected one scan; take scan number N out of it by: hermes-vector map " + path +
+                  " --scan N --out scan.csv");
+}
+
+} // namespace
+
+std::vector<vectorlib::Vector2D<double>> loadPoints(const std::string &path) {
+    Input input(path);
+    TextStream in(readScanText(input, path));
+    return valueOrFail(hasExtension(path, ".pcd") ? vectorlib::readPcd<double>(in, input.name())
+                                                  : vectorlib::readCsvPoints<double>(in, input.name()));
+}
+
+std::string readScanText(Input &input, const std::string &path) {
+    if (input.isCapture())
+        refuse(path, "capture");
+    std::string text = input.readAll();
+    for (const std::string word : {"FLASER ", "ROBOTLASER1 "})
+        if (text.rfind(word, 0) == 0 || text.find('\n' + word) != std::string::npos)
+            refuse(path, "CARMEN log");
+    return text;
 }
 
 } // namespace hermes::vector

@@ -1,14 +1,12 @@
 #include "common/progress/Progress.h"
 #include "gui/vector/Failure.h"
-#include "gui/vector/LocalizeRun.h"
 #include "gui/vector/MapFiles.h"
 #include "gui/vector/MapOptions.h"
-#include "gui/vector/MapProgress.h"
 #include "gui/vector/MapRun.h"
 #include "vectorlib/io/CsvPoints.h"
-#include "vectorlib/io/G2o.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Number.h"
+#include "vectorlib/io/Tum.h"
 
 #include <chrono>
 #include <filesystem>

@@ -2,25 +2,10 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
-#include "vectorlib/io/Dxf.h"
-#include "vectorlib/io/GeoJson.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Pgm.h"
 
-#include <algorithm>
-#include <filesystem>
-
 namespace hermes::vector {
-
-const std::vector<std::string> &MapFile::extensions() {
-    static const std::vector<std::string> known = {".csv", ".svg", ".geojson", ".dxf", ".pgm"};
-    return known;
-}
-
-bool MapFile::isKnown(const std::string &path) {
-    const std::string extension = std::filesystem::u8path(path).extension().u8string();
-    return std::find(extensions().begin(), extensions().end(), extension) != extensions().end();
-}
 
 CLI::Validator MapFile::knownName() {
     const auto check = [](const std::string &path) {

@@ -3,7 +3,6 @@
 #include "gui/vector/MapFiles.h"
 #include "gui/vector/Options.h"
 #include "vectorlib/mapping/MapAligner.h"
-#include "vectorlib/mapping/MergeMap.h"
 
 #include <nlohmann/json.hpp>
 

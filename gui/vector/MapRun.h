@@ -1,16 +1,75 @@
 #pragma once
 
+#include "common/progress/Progress.h"
 #include "gui/vector/MapSource.h"
 #include "gui/vector/ProgressParts.h"
 #include "vectorlib/graph/DriveParts.h"
 #include "vectorlib/graph/DriveRefiner.h"
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/io/Tum.h"
+#include "vectorlib/mapping/MapLocalizer.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <cstddef>
+#include <string>
+
 namespace hermes::vector {
+
+/// The progress of building a map: tracking the scans, and then what follows the last one, as one work whose
+/// steps take about the same time each.
+class MapProgress {
+public:
+    explicit MapProgress(bool isFinished)
+        : finishShare_(isFinished ? 0.3 : 0) {}
+
+    /// total: 0 when it is not known. Then reading the scans tells how far it is, and tracking does not.
+    void track(std::size_t scans, std::size_t total) {
+        tracking_ = double(total);
+        if (total > 0) // in a map that grows a scan takes longer and longer
+            tell(double(scans) * std::sqrt(double(scans) / double(total)));
+    }
+    void begin(const std::string &stage) { progress_.rename(stage + ", step"); }
+    void finish(std::size_t done, std::size_t all) {
+        if (tracking_ == 0)
+            progress_.update(double(done), double(all));
+        else
+            tell(tracking_ * (1 + finishShare_ * double(done) / double(all)));
+    }
+
+private:
+    void tell(double done) { progress_.update(std::floor(done), std::floor(tracking_ * (1 + finishShare_))); }
+
+    double tracking_ = 0;      // steps, as many as scans
+    const double finishShare_; // of the time of tracking, about
+    Progress progress_{"tracking, step"};
+};
+
+/// Finds the poses of a drive in a finished map and keeps account of it.
+class LocalizeRun {
+public:
+    vectorlib::MapLocalizer localizer;
+
+    /// `file` is how messages call the map.
+    LocalizeRun(const std::vector<vectorlib::MapEdge> &map, std::string file)
+        : localizer(map)
+        , file_(std::move(file)) {}
+
+    /// A scan with a fault is counted and left out.
+    void take(const MapScan &scan);
+    /// After the last scan. Throws Failure when no place was found: `log` is how the message calls the drive.
+    void finish(const std::string &log);
+
+    /// The scans with a pose.
+    std::vector<vectorlib::StampedPose> trajectory() const;
+    nlohmann::ordered_json summary() const;
+
+private:
+    std::string file_;
+    std::size_t leftOut_ = 0;
+};
 
 /// Builds a map from scans and keeps account of it.
 class MapRun {

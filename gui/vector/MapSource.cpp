@@ -2,8 +2,7 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
-#include "gui/vector/Points.h"
-#include "vectorlib/io/CarmenDrive.h"
+#include "vectorlib/io/CarmenLog.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "gui/vector/MatchMethods.h"
 
 #include "common/progress/Progress.h"
-#include "vectorlib/correspondence/SolutionCovariance.h"
+#include "vectorlib/correspondence/SearchResult.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/observation/SimulatedScanner.h"

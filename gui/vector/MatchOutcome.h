@@ -1,8 +1,8 @@
 #pragma once
 
 #include "vectorlib/correspondence/SearchResult.h"
-#include "vectorlib/mapping/GlobalPairMatch.h"
-#include "vectorlib/relations/RelationMatch.h"
+#include "vectorlib/mapping/GlobalPairMatcher.h"
+#include "vectorlib/relations/RelationMatcher.h"
 
 #include <string>
 
@@ -21,23 +21,9 @@ enum class MatchOutcome {
 
 /// For programs.
 inline const char *name(MatchOutcome outcome) {
-    switch (outcome) {
-    case MatchOutcome::Found:
-        return "found";
-    case MatchOutcome::Ambiguous:
-        return "ambiguous";
-    case MatchOutcome::OpenDirection:
-        return "open_direction";
-    case MatchOutcome::Nowhere:
-        return "nowhere";
-    case MatchOutcome::TooLittle:
-        return "too_little";
-    case MatchOutcome::Unfinished:
-        return "unfinished";
-    case MatchOutcome::BadSettings:
-        return "bad_settings";
-    }
-    return "";
+    static constexpr const char *texts[] = {"found",      "ambiguous",  "open_direction", "nowhere",
+                                            "too_little", "unfinished", "bad_settings"};
+    return texts[static_cast<int>(outcome)]; // in the order of the enumeration
 }
 
 /// For people; what is known beyond it follows after a colon.

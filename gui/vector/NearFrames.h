@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gui/vector/PictureFiles.h"
+#include "gui/vector/Output.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 

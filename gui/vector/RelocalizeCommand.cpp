@@ -1,8 +1,8 @@
 #include "common/progress/Progress.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Output.h"
-#include "gui/vector/RelocalizePicture.h"
 #include "gui/vector/SegmentSet.h"
+#include "vectorlib/io/Svg.h"
 #include "vectorlib/places/PlaceSearch.h"
 
 #include <nlohmann/json.hpp>
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -18,6 +19,9 @@ namespace hermes::vector {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Outcome = vectorlib::Relocalized::Outcome;
+using Point = vectorlib::Vector2D<double>;
+using vectorlib::SvgPicture;
 
 Json placeAsJson(const vectorlib::Place &place) {
     Json covariance = nullptr;
@@ -35,6 +39,95 @@ Json placeAsJson(const vectorlib::Place &place) {
             {"ambiguity", place.ambiguity},
             {"discrepancy", place.discrepancy},
             {"matched_share", place.matchedShare}};
+}
+
+/// A number as line segments, seven to a digit, for pictures that know no text: its lower left corner, and
+/// the height of a digit, which is twice as high as wide.
+std::vector<vectorlib::LineSegment2D<double>> drawnNumber(std::size_t number,
+                                                          vectorlib::Vector2D<double> corner, double height) {
+    // Ends of the seven strokes, in half heights, and which of them each digit has.
+    static const Point strokes[7][2] = {{{0, 2}, {1, 2}}, {{1, 2}, {1, 1}}, {{1, 1}, {1, 0}},
+                                        {{0, 0}, {1, 0}}, {{0, 0}, {0, 1}}, {{0, 1}, {0, 2}},
+                                        {{0, 1}, {1, 1}}};
+    constexpr unsigned digits[10] = {0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f};
+    std::vector<vectorlib::LineSegment2D<double>> result;
+    for (const char digit : std::to_string(number)) {
+        for (unsigned i = 0; i < 7; ++i)
+            if (digits[digit - '0'] >> i & 1u)
+                result.emplace_back(corner + strokes[i][0] * (height / 2),
+                                    corner + strokes[i][1] * (height / 2));
+        corner.x += 0.75 * height;
+    }
+    return result;
+}
+
+std::string titleOf(const vectorlib::Relocalized &result) {
+    const std::string text = result.text();
+    return result.isFound() ? "Found" : "Not found: " + text;
+}
+
+/// Of a place: "scan and sensor, 0.31 probable at 2.00, 0.99, 29 degrees".
+std::string wordsOf(const vectorlib::Place &place) {
+    char text[96];
+    std::snprintf(text, sizeof text, "scan and sensor, %.2f probable at %.2f, %.2f, %.0f degrees",
+                  place.probability, place.pose.x, place.pose.y, place.pose.theta * 180 / vectorlib::pi);
+    return text;
+}
+
+/// The larger side of the box around a map; metres.
+double sizeOf(const SegmentSet &map) {
+    Point low, high;
+    bool isFirst = true;
+    for (const vectorlib::LineSegment2D<double> &s : map.segments())
+        for (const Point p : {s.begin(), s.end()}) {
+            low = isFirst ? p : Point(std::min(low.x, p.x), std::min(low.y, p.y));
+            high = isFirst ? p : Point(std::max(high.x, p.x), std::max(high.y, p.y));
+            isFirst = false;
+        }
+    return std::max(high.x - low.x, high.y - low.y);
+}
+
+/// The scan at a place: its points, or the segments where it has none.
+void drawScan(SvgPicture &picture, const SegmentSet &scan, const vectorlib::Transformation2D &pose,
+              const SvgPicture::Style &style) {
+    std::vector<Point> points;
+    for (const vectorlib::Vector2D<float> &p : scan.points)
+        points.push_back(pose * Point(p));
+    std::vector<vectorlib::LineSegment2D<double>> segments;
+    for (const vectorlib::LineSegment2D<double> &s : scan.segments())
+        segments.push_back(pose * s);
+    if (points.empty())
+        picture.segments(style, segments);
+    else
+        picture.points(style, points);
+}
+
+/// The map, and the scan with its sensor where it was found. Places that fit alike are all drawn, numbered
+/// from 1 as in the result, best first; of a search that found none the best place, as one that is refused.
+SvgPicture pictureOf(const SegmentSet &map, const SegmentSet &scan, const vectorlib::Relocalized &result) {
+    SvgPicture picture(titleOf(result));
+    picture.segments({vectorlib::colour::map, 1.5, "map"}, map.segments());
+    const bool isAmbiguous = result.outcome == Outcome::Ambiguous;
+    const std::size_t shown = std::min(result.places.size(), isAmbiguous ? result.alike : std::size_t(1));
+    const double height = 0.02 * sizeOf(map);
+    for (std::size_t i = 0; i < shown; ++i) {
+        const vectorlib::Place &place = result.places[i];
+        const vectorlib::Transformation2D pose(place.pose);
+        const std::string colour = isAmbiguous        ? vectorlib::colour::distinct(i)
+                                   : result.isFound() ? vectorlib::colour::estimate
+                                                      : vectorlib::colour::outliers;
+        drawScan(picture, scan, pose, {colour, 4, ""});
+        const std::string number = isAmbiguous ? std::to_string(i + 1) + ": " : "";
+        picture.pose(
+            {colour, 2, number + (result.isFound() || isAmbiguous ? "" : "refused: ") + wordsOf(place)},
+            pose.translation(), pose.alpha());
+        if (isAmbiguous) {
+            const auto strokes = drawnNumber(i + 1, pose.translation() + Point(height, height) * 0.9, height);
+            picture.segments({"#ffffff", 6, ""}, strokes);
+            picture.segments({colour, 2.5, ""}, strokes);
+        }
+    }
+    return picture;
 }
 
 struct RelocalizeCommand {

@@ -2,10 +2,9 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
-#include "gui/vector/Points.h"
 #include "vectorlib/edges/EdgeExtractor.h"
+#include "vectorlib/io/Csv.h"
 #include "vectorlib/io/CsvPoints.h"
-#include "vectorlib/io/CsvSegments.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Pcd.h"
 #include "vectorlib/segmentation/ScanOrder.h"

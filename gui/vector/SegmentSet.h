@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/correspondence/SolutionCovariance.h"
+#include "vectorlib/correspondence/SearchResult.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <functional>

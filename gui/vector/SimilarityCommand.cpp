@@ -2,7 +2,7 @@
 #include "gui/vector/Input.h"
 #include "gui/vector/NearFrames.h"
 #include "gui/vector/Options.h"
-#include "vectorlib/io/CsvPairs.h"
+#include "vectorlib/io/Csv.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/similarity/EdgeSetComparator.h"
 

@@ -1,6 +1,6 @@
 #include "common/progress/Progress.h"
+#include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
-#include "gui/vector/Points.h"
 #include "gui/vector/Vectorizers.h"
 #include "vectorlib/io/Svg.h"
 

@@ -1,9 +1,9 @@
 #include "gui/vector/Vectorizers.h"
 
 #include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
+#include "vectorlib/vectorization/FtlsVectorizer.h"
 #include "vectorlib/vectorization/IncVectorizer.h"
 #include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
-#include "vectorlib/vectorization/TlsVectorizer.h"
 
 #include <stdexcept>
 

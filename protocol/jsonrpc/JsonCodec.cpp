@@ -1,6 +1,6 @@
 #include "protocol/jsonrpc/JsonCodec.h"
 
-#include "protocol/wire/JsonTextWriter.h"
+#include "protocol/wire/JsonWriters.h"
 
 #include <cstring>
 

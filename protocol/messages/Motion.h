@@ -1,7 +1,7 @@
 #pragma once
 
 #include "protocol/wire/FieldsOf.h"
-#include "vectorlib/geometry/Twist2D.h"
+#include "vectorlib/geometry/Pose2D.h"
 
 #include <array>
 

@@ -4,10 +4,6 @@
 
 namespace hermes {
 
-QStringList FoundSerial::kinds() {
-    return {"roboclaw", "nmea", "talker", "other", "silent", "not_asked", "in_use", "failed"};
-}
-
 const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>) {
     using S = FoundSerial;
     static const auto fields =

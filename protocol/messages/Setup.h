@@ -22,7 +22,9 @@ struct FoundSerial {
 
     /// "roboclaw", "nmea", "talker" (says something else by itself), "other" (answers, but not as a
     /// RoboClaw), "silent", "not_asked" (silent, and nothing was sent to it), "in_use", "failed".
-    static QStringList kinds();
+    static QStringList kinds() {
+        return {"roboclaw", "nmea", "talker", "other", "silent", "not_asked", "in_use", "failed"};
+    }
 };
 
 /// A lidar whose packets came.

@@ -3,9 +3,32 @@
 #include "protocol/wire/FieldsOf.h"
 
 #include <QtGlobal>
+
+#include <array>
 #include <vector>
 
 namespace hermes {
+
+/// A place that was met again: the numbers of two key scans that were matched with each other.
+struct GraphLoop {
+    qint64 from = 0, to = 0;
+    double weight = 0;
+};
+
+/// The topic `graph`: how the matcher put the drive together; new key scans, or all of them, in parts where
+/// they are many.
+struct GraphMessage {
+    qint64 revision = 0;
+    bool cleared = false;
+    qint64 first = 0;
+    std::vector<std::array<double, 3>> poses;
+    std::vector<double> trust;
+    std::vector<GraphLoop> loops;
+    qint64 size = 0;
+};
+
+const Fields<GraphLoop> &fieldsOf(Of<GraphLoop>);
+const Fields<GraphMessage> &fieldsOf(Of<GraphMessage>);
 
 /// An edge of the vector map: free space on its left.
 struct MapEdgeMessage {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace hermes::roboclaw {
 
@@ -27,11 +26,6 @@ std::deque<Bus::Entry>::iterator Bus::behindUrgent() {
                         [](const Entry &entry) { return entry.urgency != Urgency::First; });
 }
 
-void Bus::cancel() {
-    repeats_ = false;
-    endAll(Result::Cancelled);
-}
-
 void Bus::setOpen(bool open) {
     open_ = open;
     if (open)
@@ -39,12 +33,6 @@ void Bus::setOpen(bool open) {
     if (std::exchange(awaiting_, false))
         queue_.push_front(std::move(current_));
     endAll(Result::LineClosed);
-}
-
-void Bus::endAll(Result result) {
-    const std::deque<Entry> ended = std::exchange(queue_, {}); // handlers may submit
-    for (const Entry &entry : ended)
-        finish(entry, {result, {}, Dialect::Usual, entry.attempts, 0, 0});
 }
 
 void Bus::finish(Entry entry, const Outcome &outcome) {

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "protocol/roboclaw/ReplyParser.h"
+#include "protocol/roboclaw/Packet.h"
 
 #include <array>
 #include <deque>
 #include <functional>
+#include <utility>
 
 namespace hermes::roboclaw {
 
@@ -54,7 +55,10 @@ public:
     bool submit(const Request &request, Handler handler = {}, Urgency urgency = Urgency::Normal,
                 double replyTimeout = 0);
     /// Ends all that wait with Cancelled. The one that awaits its answer goes on, without further attempts.
-    void cancel();
+    void cancel() {
+        repeats_ = false;
+        endAll(Result::Cancelled);
+    }
     /// A closed line ends everything with LineClosed, also what is submitted while it is closed.
     void setOpen(bool open);
 
@@ -86,7 +90,11 @@ private:
     std::deque<Entry>::iterator behindUrgent();
     void attemptEnded(ReplyParser::Result result, double now);
     void attemptFailed(Result result, double now);
-    void endAll(Result result);
+    void endAll(Result result) {
+        const std::deque<Entry> ended = std::exchange(queue_, {}); // handlers may submit
+        for (const Entry &entry : ended)
+            finish(entry, {result, {}, Dialect::Usual, entry.attempts, 0, 0});
+    }
     void finish(Entry entry, const Outcome &outcome);
     double earliest(const Entry &entry) const { return entry.urgency == Urgency::First ? pause_ : resume_; }
     Counts &countsOf(const Entry &entry) { return counts_[entry.request.address % 8]; }

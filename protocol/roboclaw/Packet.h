@@ -3,12 +3,25 @@
 #include "protocol/roboclaw/Command.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
 
 namespace hermes::roboclaw {
+
+/// CRC-16/XMODEM as RoboClaw uses it: polynomial 0x1021, not reflected, no final inversion. The check value
+/// of "123456789" is 0x31C3. start: the CRC of the bytes before, to go on with.
+constexpr std::uint16_t crc16(const std::uint8_t *data, std::size_t size, std::uint16_t start = 0) {
+    std::uint16_t crc = start;
+    for (std::size_t i = 0; i < size; ++i) {
+        crc = std::uint16_t(crc ^ data[i] << 8);
+        for (int bit = 0; bit < 8; ++bit)
+            crc = std::uint16_t(crc & 0x8000 ? crc << 1 ^ 0x1021 : crc << 1);
+    }
+    return crc;
+}
 
 /// The bytes of one packet, without allocation.
 class Bytes {
@@ -96,5 +109,72 @@ Values unpack(std::string_view fields, const std::uint8_t *data);
 /// The speed of commands 18, 19, 30 and 31, whether the firmware sends a signed number or a magnitude beside
 /// the direction (fact sheet, section 5).
 std::int32_t signedSpeed(const Reply &reply);
+
+/// Reads the answer to one request, byte for byte. Knows no time: the caller gives up when an answer is late,
+/// and tells when the line has fallen silent.
+class ReplyParser {
+public:
+    enum class Result {
+        Incomplete,
+        Done,      ///< reply() holds the answer
+        BadCrc,    ///< the answer, or the request on its way, was damaged
+        Unexpected ///< no acknowledgement, or a text without its end
+    };
+
+    /// Awaits the answer to this request and forgets what came before.
+    void begin(const Request &request);
+    /// One byte more. What follows the end of an answer must not be fed.
+    Result feed(std::uint8_t byte);
+    /// The line has been silent for 10 ms or more: what came is all. Done when it is a whole answer of the
+    /// firmware whose answer is shorter (ReadStatus with 16 bits, ReadMainLimits).
+    Result silence();
+
+    const Reply &reply() const { return reply_; }
+    /// Which of the layouts the answer has.
+    Dialect dialect() const { return dialect_; }
+    std::size_t received() const { return bytes_.size(); }
+
+private:
+    Result feedText();
+    Result finish(std::string_view fields, Dialect dialect);
+    bool crcFits(std::size_t dataSize) const;
+
+    const Layout *layout_ = nullptr;
+    std::uint16_t requestCrc_ = 0;
+    Bytes bytes_;
+    Reply reply_;
+    Dialect dialect_ = Dialect::Usual;
+};
+
+/// The device's side: finds the requests in what a host sends, byte for byte. The caller tells when the line
+/// was silent for more than 10 ms.
+class RequestParser {
+public:
+    enum class Result {
+        Incomplete,
+        Done,    ///< request() holds it
+        BadCrc,  ///< dropped: a controller does not answer and does nothing
+        Unknown, ///< no address of a controller, or no such command: dropped
+    };
+
+    /// dialect: of the writes that differ between firmware.
+    explicit RequestParser(Dialect dialect = Dialect::Usual)
+        : dialect_(dialect) {}
+
+    Result feed(std::uint8_t byte);
+    /// Drops what has not become whole.
+    void silence() { bytes_.clear(); }
+
+    const Request &request() const { return request_; }
+    /// Bytes of a request that is not yet whole.
+    std::size_t pending() const { return bytes_.size(); }
+
+private:
+    Result finish(const Layout &layout, std::string_view fields);
+
+    Dialect dialect_;
+    Bytes bytes_;
+    Request request_;
+};
 
 } // namespace hermes::roboclaw

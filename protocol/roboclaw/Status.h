@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/roboclaw/ReplyParser.h"
+#include "protocol/roboclaw/Packet.h"
 
 #include <cstdint>
 

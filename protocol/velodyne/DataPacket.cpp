@@ -55,12 +55,6 @@ void DataPacketWriter::setAzimuth(int block, std::uint16_t azimuth) {
     setWord(block * blockSize + 2, azimuth);
 }
 
-void DataPacketWriter::setReturn(int block, int slot, std::uint16_t distance, std::uint8_t intensity) {
-    const std::size_t offset = block * blockSize + 4 + 3 * slot;
-    setWord(offset, distance);
-    bytes_[offset + 2] = intensity;
-}
-
 void DataPacketWriter::setTail(std::uint32_t stamp_us, ReturnMode mode, Model model) {
     setWord(1200, std::uint16_t(stamp_us));
     setWord(1202, std::uint16_t(stamp_us >> 16));
@@ -73,11 +67,6 @@ void DataPacketWriter::clear() {
         for (int slot = 0; slot < slotsPerBlock; ++slot)
             setReturn(block, slot, 0, 0);
     }
-}
-
-void DataPacketWriter::setWord(std::size_t offset, std::uint16_t value) {
-    bytes_[offset] = std::uint8_t(value);
-    bytes_[offset + 1] = std::uint8_t(value >> 8);
 }
 
 std::uint16_t toDistanceCounts(double range) {

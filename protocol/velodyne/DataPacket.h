@@ -65,7 +65,11 @@ public:
     /// azimuth: hundredths of a degree, below 36000.
     void setAzimuth(int block, std::uint16_t azimuth);
     /// distance: counts of the sensor, 0 for no return.
-    void setReturn(int block, int slot, std::uint16_t distance, std::uint8_t intensity);
+    void setReturn(int block, int slot, std::uint16_t distance, std::uint8_t intensity) {
+        const std::size_t offset = block * blockSize + 4 + 3 * slot;
+        setWord(offset, distance);
+        bytes_[offset + 2] = intensity;
+    }
     /// stamp_us: microseconds since the top of the hour.
     void setTail(std::uint32_t stamp_us, ReturnMode mode = ReturnMode::Strongest,
                  Model model = Model::Hdl32e);
@@ -75,7 +79,10 @@ public:
     const std::array<std::uint8_t, packetSize> &bytes() const { return bytes_; }
 
 private:
-    void setWord(std::size_t offset, std::uint16_t value);
+    void setWord(std::size_t offset, std::uint16_t value) {
+        bytes_[offset] = std::uint8_t(value);
+        bytes_[offset + 1] = std::uint8_t(value >> 8);
+    }
 
     std::array<std::uint8_t, packetSize> bytes_;
 };

@@ -1,5 +1,4 @@
 #include "protocol/velodyne/SensorModel.h"
-
 #include "protocol/velodyne/Hdl32e.h"
 #include "protocol/velodyne/Vlp16.h"
 

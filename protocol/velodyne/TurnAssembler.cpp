@@ -1,7 +1,5 @@
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <cstdlib>
-
 namespace hermes::velodyne {
 
 namespace {
@@ -23,12 +21,6 @@ void count(PacketCounts &counts, PacketFault fault) {
 }
 
 } // namespace
-
-TurnAssembler::TurnAssembler(const Options &options, Sink sink)
-    : options_(options)
-    , sink_(std::move(sink)) {
-    turn_.number = options.firstNumber;
-}
 
 PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns) {
     PacketFault fault = DataPacket::check(bytes, size, options_.model);
@@ -157,12 +149,6 @@ void TurnAssembler::follow(std::optional<std::int64_t> utc_ns) {
 void TurnAssembler::finish() {
     endTurn(true);
     beginTurn(true);
-}
-
-void TurnAssembler::jump() {
-    finish();
-    clock_.reset();
-    started_ = false;
 }
 
 } // namespace hermes::velodyne

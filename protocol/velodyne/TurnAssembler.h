@@ -1,8 +1,8 @@
 #pragma once
 
 #include "protocol/velodyne/PacketDecoder.h"
-#include "protocol/velodyne/StampClock.h"
 
+#include <cstdlib>
 #include <functional>
 #include <optional>
 
@@ -58,7 +58,11 @@ public:
     using Sink = std::function<void(const Turn &)>;
 
     /// The sink sees every complete turn and must not keep the reference.
-    TurnAssembler(const Options &options, Sink sink);
+    TurnAssembler(const Options &options, Sink sink)
+        : options_(options)
+        , sink_(std::move(sink)) {
+        turn_.number = options.firstNumber;
+    }
 
     /// Takes the payload of a data packet and the time at which it came in, nanoseconds since the Unix epoch.
     PacketFault feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns);
@@ -67,7 +71,11 @@ public:
     /// Delivers what has been collected of the current turn, as a partial one.
     void finish();
     /// The packets that follow are of another time, as after a seek. Counts and numbers go on.
-    void jump();
+    void jump() {
+        finish();
+        clock_.reset();
+        started_ = false;
+    }
 
     void setFiringStep(std::uint32_t step) { options_.firingStep = step; }
     const PacketCounts &counts() const { return counts_; }

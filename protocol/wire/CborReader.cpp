@@ -1,4 +1,4 @@
-#include "protocol/wire/CborTags.h"
+#include "protocol/wire/CborWriter.h"
 
 #include <QCborStreamReader>
 #include <QtEndian>

@@ -1,28 +1,6 @@
 #include "protocol/wire/FieldTable.h"
 
-#include <QJsonArray>
-
 namespace hermes {
-
-void ReadReport::fail(WireView value, const QString &wanted) {
-    found = value.described();
-    expected = wanted;
-}
-
-void ReadReport::within(const QString &name) {
-    path = path.isEmpty() ? name : name + QLatin1Char('.') + path;
-}
-
-QString ReadReport::text() const {
-    return QStringLiteral("%1: found %2, expected %3")
-        .arg(path.isEmpty() ? QStringLiteral("message") : QStringLiteral("member ") + path, found, expected);
-}
-
-void FieldTable::Entry::describe(const char *description, const char *unit) {
-    keywords.insert(QStringLiteral("description"), QString::fromUtf8(description));
-    if (*unit)
-        keywords.insert(QStringLiteral("unit"), QString::fromUtf8(unit));
-}
 
 void FieldTable::write(WireWriter &out, const void *message) const {
     out.beginObject();

@@ -20,11 +20,18 @@ struct ReadReport {
     quint64 unknown = 0; ///< members that the reader does not know: of a newer program, left alone
 
     bool hasFailed() const { return !expected.isEmpty(); }
-    void fail(WireView value, const QString &wanted);
+    void fail(WireView value, const QString &wanted) {
+        found = value.described();
+        expected = wanted;
+    }
     /// Whoever read a member or an element that is wrong says which.
-    void within(const QString &name);
+    void within(const QString &name) { path = path.isEmpty() ? name : name + QLatin1Char('.') + path; }
     /// "member pose.x: found text "a", expected a number"
-    QString text() const;
+    QString text() const {
+        return QStringLiteral("%1: found %2, expected %3")
+            .arg(path.isEmpty() ? QStringLiteral("message") : QStringLiteral("member ") + path, found,
+                 expected);
+    }
 };
 
 /// What numbers a field may hold, and how many elements.
@@ -58,7 +65,11 @@ protected:
         bool isOptional = false;
         bool isNullable = false; ///< empty: null instead of left out
         bool mayBeMissing = false;
-        void describe(const char *description, const char *unit);
+        void describe(const char *description, const char *unit) {
+            keywords.insert(QStringLiteral("description"), QString::fromUtf8(description));
+            if (*unit)
+                keywords.insert(QStringLiteral("unit"), QString::fromUtf8(unit));
+        }
 
         std::function<bool(const void *message)> isEmpty; ///< of an optional one
         std::function<void(WireWriter &out, const void *message)> write;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/wire/JsonValueWriter.h"
+#include "protocol/wire/JsonWriters.h"
 #include "protocol/wire/Types.h"
 
 #include <array>

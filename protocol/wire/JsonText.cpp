@@ -1,6 +1,6 @@
 #include "protocol/wire/JsonText.h"
 
-#include "protocol/wire/JsonTextWriter.h"
+#include "protocol/wire/JsonWriters.h"
 
 namespace hermes {
 

@@ -112,20 +112,11 @@ template std::size_t PackedNumbers::copy(double *) const;
 template std::size_t PackedNumbers::copy(quint8 *) const;
 template std::size_t PackedNumbers::copy(quint16 *) const;
 
-bool TreeBuilder::String(const char *text, unsigned length, bool copy) {
-    return count() && isWhole(text, length) && document_.String(text, length, copy);
-}
-
 bool TreeBuilder::Key(const char *text, unsigned length, bool copy) {
     if (!isWhole(text, length))
         return false;
     keys_.back().emplace_back(text, length);
     return document_.Key(text, length, copy);
-}
-
-bool TreeBuilder::EndArray(unsigned count) {
-    keys_.pop_back();
-    return document_.EndArray(count);
 }
 
 bool TreeBuilder::packed(PackedNumbers::Kind kind, const char *bytes, unsigned byteCount) {

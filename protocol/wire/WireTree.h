@@ -50,12 +50,17 @@ public:
     bool Bool(bool value) { return count() && document_.Bool(value); }
     bool Int64(qint64 value) { return count() && document_.Int64(value); }
     bool Double(double value) { return count() && document_.Double(value); }
-    bool String(const char *text, unsigned length, bool copy);
+    bool String(const char *text, unsigned length, bool copy) {
+        return count() && isWhole(text, length) && document_.String(text, length, copy);
+    }
     bool Key(const char *text, unsigned length, bool copy);
     bool StartObject() { return enter() && document_.StartObject(); }
     bool EndObject(unsigned count) { return leave() && document_.EndObject(count); }
     bool StartArray() { return enter() && document_.StartArray(); }
-    bool EndArray(unsigned count);
+    bool EndArray(unsigned count) {
+        keys_.pop_back();
+        return document_.EndArray(count);
+    }
     /// bytes stay where they are.
     bool packed(PackedNumbers::Kind kind, const char *bytes, unsigned byteCount);
 

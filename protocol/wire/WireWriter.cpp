@@ -7,14 +7,6 @@
 
 namespace hermes {
 
-void WireWriter::number(double value) {
-    std::isfinite(value) ? finite(value) : refuse();
-}
-
-void WireWriter::number(float value) {
-    std::isfinite(value) ? finite(value) : refuse();
-}
-
 template <typename T>
 void WireWriter::each(const T *values, std::size_t count) {
     beginArray();
@@ -81,15 +73,6 @@ void WireWriter::json(const QJsonValue &value, const QString &name) {
     json(value);
     if (isRefused_ && !before)
         within(name);
-}
-
-void WireWriter::refuse() {
-    isRefused_ = true;
-    null();
-}
-
-void WireWriter::within(const QString &name) {
-    path_ = path_.isEmpty() ? name : name + QLatin1Char('.') + path_;
 }
 
 } // namespace hermes

@@ -2,6 +2,7 @@
 
 #include <QJsonValue>
 #include <QString>
+#include <cmath>
 #include <cstddef>
 
 namespace hermes {
@@ -22,9 +23,9 @@ public:
     virtual void boolean(bool value) = 0;
     virtual void integer(qint64 value) = 0;
     virtual void text(const QString &value) = 0;
-    void number(double value);
+    void number(double value) { std::isfinite(value) ? finite(value) : refuse(); }
     /// The shortest decimal fraction that a reader of floats takes for the same.
-    void number(float value);
+    void number(float value) { std::isfinite(value) ? finite(value) : refuse(); }
     /// An array of them: packed where the wire has that.
     virtual void numbers(const float *values, std::size_t count);
     virtual void numbers(const double *values, std::size_t count);
@@ -37,7 +38,7 @@ public:
     /// The dotted path of the first number that could not be written; "" is the message itself.
     const QString &refused() const { return path_; }
     /// Whoever wrote a member or an element that was refused says which.
-    void within(const QString &name);
+    void within(const QString &name) { path_ = path_.isEmpty() ? name : name + QLatin1Char('.') + path_; }
 
 protected:
     virtual void finite(double value) = 0;
@@ -45,7 +46,10 @@ protected:
 
 private:
     void json(const QJsonValue &value, const QString &name);
-    void refuse();
+    void refuse() {
+        isRefused_ = true;
+        null();
+    }
     template <typename T>
     void each(const T *values, std::size_t count);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vectorlib/geometry/PointSpan.h>
+#include <vectorlib/geometry/Vector2D.h>
 
 #ifdef BENCH_BOOST
 #include <boost/geometry.hpp>

@@ -4,7 +4,6 @@
 
 #include "tests/bench/MrptIcp.h"
 
-#include <vectorlib/relations/Corner.h>
 #include <vectorlib/relations/TypedSegmentExtractor.h>
 
 #include <mrpt/maps/CMultiMetricMap.h>

@@ -1,4 +1,4 @@
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 #include "tests/bench/FloorPlanPairs.h"
 #include "tests/bench/Logs.h"
 #include "tests/bench/PlaceRows.h"

@@ -1,5 +1,5 @@
 // Of several sensors one is taken.
-#include "common/capture/SensorChoice.h"
+#include "common/capture/LidarStream.h"
 
 #include <QtTest>
 

@@ -1,4 +1,4 @@
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 
 #include <QFile>
 #include <QTemporaryDir>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/scanmatcher/JournalTables.h"
+#include "daemons/scanmatcher/DriveJournal.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 
 #include <QtTest>

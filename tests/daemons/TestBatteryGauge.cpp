@@ -1,6 +1,6 @@
 #include "daemons/motorcontrol/BatteryGauge.h"
 #include "daemons/motorcontrol/MotorMessages.h"
-#include "daemons/simulator/Battery.h"
+#include "daemons/simulator/Drivetrain.h"
 #include "protocol/wire/Fields.h"
 
 #include <QtTest>

@@ -2,7 +2,7 @@
 // until they stand, silence in between; fair turns at any latency; what it takes to be ready.
 #include "ControllerBench.h"
 #include "daemons/motorcontrol/StandstillWatch.h"
-#include "protocol/roboclaw/Crc16.h"
+#include "protocol/roboclaw/Packet.h"
 
 #include <QtTest>
 #include <random>

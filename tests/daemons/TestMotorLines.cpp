@@ -1,7 +1,6 @@
 #include "common/Time.h"
 #include "common/interface/SerialInterface.h"
-#include "daemons/simulator/GpsLine.h"
-#include "daemons/simulator/MotorLines.h"
+#include "daemons/simulator/DeviceLines.h"
 #include "daemons/simulator/Simulation.h"
 #include "protocol/roboclaw/Bus.h"
 

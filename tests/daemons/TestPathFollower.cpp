@@ -1,5 +1,5 @@
 #include "Pillars.h"
-#include "daemons/simulator/PathFollower.h"
+#include "daemons/simulator/PosePath.h"
 #include "vectorlib/geometry/Angle.h"
 
 using namespace hermes;

@@ -1,5 +1,5 @@
 // What the scan matcher reads of other daemons' messages.
-#include "daemons/scanmatcher/ReadMessages.h"
+#include "daemons/scanmatcher/MatcherMessages.h"
 
 #include <QJsonArray>
 #include <QtTest>

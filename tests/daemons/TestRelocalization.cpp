@@ -1,5 +1,5 @@
 #include "MatcherFixture.h"
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 

@@ -2,7 +2,7 @@
 #include "daemons/supervisor/LidarProbe.h"
 #include "daemons/supervisor/SettingsFiles.h"
 #include "daemons/supervisor/SetupProposal.h"
-#include "protocol/velodyne/PacketFormat.h"
+#include "protocol/velodyne/SensorModel.h"
 #include "tests/support/FreePort.h"
 
 #include <QElapsedTimer>

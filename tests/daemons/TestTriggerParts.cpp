@@ -1,11 +1,8 @@
 // The parts of the software trigger that have no daemon around them.
 #include "common/Time.h"
-#include "daemons/softwaretrigger/Condition.h"
-#include "daemons/softwaretrigger/DayTime.h"
 #include "daemons/softwaretrigger/FiringLog.h"
-#include "daemons/softwaretrigger/JitterWindow.h"
 #include "daemons/softwaretrigger/Schedule.h"
-#include "daemons/softwaretrigger/Travel.h"
+#include "daemons/softwaretrigger/Watch.h"
 
 #include <QTemporaryDir>
 #include <QTimeZone>

@@ -1,7 +1,7 @@
 #include "vectorlib/experiments/DrawnPlaces.h"
 #include "vectorlib/experiments/PlaceTrustFit.h"
 
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 
 #include <QtTest>
 

@@ -1,5 +1,4 @@
 #include "daemons/scanmatcher/DriveJournal.h"
-#include "daemons/scanmatcher/JournalTables.h"
 #include "tests/fuzz/FuzzInput.h"
 
 using namespace hermes;

@@ -1,7 +1,7 @@
 #include "tests/fuzz/FuzzInput.h"
 
 #include "protocol/roboclaw/Bus.h"
-#include "protocol/roboclaw/RequestParser.h"
+#include "protocol/roboclaw/Packet.h"
 
 using namespace hermes::roboclaw;
 

@@ -1,11 +1,10 @@
 #include "tests/fuzz/FuzzInput.h"
 
-#include <vectorlib/io/CsvPairs.h>
+#include <vectorlib/io/Csv.h>
 #include <vectorlib/io/CsvPoints.h>
-#include <vectorlib/io/CsvSegments.h>
 #include <vectorlib/io/MapCsv.h>
 #include <vectorlib/io/Pcd.h>
-#include <vectorlib/tls/LineCovariance.h>
+#include <vectorlib/tls/TlsFit.h>
 
 using namespace vectorlib;
 

@@ -2,11 +2,11 @@
 
 #include <vectorlib/vectorization/AftlsVectorizer.h>
 #include <vectorlib/vectorization/DouglasPeuckerVectorizer.h>
+#include <vectorlib/vectorization/FtlsVectorizer.h>
 #include <vectorlib/vectorization/IncVectorizer.h>
 #include <vectorlib/vectorization/OptimalVectorizer.h>
 #include <vectorlib/vectorization/ReumannWitkamVectorizer.h>
 #include <vectorlib/vectorization/SplitAndMergeVectorizer.h>
-#include <vectorlib/vectorization/TlsVectorizer.h>
 
 using namespace vectorlib;
 

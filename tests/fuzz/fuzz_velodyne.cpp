@@ -1,7 +1,7 @@
 #include "tests/fuzz/FuzzInput.h"
 
-#include "protocol/velodyne/GpsReader.h"
 #include "protocol/velodyne/Hdl32e.h"
+#include "protocol/velodyne/PositionPacket.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
 using namespace hermes::velodyne;

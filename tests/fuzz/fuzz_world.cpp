@@ -1,6 +1,6 @@
 #include "tests/fuzz/FuzzInput.h"
 
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 
 /// A world that is read has finite edges and poses; one that is not is answered with a message.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {

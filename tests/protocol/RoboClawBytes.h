@@ -1,7 +1,6 @@
 #pragma once
 
 #include "protocol/roboclaw/Packet.h"
-#include "protocol/roboclaw/ReplyParser.h"
 
 #include <QByteArray>
 

@@ -1,5 +1,5 @@
 #include "common/capture/PcapReader.h"
-#include "protocol/velodyne/GpsReader.h"
+#include "protocol/velodyne/PositionPacket.h"
 #include "tests/support/RealData.h"
 
 #include <QtTest>

@@ -1,7 +1,6 @@
 // Requests and answers as bytes.
 #include "RoboClawBytes.h"
-#include "protocol/roboclaw/Crc16.h"
-#include "protocol/roboclaw/RequestParser.h"
+#include "protocol/roboclaw/Packet.h"
 #include "protocol/roboclaw/Status.h"
 
 #include <QtTest>

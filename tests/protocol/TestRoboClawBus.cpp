@@ -1,5 +1,5 @@
 #include "protocol/roboclaw/Bus.h"
-#include "protocol/roboclaw/RequestParser.h"
+#include "protocol/roboclaw/Packet.h"
 
 #include <QtTest>
 

@@ -1,7 +1,6 @@
 // What the parsers of both ends make of whole, damaged and foreign bytes.
 #include "RoboClawBytes.h"
-#include "protocol/roboclaw/Crc16.h"
-#include "protocol/roboclaw/RequestParser.h"
+#include "protocol/roboclaw/Packet.h"
 #include "protocol/roboclaw/Status.h"
 
 #include <QtTest>

@@ -4,7 +4,7 @@
 #include "protocol/messages/VectorMap.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
-#include "protocol/wire/JsonTextWriter.h"
+#include "protocol/wire/JsonWriters.h"
 #include "protocol/wire/Outgoing.h"
 
 #include <QtTest>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/correspondence/SegmentMap.h"
+#include "vectorlib/correspondence/CorrespondenceFinder.h"
 #include "vectorlib/observation/Observer.h"
 
 /// A map of equal rooms side by side, as many as it takes for so many segments: of the same density whatever

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/capture/Datagram.h"
+#include "common/capture/Frame.h"
 #include "protocol/velodyne/DataPacket.h"
 #include "protocol/velodyne/Hdl32e.h"
 #include "protocol/velodyne/Vlp16.h"

@@ -1,7 +1,7 @@
 // What tests of the search of places share.
 #pragma once
 
-#include <vectorlib/edges/MapEdge.h>
+#include <vectorlib/edges/EdgeRaw2D.h>
 #include <vectorlib/geometry/Pose2D.h>
 
 #include <cmath>

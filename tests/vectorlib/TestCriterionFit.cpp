@@ -2,7 +2,6 @@
 
 #include <vectorlib/similarity/CriterionMinimizer.h>
 #include <vectorlib/similarity/NelderMeadFitter.h>
-#include <vectorlib/similarity/QuadrangleCriterion.h>
 
 #include <QtTest>
 

@@ -1,6 +1,5 @@
 #include <vectorlib/geometry/LineSegment2D.h>
 #include <vectorlib/geometry/Transformation2D.h>
-#include <vectorlib/motion/MotionCompensation.h>
 #include <vectorlib/motion/MotionModel.h>
 
 #include <QtTest>

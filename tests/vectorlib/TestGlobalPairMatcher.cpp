@@ -1,5 +1,5 @@
 #include <vectorlib/mapping/GlobalPairMatcher.h>
-#include <vectorlib/simd/LargestOfSixteen.h>
+#include <vectorlib/simd/Lanes.h>
 
 #include "tests/support/AllocationCounter.h"
 #include "tests/support/Patience.h"

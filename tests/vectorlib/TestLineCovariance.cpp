@@ -1,5 +1,5 @@
 #include <vectorlib/geometry/Angle.h>
-#include <vectorlib/tls/LineCovariance.h>
+#include <vectorlib/tls/TlsFit.h>
 
 #include <QtTest>
 

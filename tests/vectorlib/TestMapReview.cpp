@@ -1,6 +1,6 @@
 #include <vectorlib/mapping/MapBuilder.h>
 #include <vectorlib/mapping/MapReview.h>
-#include <vectorlib/mapping/WallIds.h>
+#include <vectorlib/mapping/WallEvidence.h>
 
 #include "tests/vectorlib/ScanWorld.h"
 

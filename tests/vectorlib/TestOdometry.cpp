@@ -1,8 +1,7 @@
 // The odometry on its way to a scan: the buffer, what a pose is expected from it.
 #include <vectorlib/mapping/TimedScan.h>
-#include <vectorlib/motion/MotionCompensation.h>
+#include <vectorlib/motion/MotionModel.h>
 #include <vectorlib/motion/OdometryBuffer.h>
-#include <vectorlib/motion/OdometryModel.h>
 
 #include <QtTest>
 

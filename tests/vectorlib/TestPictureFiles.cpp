@@ -1,5 +1,4 @@
-#include <vectorlib/io/Dxf.h>
-#include <vectorlib/io/GeoJson.h>
+#include <vectorlib/io/MapDrawing.h>
 #include <vectorlib/io/Pgm.h>
 #include <vectorlib/io/Svg.h>
 #include <vectorlib/io/Tum.h>

@@ -1,5 +1,5 @@
 #include <vectorlib/graph/PoseGraph.h>
-#include <vectorlib/io/G2o.h>
+#include <vectorlib/io/Tum.h>
 
 #include <QtTest>
 

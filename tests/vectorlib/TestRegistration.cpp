@@ -2,7 +2,7 @@
 
 #include <vectorlib/correspondence/PotentialPairs.h>
 #include <vectorlib/registration/LineSegmentRegistration.h>
-#include <vectorlib/registration/PointToLineRefinement.h>
+#include <vectorlib/registration/PointRefinement.h>
 
 #include <QtTest>
 

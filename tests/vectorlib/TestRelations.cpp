@@ -2,8 +2,8 @@
 #include "RoomScans.h"
 
 #include "vectorlib/observation/SimulatedScanner.h"
-#include "vectorlib/relations/PairSearch.h"
-#include "vectorlib/relations/PoseDifference.h"
+#include "vectorlib/relations/PairConsensus.h"
+#include "vectorlib/relations/RelationMatcher.h"
 #include "vectorlib/relations/RelationScan.h"
 #include "vectorlib/relations/RelationScores.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"

@@ -2,8 +2,8 @@
 
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/observation/SimulatedScanner.h"
-#include "vectorlib/relations/MatchSigns.h"
 #include "vectorlib/relations/RelationMatcher.h"
+#include "vectorlib/relations/RelationScores.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 
 #include <QtTest>

@@ -1,5 +1,5 @@
 #include <vectorlib/mapping/ScanPairMatcher.h>
-#include <vectorlib/simd/NearestOfEight.h>
+#include <vectorlib/simd/Lanes.h>
 
 #include "tests/support/AllocationCounter.h"
 #include "tests/vectorlib/ScanWorld.h"

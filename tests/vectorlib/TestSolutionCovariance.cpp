@@ -1,5 +1,5 @@
 #include <vectorlib/correspondence/CorrespondenceFinder.h>
-#include <vectorlib/correspondence/SolutionCovariance.h>
+#include <vectorlib/correspondence/SearchResult.h>
 
 #include <QtTest>
 

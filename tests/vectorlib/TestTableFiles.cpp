@@ -1,6 +1,5 @@
-#include <vectorlib/io/CsvPairs.h>
+#include <vectorlib/io/Csv.h>
 #include <vectorlib/io/CsvPoints.h>
-#include <vectorlib/io/CsvSegments.h>
 #include <vectorlib/io/MapCsv.h>
 #include <vectorlib/io/Pcd.h>
 

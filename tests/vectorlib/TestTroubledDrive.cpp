@@ -1,9 +1,9 @@
 // Drives on which odometry or scans are late, missing, frozen or stamped wrongly, drawn at random. Whatever
 // is wrong, no edge may enter the map that is no wall.
 #include <vectorlib/mapping/ScanTracker.h>
+#include <vectorlib/motion/MotionModel.h>
 #include <vectorlib/motion/OdometryBuffer.h>
-#include <vectorlib/motion/TwistCorrection.h>
-#include <vectorlib/observation/Ray.h>
+#include <vectorlib/observation/Observer.h>
 
 #include <QtTest>
 

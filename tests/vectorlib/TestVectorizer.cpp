@@ -1,5 +1,4 @@
 #include <vectorlib/vectorization/FtlsVectorizer.h>
-#include <vectorlib/vectorization/TlsVectorizer.h>
 
 #include "tests/support/AllocationCounter.h"
 

@@ -1,5 +1,4 @@
 #include "vectorlib/observation/Discrepancy.h"
-#include "vectorlib/observation/Frontier.h"
 
 #include <QtTest>
 

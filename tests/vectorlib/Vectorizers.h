@@ -3,10 +3,10 @@
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/vectorization/AftlsVectorizer.h>
 #include <vectorlib/vectorization/DouglasPeuckerVectorizer.h>
+#include <vectorlib/vectorization/FtlsVectorizer.h>
 #include <vectorlib/vectorization/IncVectorizer.h>
 #include <vectorlib/vectorization/ReumannWitkamVectorizer.h>
 #include <vectorlib/vectorization/SplitAndMergeVectorizer.h>
-#include <vectorlib/vectorization/TlsVectorizer.h>
 
 #include <QtTest>
 

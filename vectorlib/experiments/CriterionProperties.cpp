@@ -3,7 +3,7 @@
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/similarity/EdgeSetComparator.h"
 #include "vectorlib/similarity/HausdorffDistances.h"
-#include "vectorlib/similarity/QuadrangleCriterion.h"
+#include "vectorlib/similarity/NelderMeadFitter.h"
 
 #include <Eigen/Dense>
 

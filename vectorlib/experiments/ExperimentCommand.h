@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gui/vector/InstalledWorlds.h"
+#include "gui/vector/Input.h"
 #include "gui/vector/LidarCapture.h"
 #include "gui/vector/Output.h"
 #include "vectorlib/experiments/OverviewExperiment.h"

@@ -2,7 +2,7 @@
 
 #include "common/platform/Program.h"
 #include "common/progress/Progress.h"
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/tls/TlsFit.h"
 #include "vectorlib/vectorization/PrefixSums.h"
 

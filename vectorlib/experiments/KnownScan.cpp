@@ -1,7 +1,7 @@
 #include "vectorlib/experiments/KnownScan.h"
 
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/observation/Ray.h"
+#include "vectorlib/observation/Observer.h"
 
 #include <algorithm>
 #include <cmath>

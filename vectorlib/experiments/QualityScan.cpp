@@ -1,6 +1,6 @@
 #include "vectorlib/experiments/QualityScan.h"
 
-#include "vectorlib/observation/Ray.h"
+#include "vectorlib/observation/Observer.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/LineSegment2D.h"
-#include "vectorlib/io/CarmenScan.h"
+#include "vectorlib/io/CarmenLog.h"
 
 #include <cmath>
 #include <random>

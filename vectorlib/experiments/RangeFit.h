@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/LineSegment2D.h"
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Vector2D.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/experiments/KnownScan.h"
-#include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"
 

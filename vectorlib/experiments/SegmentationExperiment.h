@@ -3,7 +3,7 @@
 #include "vectorlib/experiments/Scene.h"
 #include "vectorlib/io/Svg.h"
 
-#include "vectorlib/segmentation/EarSettings.h"
+#include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <cstdint>
 #include <ostream>

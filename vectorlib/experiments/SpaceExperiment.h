@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/experiments/Plot.h"
-#include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/LineSegment2D.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gui/desktop/model/DaemonLink.h"
-#include "protocol/messages/Processes.h"
+#include "protocol/messages/Daemons.h"
 
 #include <QPointer>
 #include <map>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "protocol/messages/DriveGraph.h"
 #include "protocol/messages/Motion.h"
+#include "protocol/messages/VectorMap.h"
 
 #include <QVector>
 #include <utility>

@@ -1,15 +1,76 @@
 #include "gui/vector/evaluation/Evaluation.h"
-
 #include "gui/vector/Failure.h"
-#include "gui/vector/evaluation/Revisits.h"
 #include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <unordered_map>
 
 namespace hermes::vector {
+
+using vectorlib::Pose2D;
+
+namespace {
+
+/// Numbers of poses by the square in which they lie.
+class PoseGrid {
+public:
+    explicit PoseGrid(double side)
+        : side_(side) {}
+
+    void insert(const Pose2D &pose, std::size_t number) {
+        cells_[keyOf(cellOf(pose.x), cellOf(pose.y))].push_back(number);
+    }
+    /// Those in the pose's square and the eight around it.
+    template <typename Take>
+    void forEachNear(const Pose2D &pose, Take take) const {
+        for (std::int64_t x = cellOf(pose.x) - 1; x <= cellOf(pose.x) + 1; ++x)
+            for (std::int64_t y = cellOf(pose.y) - 1; y <= cellOf(pose.y) + 1; ++y)
+                if (const auto cell = cells_.find(keyOf(x, y)); cell != cells_.end())
+                    for (const std::size_t number : cell->second)
+                        take(number);
+    }
+
+private:
+    std::int64_t cellOf(double metres) const { return std::int64_t(std::floor(metres / side_)); }
+    static std::uint64_t keyOf(std::int64_t x, std::int64_t y) {
+        return std::uint64_t(x) << 32 ^ (std::uint64_t(y) & 0xffffffff);
+    }
+
+    double side_;
+    std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;
+};
+
+std::vector<double> wayAlong(const std::vector<Pose2D> &drive) {
+    std::vector<double> way(drive.size());
+    for (std::size_t i = 1; i < drive.size(); ++i)
+        way[i] = way[i - 1] + std::hypot(drive[i].x - drive[i - 1].x, drive[i].y - drive[i - 1].y);
+    return way;
+}
+
+} // namespace
+
+void forEachRevisit(const std::vector<Pose2D> &drive, const RevisitRule &rule,
+                    const std::function<void(std::size_t, std::size_t)> &take) {
+    const std::vector<double> way = wayAlong(drive);
+    PoseGrid grid(rule.metres);
+    std::size_t behind = 0; // poses far enough back on the way
+    for (std::size_t later = 0; later < drive.size(); ++later) {
+        for (; behind + rule.scans <= later && way[later] - way[behind] >= rule.way; ++behind)
+            grid.insert(drive[behind], behind);
+        const Pose2D &here = drive[later];
+        grid.forEachNear(here, [&](std::size_t earlier) {
+            const Pose2D &there = drive[earlier];
+            const double turn = std::remainder(here.theta - there.theta, 2 * vectorlib::pi);
+            if (std::hypot(here.x - there.x, here.y - there.y) < rule.metres &&
+                std::abs(turn) < rule.degrees * vectorlib::pi / 180)
+                take(earlier, later);
+        });
+    }
+}
 
 using vectorlib::Pose2D;
 using vectorlib::StampedPose;
@@ -85,14 +146,6 @@ void Evaluation::pairByStamps(const vectorlib::CarmenLog &log, const std::vector
             pairs_.push_back({scan, poseOf[scan]->pose});
 }
 
-Transformation2D Evaluation::motionOf(const Pair &from, const Pair &to) const {
-    return Transformation2D(from.pose).inverse() * Transformation2D(to.pose);
-}
-
-Transformation2D Evaluation::referenceOf(const Pair &from, const Pair &to) const {
-    return Transformation2D(reference_[from.scan]).inverse() * Transformation2D(reference_[to.scan]);
-}
-
 // How far off the turns of a hundred stretches of the drive are, of all that it turns: 0 is right, 1 as wrong
 // as no turn at all. Nothing where there are too few stretches, or they turn too little, to tell.
 std::optional<double> Evaluation::turnsMissed() const {
@@ -130,11 +183,6 @@ void Evaluation::expectSameDrive(const std::string &log, const std::string &traj
                       ", expected half of them, or enough to see that they turn as the log does: is it "
                       "another log's?");
     warnings << "hermes-vector: " << trajectory << ": only " << found << '\n';
-}
-
-void Evaluation::compareConsecutive() {
-    for (std::size_t i = 1; i < pairs_.size(); ++i)
-        consecutive_.add(referenceOf(pairs_[i - 1], pairs_[i]), motionOf(pairs_[i - 1], pairs_[i]));
 }
 
 void Evaluation::compareRevisits() {

@@ -1,14 +1,30 @@
 #pragma once
 
 #include "gui/vector/evaluation/MotionErrors.h"
+#include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/io/CarmenLog.h"
 #include "vectorlib/io/Svg.h"
 #include "vectorlib/io/Tum.h"
 
+#include <functional>
 #include <optional>
 #include <ostream>
+#include <vector>
 
 namespace hermes::vector {
+
+/// When two poses of a drive are the same place met again.
+struct RevisitRule {
+    double metres = 2;      ///< nearer to each other than this
+    double degrees = 60;    ///< turned from each other by less
+    std::size_t scans = 40; ///< at least so many scans apart
+    double way = 15;        ///< at least so long a way apart; metres
+};
+
+/// Calls take with the numbers of the earlier and the later pose of every such pair, in the order of the
+/// later. The poses are those of a drive, one after the other; metres, radians.
+void forEachRevisit(const std::vector<vectorlib::Pose2D> &drive, const RevisitRule &rule,
+                    const std::function<void(std::size_t earlier, std::size_t later)> &take);
 
 /// A trajectory beside the reference poses of the log from whose scans it was made. Relative motions are
 /// compared, so that neither frame matters and an error of the past does not count twice (Kuemmerle et al.,
@@ -48,10 +64,18 @@ private:
     void pairByStamps(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory,
                       const std::string &name);
     std::optional<double> turnsMissed() const;
-    void compareConsecutive();
+    void compareConsecutive() {
+        for (std::size_t i = 1; i < pairs_.size(); ++i)
+            consecutive_.add(referenceOf(pairs_[i - 1], pairs_[i]), motionOf(pairs_[i - 1], pairs_[i]));
+    }
     void compareRevisits();
-    vectorlib::Transformation2D motionOf(const Pair &from, const Pair &to) const;
-    vectorlib::Transformation2D referenceOf(const Pair &from, const Pair &to) const;
+    vectorlib::Transformation2D motionOf(const Pair &from, const Pair &to) const {
+        return vectorlib::Transformation2D(from.pose).inverse() * vectorlib::Transformation2D(to.pose);
+    }
+    vectorlib::Transformation2D referenceOf(const Pair &from, const Pair &to) const {
+        return vectorlib::Transformation2D(reference_[from.scan]).inverse() *
+               vectorlib::Transformation2D(reference_[to.scan]);
+    }
     vectorlib::Transformation2D ontoReference() const;
 
     std::vector<vectorlib::Pose2D> reference_; ///< of all scans

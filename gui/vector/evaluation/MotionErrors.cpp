@@ -28,13 +28,6 @@ void addSummary(Json &json, const std::string &unit, const std::vector<double> &
 
 } // namespace
 
-void MotionErrors::add(const vectorlib::Transformation2D &reference,
-                       const vectorlib::Transformation2D &found) {
-    const vectorlib::Transformation2D difference = reference.inverse() * found;
-    metres_.push_back(difference.translation().norm());
-    degrees_.push_back(std::abs(difference.alpha()) * 180 / vectorlib::pi);
-}
-
 Json MotionErrors::summary() const {
     constexpr double nearMetres = 0.10, nearDegrees = 2;
     Json json;

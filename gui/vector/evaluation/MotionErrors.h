@@ -11,7 +11,11 @@ namespace hermes::vector {
 /// How far motions are from those of a reference.
 class MotionErrors {
 public:
-    void add(const vectorlib::Transformation2D &reference, const vectorlib::Transformation2D &found);
+    void add(const vectorlib::Transformation2D &reference, const vectorlib::Transformation2D &found) {
+        const vectorlib::Transformation2D difference = reference.inverse() * found;
+        metres_.push_back(difference.translation().norm());
+        degrees_.push_back(std::abs(difference.alpha()) * 180 / vectorlib::pi);
+    }
     std::size_t size() const { return metres_.size(); }
     /// Of the motion that was added last; metres.
     double lastMetres() const { return metres_.back(); }

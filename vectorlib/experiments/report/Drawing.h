@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/Pose2D.h"
-#include "vectorlib/io/Picture.h"
+#include "vectorlib/io/Svg.h"
 
 #include <ostream>
 #include <string>

@@ -1,9 +1,8 @@
 #include "vectorlib/experiments/report/Worlds.h"
 
-#include "common/world/WorldFile.h"
+#include "common/world/World.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
-#include "gui/vector/InstalledWorlds.h"
 
 #include <map>
 

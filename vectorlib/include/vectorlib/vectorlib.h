@@ -3,7 +3,7 @@
 // Everything that scan processing needs, in one include.
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 #include "vectorlib/correspondence/QuadrangleMatcher.h"
-#include "vectorlib/correspondence/SolutionCovariance.h"
+#include "vectorlib/correspondence/SearchResult.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/ScanTracker.h"
@@ -15,7 +15,6 @@
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/similarity/CriterionMinimizer.h"
 #include "vectorlib/similarity/HausdorffDistances.h"
-#include "vectorlib/tls/LineCovariance.h"
 #include "vectorlib/tls/TlsFit.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"
 #include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
@@ -24,4 +23,3 @@
 #include "vectorlib/vectorization/OptimalVectorizer.h"
 #include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
 #include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
-#include "vectorlib/vectorization/TlsVectorizer.h"

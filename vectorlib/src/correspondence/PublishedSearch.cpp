@@ -2,6 +2,133 @@
 
 namespace vectorlib {
 
+VECTORLIB_BODY void PublishedBundle::add(const PotentialPair &pair) {
+    const double turn = wrapAngle(pair.alpha - alpha);
+    const double shift = (pair.normal.dot(normal) < 0 ? -1 : 1) * pair.shift; // facing walls
+    sums.add(pair.sums);
+    turns += pair.length * turn;
+    turns2 += pair.length * turn * turn;
+    shifts += pair.length * shift;
+    shifts2 += pair.length * shift * shift;
+}
+
+VECTORLIB_BODY const std::vector<PublishedBundle> &
+PublishedBundles::operator()(const std::vector<PotentialPair> &pairs) {
+    bundles_.clear();
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        place(pairs[i], static_cast<int>(i));
+    buckets_.clear();
+    for (std::size_t i = 0; i < bundles_.size(); ++i)
+        putIntoBucket(i);
+    return bundles_;
+}
+
+VECTORLIB_BODY void PublishedBundles::place(const PotentialPair &pair, int number) {
+    for (PublishedBundle &bundle : bundles_) {
+        PublishedBundle with = bundle;
+        with.add(pair);
+        if (with.sums.reliability() <= reliability && with.ambiguity() <= ambiguity) {
+            bundle = std::move(with);
+            bundle.pairs.push_back(number);
+            return;
+        }
+    }
+    bundles_.emplace_back(pair);
+    bundles_.back().add(pair);
+    bundles_.back().pairs.push_back(number);
+}
+
+VECTORLIB_BODY bool PublishedBundles::collide(std::size_t a, std::size_t b) const {
+    LineSegmentRegistration joint = bundles_[a].sums;
+    joint.add(bundles_[b].sums);
+    return joint.reliability() <= reliability;
+}
+
+VECTORLIB_BODY void PublishedBundles::putIntoBucket(std::size_t bundle) {
+    const auto fits = [&](const std::vector<std::size_t> &bucket) {
+        return std::all_of(bucket.begin(), bucket.end(),
+                           [&](std::size_t other) { return collide(bundle, other); });
+    };
+    const auto found = std::find_if(buckets_.begin(), buckets_.end(), fits);
+    bundles_[bundle].bucket = static_cast<std::size_t>(found - buckets_.begin());
+    if (found == buckets_.end())
+        buckets_.push_back({bundle});
+    else
+        found->push_back(bundle);
+}
+
+VECTORLIB_BODY const std::vector<PublishedCombination> &
+PublishedCombinations::operator()(const PublishedBundles &sorted) {
+    sorted_ = &sorted;
+    kept_.clear();
+    found_ = parts_ = tried_ = 0;
+    cut_ = false;
+    chosen_.clear();
+    LineSegmentRegistration none;
+    if (!sorted.bundles().empty())
+        none.stiffness = bundle(0).sums.stiffness;
+    extend(0, none);
+    return kept_;
+}
+
+VECTORLIB_BODY bool PublishedCombinations::joins(std::size_t number, const LineSegmentRegistration &sums,
+                                                 LineSegmentRegistration &joint) {
+    cut_ = cut_ || tried_ >= most;
+    if (cut_)
+        return false;
+    ++tried_;
+    joint = sums;
+    joint.add(bundle(number).sums);
+    return joint.ambiguity().total() <= ambiguity;
+}
+
+VECTORLIB_BODY void PublishedCombinations::extend(std::size_t bucket, const LineSegmentRegistration &sums) {
+    if (bucket == sorted_->buckets().size()) {
+        if (chosen_.size() > 1 && sums.reliability() >= reliability)
+            conclude(sums);
+        return;
+    }
+    LineSegmentRegistration joint;
+    for (const std::size_t number : sorted_->buckets()[bucket])
+        if (joins(number, sums, joint)) {
+            chosen_.push_back(number);
+            extend(bucket + 1, joint);
+            chosen_.pop_back();
+        }
+    if (!cut_)
+        extend(bucket + 1, sums);
+}
+
+VECTORLIB_BODY void PublishedCombinations::conclude(const LineSegmentRegistration &sums) {
+    ++found_;
+    if (isPart(sums)) {
+        ++parts_;
+        return;
+    }
+    const PublishedCombination found{sums, chosen_};
+    kept_.insert(std::upper_bound(kept_.begin(), kept_.end(), found,
+                                  [](const PublishedCombination &a, const PublishedCombination &b) {
+                                      return a.length() > b.length();
+                                  }),
+                 found);
+    if (kept_.size() > keep)
+        kept_.pop_back();
+}
+
+VECTORLIB_BODY bool PublishedCombinations::isPart(const LineSegmentRegistration &sums) {
+    LineSegmentRegistration joint;
+    for (std::size_t bucket = 0; bucket < sorted_->buckets().size(); ++bucket) {
+        const std::vector<std::size_t> &numbers = sorted_->buckets()[bucket];
+        if (std::any_of(chosen_.begin(), chosen_.end(),
+                        [&](std::size_t number) { return bundle(number).bucket == bucket; }))
+            continue;
+        for (const std::size_t number : numbers)
+            if (joins(number, sums, joint) && joint.reliability() >= reliability)
+                return true;
+    }
+    return false;
+}
+
 VECTORLIB_BODY const PublishedResult &
 PublishedSearch::operator()(const Segments &fixed, const Segments &moving, const Transformation2D &expected) {
     result_ = PublishedResult();
@@ -87,12 +214,6 @@ VECTORLIB_BODY void PublishedSearch::judge(const PublishedCombination &combinati
     s.accepted = s.fault == Fault::None;
     result_.doubts.push_back(doubtOf(s));
     result_.search.solutions.push_back(std::move(s));
-}
-
-VECTORLIB_BODY Fault PublishedSearch::doubtOf(const Solution &s) const {
-    return !settings.isEvidence(s.view, view_.observedAngle()) ? Fault::NoEvidence
-           : !(s.matchedShare >= settings.matchedShare)        ? Fault::MatchedShare
-                                                               : Fault::None;
 }
 
 } // namespace vectorlib

@@ -2,11 +2,6 @@
 
 namespace vectorlib {
 
-VECTORLIB_BODY const std::vector<EdgeRaw2D> &EdgeExtractor::operator()(PointSpan<float> given) {
-    const PointSpan<float> scan = order(given);
-    return vectorizeClusters(segment(scan), scan);
-}
-
 VECTORLIB_BODY const std::vector<EdgeRaw2D> &EdgeExtractor::vectorizeClusters(const Segmentation &clusters,
                                                                               PointSpan<float> scan) {
     edges_.clear();

@@ -1,17 +1,10 @@
 #include "vectorlib/edges/EdgeRaw2D.h"
-
 #include "vectorlib/tls/TlsFit.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace vectorlib {
-
-VECTORLIB_BODY EdgeRaw2D::EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_,
-                                    double sigma_)
-    : sums(sums_)
-    , segment(segment_)
-    , sigma(sigma_) {}
 
 VECTORLIB_BODY EdgeRaw2D merged(const EdgeRaw2D &edge, const EdgeRaw2D &other) {
     EdgeRaw2D result(edge.sums + other.sums, edge.segment, edge.sigma);

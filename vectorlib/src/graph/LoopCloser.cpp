@@ -1,8 +1,5 @@
 #include "vectorlib/graph/LoopCloser.h"
 
-#include <Eigen/LU>
-
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -46,12 +43,6 @@ LoopCloser::correct(const std::function<void(std::size_t done, std::size_t all)>
     return true;
 }
 
-VECTORLIB_BODY LoopCounts LoopCloser::counts() const {
-    LoopCounts counts = counts_;
-    counts.refused = counts.tried - counts.closed;
-    return counts;
-}
-
 VECTORLIB_BODY Pose2D LoopCloser::pose(std::size_t scan) const {
     const OnTheWay &s = scans_[scan];
     const Transformation2D from(graph_.poses[s.key]);
@@ -69,11 +60,6 @@ VECTORLIB_BODY std::vector<Pose2D> LoopCloser::poses() const {
     for (std::size_t i = 0; i < result.size(); ++i)
         result[i] = pose(i);
     return result;
-}
-
-VECTORLIB_BODY std::size_t LoopCloser::bytes() const {
-    return pointBytes_ + keys_.size() * (sizeof(Key) + sizeof(Pose2D)) + scans_.size() * sizeof(OnTheWay) +
-           graph_.constraints.size() * sizeof(PoseConstraint) + candidates_.bytes();
 }
 
 VECTORLIB_BODY void LoopCloser::restore(Memory memory) {
@@ -193,12 +179,6 @@ VECTORLIB_BODY void LoopCloser::tryLoops() {
     if (const auto far = candidates_.far(looped_, tried_, settings)) {
         tryLoop(far->scan, far->among);
     }
-}
-
-VECTORLIB_BODY void LoopCloser::tryNearest(const Pose2D &here, std::size_t most, std::size_t sure) {
-    for (const std::size_t k : candidates_.nearest(here, most, sure, settings))
-        if (std::find(tried_.begin(), tried_.end(), k) == tried_.end())
-            tryLoop(k);
 }
 
 VECTORLIB_BODY void LoopCloser::tryLoop(std::size_t earlier, std::size_t among) {

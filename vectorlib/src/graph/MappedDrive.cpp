@@ -21,11 +21,6 @@ VECTORLIB_BODY void MappedDrive::restore(LoopCloser::Memory memory,
         edgeBytes_ += bytesOf(scan);
 }
 
-VECTORLIB_BODY void MappedDrive::rebuild(MapBuilder &builder) const {
-    startAnew(builder);
-    extend(builder, 0);
-}
-
 VECTORLIB_BODY void
 MappedDrive::rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses,
                      const std::function<void(std::size_t done, std::size_t all)> &progress) const {
@@ -37,19 +32,6 @@ MappedDrive::rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses,
     }
 }
 
-VECTORLIB_BODY void MappedDrive::extend(MapBuilder &builder, std::size_t from) const {
-    for (std::size_t i = from; i < edges_.size(); ++i)
-        if (!edges_[i].empty())
-            builder.place(edges_[i], loops.pose(i));
-}
-
-VECTORLIB_BODY void MappedDrive::extend(MapBuilder &builder, const std::vector<Pose2D> &poses,
-                                        std::size_t from, std::size_t end) const {
-    for (std::size_t i = from; i < end; ++i)
-        if (!edges_[i].empty())
-            builder.place(edges_[i], poses[i]);
-}
-
 VECTORLIB_BODY std::vector<PoseConstraint> MappedDrive::loopsOfScans() const {
     std::vector<PoseConstraint> result;
     for (PoseConstraint c : loops.graph().constraints)
@@ -59,18 +41,6 @@ VECTORLIB_BODY std::vector<PoseConstraint> MappedDrive::loopsOfScans() const {
             result.push_back(c);
         }
     return result;
-}
-
-VECTORLIB_BODY MapReviewCounts MappedDrive::review(VectorMap &map, const std::vector<Pose2D> &poses) const {
-    MapReview review;
-    review.settings.known = static_cast<int>(known.size());
-    return review(map, {edges_, poses});
-}
-
-VECTORLIB_BODY void MappedDrive::startAnew(MapBuilder &builder) const {
-    builder.clear();
-    for (const MapEdge &edge : known)
-        builder.map.add(edge, edge.observations);
 }
 
 } // namespace vectorlib

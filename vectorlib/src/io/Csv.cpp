@@ -1,14 +1,33 @@
 #include "vectorlib/io/Csv.h"
 
-#include <algorithm>
-
 namespace vectorlib {
 
-VECTORLIB_BODY CsvReader::CsvReader(std::istream &in, std::string name, CsvColumns columns,
-                                    bool furtherColumns)
-    : lines_(in, std::move(name))
-    , columns_(std::move(columns))
-    , furtherColumns_(furtherColumns) {}
+VECTORLIB_BODY Expected<PairTable> readCsvPairs(std::istream &in, std::string name) {
+    CsvReader csv(in, std::move(name),
+                  {{"sx1", "sy1", "sx2", "sy2", "dx1", "dy1", "dx2", "dy2"}, {"weight"}});
+    PairTable table;
+    while (const auto *row = csv.next()) {
+        const std::vector<double> &r = *row;
+        SegmentPair pair;
+        pair.fixed = {{r[0], r[1]}, {r[2], r[3]}};
+        pair.moving = {{r[4], r[5]}, {r[6], r[7]}};
+        table.hasWeights = csv.hasOptional(0);
+        if (table.hasWeights)
+            pair.weight = r[8];
+        for (const LineSegment2D<double> &s : {pair.fixed, pair.moving})
+            if (!(s.direction().squaredNorm() > 0.5 && std::isfinite(s.length())))
+                return csv.errorHere("a segment of no length or beyond all measure",
+                                     "two distinct end points");
+        if (!(pair.weight > 0))
+            return csv.errorHere("a weight of " + std::to_string(pair.weight), "a weight above 0");
+        table.pairs.push_back(pair);
+    }
+    if (csv.error())
+        return *csv.error();
+    if (table.pairs.empty())
+        return csv.errorHere("the end of the file and no pair", "at least one pair of segments");
+    return table;
+}
 
 VECTORLIB_BODY const std::vector<double> *CsvReader::next() {
     while (const auto line = lines_.next()) {
@@ -89,11 +108,6 @@ VECTORLIB_BODY bool CsvReader::takeRow() {
     return true;
 }
 
-VECTORLIB_BODY const std::string &CsvReader::columnName(std::size_t i) const {
-    return i < columns_.required.size() ? columns_.required[i]
-                                        : columns_.optional[i - columns_.required.size()];
-}
-
 VECTORLIB_BODY std::string CsvReader::expectation() const {
     std::string text = "columns ";
     for (std::size_t i = 0; i < columns_.required.size(); ++i)
@@ -101,6 +115,22 @@ VECTORLIB_BODY std::string CsvReader::expectation() const {
     for (const std::string &column : columns_.optional)
         text += "[," + column + "]";
     return text;
+}
+
+VECTORLIB_BODY Expected<SegmentTable> readCsvSegments(std::istream &in, std::string name) {
+    CsvReader csv(in, std::move(name), {{"x1", "y1", "x2", "y2"}, {}}, true);
+    SegmentTable table;
+    while (const auto *row = csv.next()) {
+        table.segments.emplace_back(Vector2D<double>((*row)[0], (*row)[1]),
+                                    Vector2D<double>((*row)[2], (*row)[3]));
+        if (!std::isfinite((table.segments.back().end() - table.segments.back().begin()).squaredNorm()))
+            return csv.errorHere("a segment beyond all measure", "end points in metres");
+        table.further.emplace_back(csv.further().begin(), csv.further().end());
+    }
+    if (csv.error())
+        return *csv.error();
+    table.furtherNames = csv.furtherNames();
+    return table;
 }
 
 } // namespace vectorlib

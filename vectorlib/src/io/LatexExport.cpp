@@ -1,7 +1,6 @@
 #include "vectorlib/io/LatexExport.h"
 
 #include <algorithm>
-#include <ostream>
 
 namespace vectorlib {
 
@@ -32,12 +31,6 @@ VECTORLIB_BODY void LatexExport::picture(const Picture &picture, const LatexFram
     legend(picture.layers());
 }
 
-VECTORLIB_BODY void LatexExport::legend(const std::vector<Picture::Layer> &layers) {
-    out_ << "{\\small\\raggedright\n";
-    LatexPicture::writeLegend(out_, layers);
-    out_ << "\\par}\n\\bigskip\n";
-}
-
 VECTORLIB_BODY void LatexExport::table(const Table &table) {
     std::size_t columns = table.header.size();
     for (const auto &row : table.rows)
@@ -58,11 +51,6 @@ VECTORLIB_BODY void LatexExport::table(const Table &table) {
          << (isLong ? ""
                     : "}%\n\\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox0}\\else\\usebox0\\fi")
          << "\n\n\\bigskip\n";
-}
-
-VECTORLIB_BODY void LatexExport::finish() {
-    if (as_ == As::Document)
-        out_ << "\\end{document}\n";
 }
 
 VECTORLIB_BODY void LatexExport::row(const std::vector<std::string> &cells, std::size_t columns) {

@@ -1,8 +1,36 @@
 #include "vectorlib/io/MapDrawing.h"
-
+#include "vectorlib/io/Number.h"
 #include "vectorlib/io/Svg.h"
 
 namespace vectorlib {
+
+VECTORLIB_BODY void writeDxf(std::ostream &out, const std::vector<MapEdge> &map) {
+    out << "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+    for (const MapEdge &m : map) {
+        const auto a = m.segment.begin(), b = m.segment.end();
+        out << "0\nLINE\n8\nMAP\n10\n"
+            << Number(a.x) << "\n20\n"
+            << Number(a.y) << "\n30\n0\n11\n"
+            << Number(b.x) << "\n21\n"
+            << Number(b.y) << "\n31\n0\n";
+    }
+    out << "0\nENDSEC\n0\nEOF\n";
+}
+
+VECTORLIB_BODY void writeGeoJson(std::ostream &out, const std::vector<MapEdge> &map) {
+    out << "{\"type\": \"FeatureCollection\", \"units\": \"metres in the frame of the map\", \"features\": [";
+    const char *separator = "\n";
+    for (const MapEdge &m : map) {
+        const auto a = m.segment.begin(), b = m.segment.end();
+        out << separator << R"({"type": "Feature", "id": )" << m.id
+            << R"(, "geometry": {"type": "LineString", "coordinates": [[)" << Number(a.x) << ", "
+            << Number(a.y) << "], [" << Number(b.x) << ", " << Number(b.y) << R"(]]}, "properties": {"n": )"
+            << Number(m.sums.n) << R"(, "sigma": )" << Number(m.sigma) << R"(, "observations": )"
+            << m.observations << "}}";
+        separator = ",\n";
+    }
+    out << "\n]}\n";
+}
 
 VECTORLIB_BODY void drawMap(std::ostream &out, const MapDrawing &map) {
     SvgPicture picture(map.title);

@@ -1,6 +1,6 @@
 #include "vectorlib/io/Pgm.h"
 
-#include "vectorlib/io/InputError.h"
+#include "vectorlib/io/TextInput.h"
 
 #include <algorithm>
 
@@ -20,17 +20,6 @@ OccupancyPicture::draw(const std::vector<MapEdge> &map, const std::vector<Stampe
     for (const MapEdge &m : map)
         p.line(m.segment.begin(), m.segment.end(), 0, occupiedCell);
     return p;
-}
-
-VECTORLIB_BODY void OccupancyPicture::writePgm(std::ostream &out) const {
-    out << "P5\n" << width_ << ' ' << height_ << "\n255\n";
-    out.write(reinterpret_cast<const char *>(cells_.data()), static_cast<std::streamsize>(cells_.size()));
-}
-
-VECTORLIB_BODY void OccupancyPicture::writeYaml(std::ostream &out, const std::string &picture) const {
-    out << "image: " << picture << "\nresolution: " << Number(resolution_) << "\norigin: ["
-        << Number(origin_.x) << ", " << Number(origin_.y)
-        << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 }
 
 VECTORLIB_BODY bool OccupancyPicture::frame(const std::vector<MapEdge> &map,
@@ -75,12 +64,6 @@ VECTORLIB_BODY void OccupancyPicture::disc(Vector2D<double> centre, double radiu
         for (int dx = -reach; dx <= reach; ++dx)
             if (dx * dx + dy * dy <= reach * reach)
                 set(column + dx, row + dy, value);
-}
-
-VECTORLIB_BODY void OccupancyPicture::set(int column, int row, unsigned char value) {
-    if (column < 0 || row < 0 || column >= static_cast<int>(width_) || row >= static_cast<int>(height_))
-        return;
-    cells_[(height_ - 1 - static_cast<std::size_t>(row)) * width_ + static_cast<std::size_t>(column)] = value;
 }
 
 } // namespace vectorlib

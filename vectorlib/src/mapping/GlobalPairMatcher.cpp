@@ -1,8 +1,44 @@
 #include "vectorlib/mapping/GlobalPairMatcher.h"
-
 #include "vectorlib/geometry/SmallMatrix.h"
 
 namespace vectorlib {
+
+VECTORLIB_BODY const char *describe(GlobalPairVerdict verdict) {
+    static constexpr const char *texts[] = {"found",
+                                            "several motions fit alike",
+                                            "the scans slide on each other, as along a corridor",
+                                            "no motion explains enough of what the scans show",
+                                            "the static scan shows too few surfaces",
+                                            "the dynamic scan shows too few surfaces"};
+    return texts[static_cast<int>(verdict)]; // in the order of the enumeration
+}
+
+VECTORLIB_BODY MatchProbability::Features MatchProbability::features(const GlobalPairMatch &match) {
+    const SurfaceAgreement &a = match.solutions[0].agreement;
+    const double judged = a.explained() + a.contradicted();
+    return {1, judged > 0 ? a.contradicted() / judged : 1, std::clamp(match.slideLoss, -0.1, 0.25),
+            std::log(std::max(0.3, a.explained() * a.length())), a.score()};
+}
+
+VECTORLIB_BODY double MatchProbability::ofAny(const Features &f) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < f.size(); ++i)
+        sum += weights[i] * f[i];
+    return ceiling / (1 + std::exp(-sum));
+}
+
+VECTORLIB_BODY void MatchProbability::operator()(GlobalPairMatch &match) const {
+    if (match.solutions.empty())
+        return;
+    const double any = ofAny(features(match));
+    double total = 0, best = -1;
+    for (const GlobalPairSolution &s : match.solutions)
+        best = std::max(best, fit(s));
+    for (GlobalPairSolution &s : match.solutions)
+        total += s.probability = std::exp(sharpness * (fit(s) - best));
+    for (GlobalPairSolution &s : match.solutions)
+        s.probability *= any / total;
+}
 
 VECTORLIB_BODY const GlobalPairMatch &
 GlobalPairMatcher::judge(PointSpan<float> fixed, PointSpan<float> moving, const Transformation2D &pose) {
@@ -109,11 +145,6 @@ VECTORLIB_BODY bool GlobalPairMatcher::isNew(const GlobalPairSolution &s) const 
                        [&](const GlobalPairSolution &k) { return isFar(k, s); });
 }
 
-VECTORLIB_BODY bool GlobalPairMatcher::hasRival(double margin) const {
-    const Solutions &all = match_.solutions;
-    return std::any_of(all.begin(), all.end(), [&](const auto &s) { return isRival(s, all[0], margin); });
-}
-
 VECTORLIB_BODY bool GlobalPairMatcher::convinces() const {
     const Solutions &s = match_.solutions;
     if (s.empty() || s[0].score < settings.convincing || hasRival(settings.possibleMargin))
@@ -132,17 +163,6 @@ VECTORLIB_BODY GlobalPairSolution GlobalPairMatcher::judged(const Transformation
     return s;
 }
 
-VECTORLIB_BODY GlobalPairSolution GlobalPairMatcher::refined(const Transformation2D &pose) {
-    const Expectation nothing{{}, 1e6, 1e6};
-    return judged(refine(pose, nothing), settings.deviation, allPoints);
-}
-
-VECTORLIB_BODY bool GlobalPairMatcher::isNear(const Transformation2D &a, const Transformation2D &b, double xy,
-                                              double alpha) {
-    return (a.translation() - b.translation()).squaredNorm() < xy * xy &&
-           a.cos() * b.cos() + a.sin() * b.sin() > std::cos(alpha);
-}
-
 VECTORLIB_BODY void GlobalPairMatcher::keepDistinct(Solutions &list) const {
     std::sort(list.begin(), list.end(),
               [](const GlobalPairSolution &a, const GlobalPairSolution &b) { return a.score > b.score; });
@@ -154,17 +174,6 @@ VECTORLIB_BODY void GlobalPairMatcher::keepDistinct(Solutions &list) const {
             list[kept++] = s;
     }
     list.resize(kept);
-}
-
-VECTORLIB_BODY GlobalPairSolution GlobalPairMatcher::slid(const GlobalPairSolution &from,
-                                                          double metres) const {
-    const Vector2D<double> t = from.pose.translation() + from.agreement.openDirection() * metres;
-    return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
-}
-
-VECTORLIB_BODY double GlobalPairMatcher::slideLossOf(const GlobalPairSolution &s) const {
-    const double own = judged(s.pose, settings.deviation, settings.slidePoints).score;
-    return own - std::max(slid(s, 2 * settings.slideStep).score, slid(s, -2 * settings.slideStep).score);
 }
 
 VECTORLIB_BODY void GlobalPairMatcher::slide() {

@@ -1,11 +1,32 @@
 #include "vectorlib/mapping/MapAligner.h"
-
 #include "vectorlib/geometry/SmallMatrix.h"
 
 #include <cstdint>
 #include <set>
 
 namespace vectorlib {
+
+VECTORLIB_BODY void mergeMap(VectorMap &map, const std::vector<MapEdge> &added,
+                             const Transformation2D &motion, double distance) {
+    for (const MapEdge &edge : added) {
+        const EdgeRaw2D moved = motion * static_cast<const EdgeRaw2D &>(edge);
+        const LineSegment2D<double> &wall = moved.segment;
+        int best = -1;
+        double longest = 0;
+        for (const int number : map.near(wall, distance)) {
+            const LineSegment2D<double> &known = map.slots()[std::size_t(number)].segment;
+            const double overlap = known.overlap(wall);
+            if (known.direction().dot(wall.direction()) > 0.95 && overlap > longest &&
+                known.meanSquareAcross(wall) <= distance * distance) {
+                best = number;
+                longest = overlap;
+            }
+        }
+        if (best < 0 || !map.merge(best, moved, edge.observations))
+            best = map.add(moved, edge.observations);
+        map.consolidate(best);
+    }
+}
 
 VECTORLIB_BODY MapAlignment MapAligner::operator()(VectorMap &fixed, const std::vector<MapEdge> &moving) {
     MapAlignment result;
@@ -104,17 +125,6 @@ VECTORLIB_BODY const Relocalized &MapAligner::search(PlaceSearch &search, const 
     return search(map, place.edges, {});
 }
 
-VECTORLIB_BODY bool MapAligner::isNear(const Transformation2D &a, const Pose2D &b, double way) const {
-    const Transformation2D off = a.inverse() * Transformation2D(b);
-    return off.translation().norm() <= same + bent * way && std::abs(off.alpha()) <= sameAlpha;
-}
-
-VECTORLIB_BODY bool MapAligner::agree(const Vote &a, const Vote &b) const {
-    const Transformation2D there = a.motion * Transformation2D(b.pose);
-    const Transformation2D found = b.motion * Transformation2D(b.pose);
-    return isNear(there, found.pose(), std::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y));
-}
-
 VECTORLIB_BODY std::size_t MapAligner::bestVote(MapAlignment &result) const {
     std::size_t best = 0;
     const auto count = [this](const Vote &vote, const Vote *without) {
@@ -153,21 +163,6 @@ VECTORLIB_BODY Transformation2D MapAligner::motionOfAll(const Vote &best) const 
         cosine += (p - from).dot(q - to);
     });
     return Transformation2D(to.x, to.y, std::atan2(sine, cosine)) * Transformation2D(-from.x, -from.y, 0);
-}
-
-VECTORLIB_BODY std::size_t MapAligner::countContradictions(const Transformation2D &motion) {
-    std::size_t against = 0;
-    forEachFit(motion, [&](const PlaceFit &fit) { against += isAgainst(fit); });
-    return against;
-}
-
-template <typename Take>
-void MapAligner::forEachFit(const Transformation2D &motion, Take take) {
-    for (const PlaceOfMap &place : places_) {
-        inFixed_.scan.take(place.edges, {});
-        take(inFixed_.fit.judge(inFixed_.index().tiles(), inFixed_.scan.points(),
-                                motion * Transformation2D(place.pose), 1, true, inFixed_.scan.wallOfPoint()));
-    }
 }
 
 } // namespace vectorlib

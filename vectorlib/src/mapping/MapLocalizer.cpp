@@ -2,18 +2,6 @@
 
 namespace vectorlib {
 
-VECTORLIB_BODY MapLocalizer::MapLocalizer(const std::vector<MapEdge> &map) {
-    for (const MapEdge &edge : map)
-        tracker.builder.map.add(edge, edge.observations);
-    apply({});
-}
-
-VECTORLIB_BODY void MapLocalizer::apply(ScanTrackerSettings of) {
-    of.relocalizeSeconds = 1e6;
-    tracker.apply(of);
-    tracker.builder.settings.grow = false;
-}
-
 VECTORLIB_BODY void MapLocalizer::take(const TimedScan &scan) {
     scans_.push_back({scan.stamp, std::nullopt, false});
     kept_.push_back({scans_.size() - 1, scan});
@@ -26,11 +14,6 @@ VECTORLIB_BODY void MapLocalizer::take(const TimedScan &scan) {
     if (state_ == State::Proposed)
         drop();
     kept_.pop_front();
-}
-
-VECTORLIB_BODY void MapLocalizer::finish() {
-    if (state_ == State::Proposed)
-        drop();
 }
 
 VECTORLIB_BODY void MapLocalizer::seek() {
@@ -46,11 +29,6 @@ VECTORLIB_BODY void MapLocalizer::seek() {
     const Relocalized found = search();
     if (found.isFound())
         propose(found.places.front().pose);
-}
-
-VECTORLIB_BODY Relocalized MapLocalizer::search() {
-    ++searches_;
-    return tracker.relocalize(false);
 }
 
 VECTORLIB_BODY bool MapLocalizer::isFarFromSought(const TimedScan &scan) {

@@ -1,6 +1,28 @@
 #include "vectorlib/mapping/ScanPairMatcher.h"
 
+#include <cmath>
+
 namespace vectorlib {
+
+VECTORLIB_BODY PoseTrust::Features PoseTrust::features(const Match &match, const Transformation2D &expected,
+                                                       double finalDistance) {
+    const Transformation2D off = expected.inverse() * match.pose;
+    const double far = off.translation().norm() + 0.5 * std::abs(off.alpha());
+    return {1,
+            within(match.reliability),
+            within(match.rms / finalDistance),
+            std::log(double(std::max<std::size_t>(1, match.pairs.size()))),
+            std::log(0.01 + within(far)),
+            within(match.matchedLength / match.visibleLength)};
+}
+
+VECTORLIB_BODY double PoseTrust::operator()(const Features &f) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < f.size(); ++i)
+        sum += weights[i] * f[i];
+    const double p = 1 / (1 + std::exp(-sum));
+    return p > 0 ? p : 0; // no number: nothing is known
+}
 
 VECTORLIB_BODY ScanPairSettings ScanPairSettings::forPoorExpectation() {
     ScanPairSettings s;
@@ -105,11 +127,6 @@ VECTORLIB_BODY double ScanPairMatcher::surprise(const Transformation2D &pose) co
     const double xy = off.translation().norm() / expected_.deviationXY;
     const double alpha = off.alpha() / expected_.deviationAlpha;
     return xy * xy + alpha * alpha;
-}
-
-VECTORLIB_BODY bool ScanPairMatcher::isGood() const {
-    return match_.agreement.explained() >= settings.enoughExplained &&
-           match_.agreement.contradicted() <= settings.fewContradicted;
 }
 
 VECTORLIB_BODY bool ScanPairMatcher::isAcceptable() const {

@@ -84,16 +84,6 @@ VECTORLIB_BODY TrackedBy ScanTracker::trackedBy() const {
                                                        : TrackedBy::Nothing;
 }
 
-VECTORLIB_BODY Transformation2D ScanTracker::tracked(const Transformation2D &before) const {
-    const bool isLeap = trackedBy() == TrackedBy::Scan;
-    return before.inverse() * (isLeap ? builder.expected() : Transformation2D(builder.report().pose));
-}
-
-VECTORLIB_BODY double ScanTracker::trust() const {
-    const auto features = trustFeatures();
-    return features ? poseTrust(*features) : 0;
-}
-
 VECTORLIB_BODY std::optional<PoseTrust::Features> ScanTracker::trustFeatures() const {
     const Match &m = builder.match();
     if (builder.report().outcome != ScanReport::Outcome::Matched || !(m.visibleLength > 0))

@@ -1,7 +1,5 @@
 #include "vectorlib/mapping/VectorMap.h"
 
-#include <utility>
-
 namespace vectorlib {
 
 VECTORLIB_BODY void VectorMap::clear() {
@@ -85,18 +83,6 @@ VECTORLIB_BODY void VectorMap::reshape(int number, const LineSegment2D<double> &
 VECTORLIB_BODY void VectorMap::replace(int number, const EdgeRaw2D &edge) {
     MapEdge &known = edges_[static_cast<std::size_t>(number)];
     take(known, edge, known.observations);
-}
-
-VECTORLIB_BODY void VectorMap::remove(int number) {
-    edges_[static_cast<std::size_t>(number)].observations = 0;
-    --alive_;
-    changed_.push_back(number);
-}
-
-VECTORLIB_BODY std::vector<int> VectorMap::takeChanges() {
-    std::sort(changed_.begin(), changed_.end());
-    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-    return std::exchange(changed_, {});
 }
 
 template <typename Place, typename Size>

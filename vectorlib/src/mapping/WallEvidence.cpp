@@ -1,10 +1,87 @@
 #include "vectorlib/mapping/WallEvidence.h"
-
-#include "vectorlib/observation/Sector.h"
-
-#include <utility>
+#include "vectorlib/observation/Observer.h"
 
 namespace vectorlib {
+
+VECTORLIB_BODY void WallFinder::index(const VectorMap &map) {
+    grid_.clear();
+    walls_.clear();
+    map.forEach([this](const MapEdge &e) {
+        walls_.push_back({e.id, e.segment});
+        grid_.insert(static_cast<int>(walls_.size()) - 1, e.segment);
+    });
+}
+
+VECTORLIB_BODY std::int64_t WallFinder::operator()(const LineSegment2D<double> &edge) {
+    std::int64_t nearest = -1;
+    double least = maxDistance * maxDistance;
+    // A wall beside half of the edge lies beside its middle.
+    const Vector2D<double> margin(maxDistance, maxDistance);
+    grid_.query(edge.middle() - margin, edge.middle() + margin, [&](int number) {
+        const auto &[id, wall] = walls_[static_cast<std::size_t>(number)];
+        if (wall.direction().dot(edge.direction()) < std::cos(maxAngle) ||
+            2 * edge.overlap(wall) < edge.length())
+            return;
+        const double square = wall.meanSquareAcross(edge);
+        if (square < least || (square == least && id < nearest)) {
+            least = square;
+            nearest = id;
+        }
+    });
+    return nearest;
+}
+
+VECTORLIB_BODY void WallIds::keep(VectorMap &map, const ScanDrive &drive) {
+    find(map, drive, new_);
+    Lengths shared;
+    std::size_t k = 0;
+    for (const std::vector<EdgeRaw2D> &edges : drive.edges)
+        for (const EdgeRaw2D &e : edges) {
+            if (k < old_.size() && old_[k] >= 0 && new_[k] >= 0)
+                shared[{new_[k], old_[k]}] += e.segment.length();
+            ++k;
+        }
+    const auto best = bestOf(shared);
+    std::vector<MapEdge> walls;
+    map.forEach([&](const MapEdge &e) {
+        walls.push_back(e);
+        const auto found = best.find(e.id);
+        walls.back().id = found != best.end() ? found->second : next_++;
+    });
+    map.assign(walls);
+}
+
+VECTORLIB_BODY void WallIds::find(const VectorMap &map, const ScanDrive &drive,
+                                  std::vector<std::int64_t> &walls) {
+    finder_.index(map);
+    walls.clear();
+    for (std::size_t i = 0; i < drive.edges.size(); ++i) {
+        const Transformation2D pose(drive.poses[i]);
+        for (const EdgeRaw2D &e : drive.edges[i])
+            walls.push_back(finder_(pose * e.segment));
+    }
+}
+
+VECTORLIB_BODY std::map<std::int64_t, std::int64_t> WallIds::bestOf(const Lengths &shared) {
+    struct Most {
+        std::int64_t wall = -1;
+        double length = 0;
+    };
+    std::map<std::int64_t, Most> ofNew, ofOld;
+    const auto offer = [](Most &most, std::int64_t wall, double length) {
+        if (length > most.length)
+            most = {wall, length};
+    };
+    for (const auto &[walls, length] : shared) {
+        offer(ofNew[walls.first], walls.second, length);
+        offer(ofOld[walls.second], walls.first, length);
+    }
+    std::map<std::int64_t, std::int64_t> result;
+    for (const auto &[wall, most] : ofNew)
+        if (ofOld[most.wall].wall == wall)
+            result[wall] = most.wall;
+    return result;
+}
 
 VECTORLIB_BODY void WallEvidence::operator()(const std::vector<LineSegment2D<double>> &walls,
                                              const ScanDrive &drive) {
@@ -20,16 +97,6 @@ VECTORLIB_BODY void WallEvidence::operator()(const std::vector<LineSegment2D<dou
     }
 }
 
-VECTORLIB_BODY int WallEvidence::directionOf(Vector2D<double> p) {
-    return std::clamp(static_cast<int>((turnOf(p) + 2) * (directions / 4)), 0, directions - 1);
-}
-
-VECTORLIB_BODY Vector2D<double> WallEvidence::towards(int direction) {
-    const double turn = (direction + 0.5) * (4.0 / directions) - 2, up = std::abs(turn), x = 1 - up;
-    const double y = up <= 1 ? up : 2 - up;
-    return {x, turn < 0 ? -y : y};
-}
-
 VECTORLIB_BODY void WallEvidence::divide(const std::vector<LineSegment2D<double>> &walls) {
     grid_.clear();
     starts_.assign(1, 0);
@@ -39,11 +106,6 @@ VECTORLIB_BODY void WallEvidence::divide(const std::vector<LineSegment2D<double>
         starts_.push_back(starts_.back() + std::max<std::size_t>(1, static_cast<std::size_t>(count)));
     }
     evidence_.assign(starts_.back(), {});
-}
-
-VECTORLIB_BODY bool WallEvidence::isSamePlace(const Pose2D &a, const Pose2D &b) const {
-    return std::hypot(a.x - b.x, a.y - b.y) < settings.newPlace &&
-           std::abs(wrapAngle(a.theta - b.theta)) < settings.newHeading;
 }
 
 VECTORLIB_BODY void WallEvidence::look(const std::vector<EdgeRaw2D> &edges) {

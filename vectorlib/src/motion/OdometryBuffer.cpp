@@ -1,9 +1,37 @@
 #include "vectorlib/motion/OdometryBuffer.h"
+#include "vectorlib/geometry/SmallMatrix.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace vectorlib {
+
+VECTORLIB_BODY OdometryTrack::OdometryTrack(std::uint64_t epoch, std::vector<OdometrySample> samples)
+    : epoch_(epoch)
+    , knots_(std::move(samples)) {
+    for (std::size_t i = 0; i + 1 < knots_.size(); ++i)
+        knots_[i].twist = Twist2D::between(knots_[i].pose.inverse() * knots_[i + 1].pose,
+                                           knots_[i + 1].stamp - knots_[i].stamp);
+}
+
+VECTORLIB_BODY Transformation2D OdometryTrack::at(double stamp) const {
+    const OdometrySample &knot = knots_[knotBefore(stamp)];
+    return Transformation2D(knot.pose * knot.twist.motion(stamp - knot.stamp));
+}
+
+VECTORLIB_BODY std::optional<Eigen::Matrix3d> OdometryTrack::covarianceAt(double stamp) const {
+    const std::size_t i = knotBefore(stamp);
+    if (i + 1 == knots_.size() || !knots_[i].covariance || !knots_[i + 1].covariance)
+        return knots_[i].covariance;
+    const double share = (stamp - knots_[i].stamp) / (knots_[i + 1].stamp - knots_[i].stamp);
+    return *knots_[i].covariance + share * (*knots_[i + 1].covariance - *knots_[i].covariance);
+}
+
+VECTORLIB_BODY std::size_t OdometryTrack::knotBefore(double stamp) const {
+    std::size_t i = knots_.size() - 1; // a turn holds a handful
+    while (i > 0 && knots_[i].stamp > stamp)
+        --i;
+    return i;
+}
 
 VECTORLIB_BODY OdometryBuffer::Outcome OdometryBuffer::add(const OdometrySample &added) {
     Outcome outcome = Outcome::Taken;
@@ -58,6 +86,43 @@ VECTORLIB_BODY bool OdometryBuffer::follows(const OdometrySample &before, const 
     return std::abs(seconds) <= longestGap_s && way <= jump_m + 2 * speed * seconds &&
            turn <= jump_rad + 2 * rate * seconds && !surer &&
            before.covariance.has_value() == after.covariance.has_value();
+}
+
+VECTORLIB_BODY std::optional<OdometryModel::Expectation> OdometryModel::expect(const OdometryTrack &track,
+                                                                               double stamp) const {
+    if (!last_ || last_->epoch != track.epoch())
+        return std::nullopt;
+    const Transformation2D robot = track.at(stamp);
+    Expectation e{(last_->pose * ofSensor(last_->robot.inverse() * robot)).pose(), std::nullopt};
+    const auto covariance = track.covarianceAt(stamp);
+    if (covariance && last_->covariance) {
+        const Eigen::Matrix3d q = growth(last_->robot, *last_->covariance, robot, *covariance);
+        e.deviations = Deviations{deviation(leastDeviationXY, std::max(q(0, 0), q(1, 1))),
+                                  deviation(leastDeviationAlpha, q(2, 2))};
+    }
+    return e;
+}
+
+VECTORLIB_BODY void OdometryModel::move(const Transformation2D &moved) {
+    if (last_)
+        last_->pose = moved * last_->pose;
+}
+
+VECTORLIB_BODY Twist2D OdometryModel::twist(const OdometryTrack &track, double begin, double end) const {
+    if (!(end > begin))
+        return {};
+    const Transformation2D motion = ofSensor(track.at(begin).inverse() * track.at(end));
+    return Twist2D::between(motion.pose(), end - begin);
+}
+
+VECTORLIB_BODY Eigen::Matrix3d OdometryModel::growth(const Transformation2D &from,
+                                                     const Eigen::Matrix3d &before,
+                                                     const Transformation2D &to,
+                                                     const Eigen::Matrix3d &after) {
+    Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
+    f(0, 2) = from.y() - to.y();
+    f(1, 2) = to.x() - from.x();
+    return after - product(f, before, f);
 }
 
 } // namespace vectorlib

@@ -1,6 +1,6 @@
 #include "vectorlib/observation/FloorPlan.h"
 
-#include "vectorlib/observation/Ray.h"
+#include "vectorlib/observation/Observer.h"
 
 #include <algorithm>
 

@@ -1,8 +1,32 @@
 #include "vectorlib/places/PlaceFitter.h"
-
 #include "vectorlib/geometry/SmallMatrix.h"
 
+#include <algorithm>
+
 namespace vectorlib {
+
+VECTORLIB_BODY double PlaceFit::leadOver(const PlaceFit &other) const {
+    double sum = 0, strongest = 0;
+    for (std::size_t i = 0; i + 1 < said.size(); ++i) {
+        const double more = said[i] - other.said[i];
+        sum += more;
+        strongest = std::max(strongest, more);
+    }
+    const double byHidden = std::min(said.back() - other.said.back(), mostHiddenLead * points);
+    return points > 0 ? (sum - strongest + byHidden) / points : 0;
+}
+
+VECTORLIB_BODY double PlaceFit::reliability() const {
+    const double xx = information(0, 0), yy = information(1, 1), xy = information(1, 0);
+    return xx + yy > 0 ? 2 * std::sqrt(std::max(0.0, xx * yy - xy * xy)) / (xx + yy) : 0;
+}
+
+VECTORLIB_BODY std::optional<Eigen::Matrix3d> PlaceFit::covariance() const {
+    if (!(reliability() > 1e-3))
+        return std::nullopt;
+    const Eigen::Matrix3d c = information.inverse() * (4 * std::max(meanSquare(), 0.02 * 0.02));
+    return c.allFinite() && c(2, 2) > 0 ? std::optional<Eigen::Matrix3d>(c) : std::nullopt;
+}
 
 VECTORLIB_BODY Transformation2D PlaceFitter::refine(const WallTiles &tiles,
                                                     const std::vector<WallPoint> &points,
@@ -108,12 +132,6 @@ VECTORLIB_BODY double PlaceFitter::seenBehind(const WallTiles &tiles, Vector sen
                 behind = std::max(behind, 1 - at);
         });
     return behind;
-}
-
-VECTORLIB_BODY double PlaceFitter::areaBehind(const WallPoint &point, double behind, double wallOfPoint) {
-    const Vector p(point.position);
-    const double turn = std::abs(p.cross(Vector(point.direction))) * wallOfPoint; // angle times r^2
-    return turn * (1 - (1 - behind) * (1 - behind)) / 2;
 }
 
 } // namespace vectorlib

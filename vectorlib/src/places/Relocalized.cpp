@@ -3,21 +3,13 @@
 namespace vectorlib {
 
 VECTORLIB_BODY const char *describe(PlaceFault fault) {
-    switch (fault) {
-    case PlaceFault::None:
-        return "accepted";
-    case PlaceFault::Reliability:
-        return "the directions of the walls are too much alike to fix the place";
-    case PlaceFault::Explained:
-        return "too little of the scan lies on walls of the map";
-    case PlaceFault::Contradicted:
-        return "what would be seen from there differs from what was seen";
-    case PlaceFault::Doubtful:
-        return "too little speaks for it";
-    case PlaceFault::Alike:
-        return "another place fits alike";
-    }
-    return "";
+    static constexpr const char *texts[] = {"accepted",
+                                            "the directions of the walls are too much alike to fix the place",
+                                            "too little of the scan lies on walls of the map",
+                                            "what would be seen from there differs from what was seen",
+                                            "too little speaks for it",
+                                            "another place fits alike"};
+    return texts[static_cast<int>(fault)]; // in the order of the enumeration
 }
 
 VECTORLIB_BODY std::string Relocalized::text() const {
@@ -44,23 +36,9 @@ VECTORLIB_BODY std::string Relocalized::text() const {
 }
 
 VECTORLIB_BODY const char *name(Relocalized::Outcome outcome) {
-    switch (outcome) {
-    case Relocalized::Outcome::Found:
-        return "found";
-    case Relocalized::Outcome::NoScan:
-        return "no_scan";
-    case Relocalized::Outcome::NoMap:
-        return "no_map";
-    case Relocalized::Outcome::TooLittle:
-        return "too_little";
-    case Relocalized::Outcome::Nowhere:
-        return "nowhere";
-    case Relocalized::Outcome::Ambiguous:
-        return "ambiguous";
-    case Relocalized::Outcome::Unfinished:
-        return "unfinished";
-    }
-    return "";
+    static constexpr const char *texts[] = {"found",   "no_scan",   "no_map",    "too_little",
+                                            "nowhere", "ambiguous", "unfinished"};
+    return texts[static_cast<int>(outcome)]; // in the order of the enumeration
 }
 
 } // namespace vectorlib

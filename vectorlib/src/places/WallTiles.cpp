@@ -1,8 +1,42 @@
 #include "vectorlib/places/WallTiles.h"
-
-#include "vectorlib/places/Facing.h"
+#include "vectorlib/places/PlaceIndex.h"
 
 namespace vectorlib {
+
+VECTORLIB_BODY int TileTable::find(std::int32_t i, std::int32_t j) const {
+    if (slots_.empty())
+        return -1;
+    for (std::size_t at = hash(i, j);; ++at) {
+        const Slot &slot = slots_[at & (slots_.size() - 1)];
+        if (slot.number < 0 || (slot.i == i && slot.j == j))
+            return slot.number;
+    }
+}
+
+VECTORLIB_BODY int TileTable::enter(std::int32_t i, std::int32_t j) {
+    const int known = find(i, j);
+    if (known >= 0)
+        return known;
+    if (2 * (count_ + 1) > slots_.size())
+        grow();
+    put({i, j, static_cast<int>(count_)});
+    return static_cast<int>(count_++);
+}
+
+VECTORLIB_BODY void TileTable::put(const Slot &slot) {
+    std::size_t at = hash(slot.i, slot.j) & (slots_.size() - 1);
+    while (slots_[at].number >= 0)
+        at = (at + 1) & (slots_.size() - 1);
+    slots_[at] = slot;
+}
+
+VECTORLIB_BODY void TileTable::grow() {
+    std::vector<Slot> old(std::max<std::size_t>(64, 2 * slots_.size()));
+    old.swap(slots_);
+    for (const Slot &slot : old)
+        if (slot.number >= 0)
+            put(slot);
+}
 
 VECTORLIB_BODY bool WallTiles::add(int number, const Wall &wall) {
     std::size_t needed = 0;
@@ -70,12 +104,6 @@ VECTORLIB_BODY void WallTiles::forgetRasters() {
     last_ = unknown;
     for (Tile &t : tiles_)
         t.raster = -1;
-}
-
-VECTORLIB_BODY void WallTiles::redraw(Tile &t) {
-    rasters_[static_cast<std::size_t>(t.raster)].fill(0);
-    for (int number : t.walls)
-        draw(t, wall(number));
 }
 
 VECTORLIB_BODY void WallTiles::draw(Tile &t, const Wall &wall) {

@@ -1,9 +1,5 @@
 #include "vectorlib/registration/ScanIndex.h"
 
-#include "vectorlib/simd/NearestOfEight.h"
-
-#include <cmath>
-
 namespace vectorlib {
 
 VECTORLIB_BODY void ScanIndex::build(PointSpan<float> given, std::size_t most) {
@@ -43,12 +39,6 @@ VECTORLIB_BODY int ScanIndex::nearest(Vector2D<float> p, float squaredGate) cons
     return best;
 }
 
-VECTORLIB_BODY int ScanIndex::nearestAhead(Vector2D<float> p, float squaredGate) const {
-    const int first = ahead(p) - window / 2; // what lies outside is padding, far away
-    const simd::NearestOfEight nearest(x_.data() + at(first), y_.data() + at(first), p.x, p.y);
-    return nearest.squared < squaredGate ? first + nearest.number : -1;
-}
-
 VECTORLIB_BODY bool ScanIndex::looksPast(Vector2D<float> p) const {
     const int k = ahead(p);
     if (k <= 0 || k >= size_)
@@ -85,6 +75,26 @@ VECTORLIB_BODY void ScanIndex::findNormals() {
         while (to + 1 < size_ && to - i < reach && (point(to + 1) - point(to)).squaredNorm() < limit)
             ++to;
         normals_[static_cast<std::size_t>(i)] = (point(to) - point(from)).normalized().left();
+    }
+}
+
+VECTORLIB_BODY void PointAgreement::add(const ScanIndex &points, const Transformation2D &motion,
+                                        const ScanIndex &other, double gate, int sample) {
+    const FloatMotion move(motion);
+    const float squaredGate = static_cast<float>(gate * gate);
+    for (int i = 0; i < points.size(); i += sample) {
+        const Vector2D<float> p = move * points.point(i);
+        ++points_;
+        if (const int k = other.nearestAhead(p, squaredGate); k >= 0) {
+            const Vector2D<float> n = other.normal(k);
+            const float d = n.dot(p - other.point(k));
+            ++explained_;
+            distances_ += d * d / squaredGate;
+            xx_ += n.x * n.x;
+            xy_ += n.x * n.y;
+            yy_ += n.y * n.y;
+        } else if (other.looksPast(p))
+            ++contradicted_;
     }
 }
 

@@ -1,13 +1,8 @@
 #include "vectorlib/relations/LocalMap.h"
 
-#include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/LineSegment2D.h"
 
 namespace vectorlib {
-
-VECTORLIB_BODY void LocalMap::clear() {
-    map_.clear();
-    last_.clear();
-}
 
 VECTORLIB_BODY void LocalMap::update(const std::vector<CorrespondencePair> &pairs,
                                      const std::vector<TypedSegment> &scan, const Transformation2D &pose) {

@@ -2,23 +2,12 @@
 
 namespace vectorlib {
 
-VECTORLIB_BODY PoseError MatchErrors::ofPose(const Pose2D &estimate, const Pose2D &truth) {
-    return {std::abs(wrapAngle(estimate.theta - truth.theta)),
-            std::hypot(estimate.x - truth.x, estimate.y - truth.y)};
-}
-
 VECTORLIB_BODY PoseError MatchErrors::ofStep(const Pose2D &estimatedReference, const Pose2D &estimatedCurrent,
                                              const Pose2D &trueReference, const Pose2D &trueCurrent) {
     return {std::abs(wrapAngle((estimatedCurrent.theta - estimatedReference.theta) -
                                (trueCurrent.theta - trueReference.theta))),
             std::hypot((estimatedCurrent.x - estimatedReference.x) - (trueCurrent.x - trueReference.x),
                        (estimatedCurrent.y - estimatedReference.y) - (trueCurrent.y - trueReference.y))};
-}
-
-VECTORLIB_BODY PoseError MatchErrors::ofMotion(const Transformation2D &estimate,
-                                               const Transformation2D &truth) {
-    return {std::abs((estimate.inverse() * truth).alpha()),
-            (estimate.translation() - truth.translation()).norm()};
 }
 
 VECTORLIB_BODY MatchedArea MatchErrors::area(const std::vector<CorrespondencePair> &pairs,

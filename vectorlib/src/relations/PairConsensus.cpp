@@ -1,10 +1,7 @@
 #include "vectorlib/relations/PairConsensus.h"
-
-#include "vectorlib/observation/Ray.h"
-#include "vectorlib/relations/PoseDifference.h"
+#include "vectorlib/observation/Observer.h"
+#include "vectorlib/relations/RelationMatcher.h"
 #include "vectorlib/tls/TlsFit.h"
-
-#include <Eigen/LU>
 
 namespace vectorlib {
 
@@ -39,13 +36,6 @@ VECTORLIB_BODY Transformation2D PairConsensus::settle(int proposal, const Segmen
     enterPairs(reference, current, pose);
     deviation_ = chosen_.empty() ? noHit : deviationOf(pose);
     return pose;
-}
-
-VECTORLIB_BODY double PairConsensus::apart(const LineSegment2D<double> &r,
-                                           const LineSegment2D<double> &c) const {
-    if (!(r.direction().dot(c.direction()) >= std::cos(angle)))
-        return 2 * distance;
-    return std::abs(c.length() < r.length() ? r.across(c.middle()) : c.across(r.middle()));
 }
 
 VECTORLIB_BODY void PairConsensus::choose(const std::vector<CorrespondencePair> &pairs,
@@ -170,16 +160,6 @@ VECTORLIB_BODY void PairConsensus::enter(const Proposal &p) {
             break;
         std::swap(better, proposals_[static_cast<std::size_t>(place)]);
     }
-}
-
-VECTORLIB_BODY int PairConsensus::addEmpty() {
-    proposals_[static_cast<std::size_t>(count_)].length = 0;
-    return count_++;
-}
-
-VECTORLIB_BODY bool PairConsensus::isNear(const Transformation2D &a, const Transformation2D &b) const {
-    return (a.translation() - b.translation()).squaredNorm() <= 4 * distance * distance &&
-           a.cos() * b.cos() + a.sin() * b.sin() >= std::cos(2 * angle);
 }
 
 VECTORLIB_BODY bool PairConsensus::commonEnd(const TypedSegment &r, const TypedSegment &c, bool atEnd,

@@ -2,6 +2,32 @@
 
 namespace vectorlib {
 
+VECTORLIB_BODY int MatchSigns::operator()(const std::vector<CorrespondencePair> &pairs,
+                                          const std::vector<TypedSegment> &reference,
+                                          const std::vector<TypedSegment> &current,
+                                          const Transformation2D &pose) const {
+    const auto lineOf = [&](const CorrespondencePair &p) -> const LineSegment2D<double> & {
+        return reference[static_cast<std::size_t>(p.fixed)].segment;
+    };
+    int signs = 0;
+    bool isOblique = false;
+    for (auto p = pairs.begin(); p != pairs.end(); ++p) {
+        signs += std::none_of(pairs.begin(), p, [&](const CorrespondencePair &other) {
+            return isSameLine(lineOf(other), lineOf(*p));
+        });
+        isOblique = isOblique || !isSquare(lineOf(pairs.front()), lineOf(*p));
+        signs += commonJumps(reference[static_cast<std::size_t>(p->fixed)],
+                             current[static_cast<std::size_t>(p->moving)], pose);
+    }
+    return signs + (isOblique ? 1 : 0);
+}
+
+VECTORLIB_BODY bool MatchSigns::isSameLine(const LineSegment2D<double> &a,
+                                           const LineSegment2D<double> &b) const {
+    return std::abs(a.direction().cross(b.direction())) < std::sin(angle) &&
+           std::abs(a.across(b.middle())) < distance;
+}
+
 VECTORLIB_BODY void RelationScores::operator()(const Segments &reference, const RelationSet &ofReference,
                                                const Segments &current, const RelationSet &ofCurrent,
                                                const RelationSettings &settings, MatchingTable &table) {
@@ -106,22 +132,6 @@ VECTORLIB_BODY RelationScores::Cells RelationScores::cellsOf(const CornerRelatio
     add(b.first, q.first);
     add(b.second, q.second);
     return result;
-}
-
-VECTORLIB_BODY bool RelationScores::hasRoom(const MatchingTable &table, std::size_t more) {
-    isCut_ = isCut_ || table.scores() + more > mostScores_;
-    return !isCut_;
-}
-
-VECTORLIB_BODY bool RelationScores::mayCompare() {
-    isCut_ = isCut_ || compared_ >= mostCompared_;
-    return !isCut_;
-}
-
-VECTORLIB_BODY void RelationScores::addAll(int count, MatchingTable &table) {
-    const double score = scoreOf(count, cells_.size());
-    for (const Cells &c : cells_)
-        table.add(score, c.cells, c.count);
 }
 
 } // namespace vectorlib

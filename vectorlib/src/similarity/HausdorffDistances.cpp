@@ -1,7 +1,5 @@
 #include "vectorlib/similarity/HausdorffDistances.h"
 
-#include "vectorlib/geometry/SegmentPair.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -2,11 +2,10 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
-#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/segmentation/ClusterOrder.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/segmentation/ScanOrder.h"
-#include "vectorlib/segmentation/Segmentation.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"
 
 #include <vector>
@@ -24,7 +23,10 @@ public:
     double minLength = 0.10;   ///< shorter lines are no edges; metres
 
     /// The edges of a scan: sensor frame, points in the order of ScanOrder, free space on the left of edges.
-    const std::vector<EdgeRaw2D> &operator()(PointSpan<float> given);
+    const std::vector<EdgeRaw2D> &operator()(PointSpan<float> given) {
+        const PointSpan<float> scan = order(given);
+        return vectorizeClusters(segment(scan), scan);
+    }
 
     /// The last step of operator(), for callers that time the steps.
     const std::vector<EdgeRaw2D> &vectorizeClusters(const Segmentation &clusters, PointSpan<float> scan);

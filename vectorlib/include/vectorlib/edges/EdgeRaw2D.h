@@ -6,6 +6,8 @@
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/tls/TlsSums.h"
 
+#include <cstdint>
+
 namespace vectorlib {
 
 /// An edge for computing: a line segment and the sums of the points that it stands for.
@@ -15,7 +17,10 @@ struct EdgeRaw2D {
     double sigma = 0;              ///< standard deviation of the points from the line; metres
 
     EdgeRaw2D() = default;
-    EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_, double sigma_);
+    EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_, double sigma_)
+        : sums(sums_)
+        , segment(segment_)
+        , sigma(sigma_) {}
 
     /// The edge in the frame into which t leads.
     friend EdgeRaw2D operator*(const Transformation2D &t, EdgeRaw2D e) {
@@ -29,6 +34,19 @@ struct EdgeRaw2D {
 /// outermost to the outermost end, directed as the first. Both in the same frame. Without a direction
 /// (isotropic points) the first edge's segment stays.
 EdgeRaw2D merged(const EdgeRaw2D &edge, const EdgeRaw2D &other);
+
+/// An edge of a map: all points ever seen on it by their sums (map frame), the segment they make, and how
+/// often it was seen.
+struct MapEdge : EdgeRaw2D {
+    std::int64_t id = 0;           ///< its number in the map; no other edge has it
+    std::int64_t observations = 0; ///< scans that saw it; 0 when it was merged into another
+
+    MapEdge() = default;
+    MapEdge(std::int64_t id_, const EdgeRaw2D &edge, std::int64_t observations_)
+        : EdgeRaw2D(edge)
+        , id(id_)
+        , observations(observations_) {}
+};
 
 } // namespace vectorlib
 

@@ -68,4 +68,49 @@ private:
     Vector direction_;
 };
 
+/// Two segments that are known to be the same edge, seen in two frames; metres.
+struct SegmentPair {
+    LineSegment2D<double> fixed;  ///< of the static set
+    LineSegment2D<double> moving; ///< of the dynamic set
+    double weight = 1;
+};
+
+/// Whether a segment has a direction and finite ends: what registration and similarity need of it.
+inline bool isUsable(const LineSegment2D<double> &s) {
+    return s.isFinite() && s.direction().squaredNorm() > 0.5; // not so for a zero or NaN direction
+}
+
+/// Whether both segments are usable and the weight is a finite number above 0.
+inline bool isUsable(const SegmentPair &p) {
+    return isUsable(p.fixed) && isUsable(p.moving) && p.weight > 0 && std::isfinite(p.weight);
+}
+
+/// The line ax + by + c = 0 with a unit normal (a, b); metres. Thesis eqs. (6.5), (6.6).
+/// Fits from a scanner at the origin have c >= 0: the normal points to the scanner, that is to free space.
+struct Line2D {
+    double a = 0;
+    double b = 0;
+    double c = 0;
+
+    /// False for the default line, which has no direction (isotropic or empty data).
+    bool isValid() const { return a != 0 || b != 0; }
+    /// Distance of a point from the line, positive on the side to which the normal points; metres.
+    double signedDistance(Vector2D<double> p) const { return a * p.x + b * p.y + c; }
+    /// (a, b).
+    Vector2D<double> normal() const { return {a, b}; }
+    /// The direction whose left normal is (a, b).
+    Vector2D<double> direction() const { return {b, -a}; }
+    /// The point of the line that is nearest to p.
+    Vector2D<double> project(Vector2D<double> p) const { return p - normal() * signedDistance(p); }
+};
+
+/// Where two lines cross; false (and the point untouched) when they are parallel.
+inline bool intersect(const Line2D &l, const Line2D &m, Vector2D<double> &point) {
+    const double det = l.a * m.b - m.a * l.b;
+    if (std::abs(det) < 1e-12)
+        return false;
+    point = {(l.b * m.c - m.b * l.c) / det, (m.a * l.c - l.a * m.c) / det};
+    return true;
+}
+
 } // namespace vectorlib

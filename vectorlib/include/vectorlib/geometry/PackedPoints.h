@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Vector2D.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "vectorlib/geometry/Angle.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
-#include "vectorlib/geometry/Twist2D.h"
 
 namespace vectorlib {
 

@@ -4,16 +4,46 @@
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/graph/DriveBreaks.h"
 #include "vectorlib/graph/LoopCloser.h"
 #include "vectorlib/graph/MappedDrive.h"
+#include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/MapAligner.h"
 #include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/registration/PointRefinement.h"
+#include "vectorlib/registration/ScanIndex.h"
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
 namespace vectorlib {
+
+/// Finds where the way of a drive is not known, as where the robot was carried: the scans after it see
+/// through what the scans before it saw, wherever they are laid near each other, and no loop leads from
+/// before it to behind it.
+class DriveBreaks {
+public:
+    std::size_t around = 4; ///< key scans before and behind that are compared with each other
+    double reach = 4;       ///< those that are nearer; metres
+    std::size_t least = 10; ///< key scans between two breaks: fewer are people, or scans that were lost
+    /// Share of the points, as of PointAgreement: more of any pair, and the drive goes on; less of all of
+    /// them together that can be judged, and there is no evidence; more of these that are contradicted, and
+    /// it broke.
+    double mostExplained = 0.4, leastJudged = 0.1, leastContradicted = 0.55;
+
+    /// The key scans with which something new begins; ascending, never the first one.
+    std::vector<std::size_t> operator()(const LoopCloser &loops);
+
+private:
+    // By key scan: whether a loop leads from one before it to it or to one behind it.
+    static std::vector<bool> spanned(const PoseGraph &graph);
+    bool doesBreak(const LoopCloser &loops, std::size_t key);
+    PointAgreement compared(const LoopCloser::Key &before, const LoopCloser::Key &behind,
+                            const Transformation2D &motion);
+
+    PointRefinement match_;
+    std::vector<Vector2D<float>> before_, behind_;
+};
 
 /// A stretch of a drive whose way is known.
 struct DrivePart {
@@ -44,8 +74,14 @@ private:
     void divide(const LoopCloser &loops, std::size_t scans);
     // False where none of the rest shows a place of those that are joined.
     bool joinSome(const MappedDrive &drive, std::vector<Pose2D> &poses);
-    bool isClear(const MapAlignment &found) const;
-    static void move(const DrivePart &part, const Transformation2D &motion, std::vector<Pose2D> &poses);
+    bool isClear(const MapAlignment &found) const {
+        return found.outcome == MapAlignment::Outcome::Found && found.overlap.length >= leastOverlap &&
+               found.overlap.reliability >= leastReliability;
+    }
+    static void move(const DrivePart &part, const Transformation2D &motion, std::vector<Pose2D> &poses) {
+        for (std::size_t i = part.begin; i < part.end; ++i)
+            poses[i] = (motion * Transformation2D(poses[i])).pose();
+    }
     void layBeside(const MappedDrive &drive, std::vector<Pose2D> &poses) const;
     static void addTo(Box &box, const MappedDrive &drive, const DrivePart &part,
                       const std::vector<Pose2D> &poses);

@@ -2,15 +2,13 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/PackedPoints.h"
-#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/graph/PoseConstraint.h"
 #include "vectorlib/graph/PoseGraph.h"
-#include "vectorlib/registration/PointCovariance.h"
 #include "vectorlib/registration/PointRefinement.h"
+#include "vectorlib/registration/RegistrationCovariance.h"
 
 #include <functional>
 #include <optional>

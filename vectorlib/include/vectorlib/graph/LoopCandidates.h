@@ -4,14 +4,35 @@
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/graph/DriveUncertainty.h"
-#include "vectorlib/graph/ScanSignature.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/graph/PoseGraph.h"
 
+#include <Eigen/Core>
+
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 namespace vectorlib {
+
+/// How a scan looks from afar: how its points are distributed over ranges that grow by 30 % from step to
+/// step, from half a metre on. The same however the sensor is turned, as far as it sees the same then.
+class ScanSignature {
+public:
+    ScanSignature() = default;
+    explicit ScanSignature(PointSpan<float> points);
+    /// 0 where two scans look the same; about 1 where they are of different places.
+    float distance(const ScanSignature &other) const;
+
+private:
+    static constexpr std::size_t last = 19; // 73 m and more
+    std::array<float, last + 1> parts_{};
+};
 
 /// Which scans of a drive may show one place.
 struct LoopCandidateSettings {
@@ -77,7 +98,10 @@ private:
         double apart; // metres, and half of the radians
     };
 
-    void enter(std::size_t k);
+    void enter(std::size_t k) {
+        const Vector2D<double> place(poses_[k].x, poses_[k].y);
+        grid_.insert(static_cast<int>(k), {place, place, {1, 0}});
+    }
     // Of the drive up to the last scan.
     double wayTo(std::size_t k) const { return scans_.back().way - scans_[k].way; }
     // Of the last scan's place, where scan `from` is certain, in the frame of the poses.
@@ -89,6 +113,98 @@ private:
     SegmentGrid grid_{4};
     std::vector<Near> near_;
     std::vector<std::size_t> chosen_;
+};
+
+/// Settings of LoopAgreement: when two loops tell the same. A way is that of the drive.
+struct LoopAgreementSettings {
+    double within = 30;                    ///< way on which loops are asked, at both of their ends; metres
+    double along = 15;                     ///< least way on which they agree; metres
+    double apart = 1;                      ///< least way between two that count; metres
+    double missXY = 0.3, missAlpha = 0.06; ///< by how much two may miss each other; metres, radians
+    double missPart = 0.03;                ///< and by so much of the ways between them
+};
+
+/// Loops that are not believed before others, found on the same stretch of the drive, tell the same.
+class LoopAgreement {
+public:
+    LoopAgreementSettings settings;
+
+    /// An end of a loop, as the drive alone led there.
+    struct End {
+        Transformation2D pose;
+        double way; ///< since the start of the drive; metres
+    };
+    /// A loop that waits for others, and its two ends.
+    struct Waiting {
+        PoseConstraint loop;
+        End from, to;
+    };
+
+    /// Takes the next loop. Where it and those that agree with it are at least `enough` they are given, and
+    /// forgotten; else nothing is.
+    std::vector<PoseConstraint> add(const PoseConstraint &loop, const End &from, const End &to,
+                                    std::size_t enough);
+    /// The last one that waits, where the drive went on for no more than `within` since.
+    std::optional<Waiting> newest(double way) const {
+        const bool isAny = !waiting_.empty() && way - waiting_.back().to.way <= settings.within;
+        return isAny ? std::optional(waiting_.back()) : std::nullopt;
+    }
+    void clear() { waiting_.clear(); }
+
+private:
+    // Whether both lead from the first one's begin to the second one's end alike.
+    bool agree(const Waiting &a, const Waiting &b) const;
+
+    std::vector<Waiting> waiting_;
+};
+
+/// Whether the drive allows a loop. Where rooms are alike, loops that are off by the same way agree with each
+/// other: each has to agree with the drive alone first. Where the sensor was put elsewhere on the way, which
+/// tells next to nothing, it has to agree with the nearest loop that leads across, too, and with the drive
+/// from there. Scans have the numbers of LoopCandidates and of the graph's poses.
+class LoopGate {
+public:
+    /// The sensor was put elsewhere, to that scan: a later one than those before.
+    void addPlaced(std::size_t scan) { placed_.push_back(scan); }
+    void clear() { placed_.clear(); }
+    /// Whether the sensor was put elsewhere between two scans.
+    bool isAcross(std::size_t from, std::size_t to) const { return part(from) != part(to); }
+    /// Where it was: of the believed loops between the same two parts the one nearest by its ways; null where
+    /// there is none.
+    const PoseConstraint *nearestAcross(const PoseConstraint &c, const PoseGraph &graph,
+                                        const LoopCandidates &drive) const;
+    /// Whether a loop with that covariance, in the frame of its first scan, misses where the drive led by no
+    /// more squared standard deviations than `most`.
+    bool allows(const PoseConstraint &c, const Eigen::Matrix3d &covariance, const PoseGraph &graph,
+                const LoopCandidates &drive, double most) const;
+
+private:
+    // How often the sensor was put elsewhere up to that scan.
+    std::ptrdiff_t part(std::size_t scan) const {
+        return std::upper_bound(placed_.begin(), placed_.end(), scan) - placed_.begin();
+    }
+    static bool isWithin(const Transformation2D &led, const Pose2D &to, const Eigen::Matrix3d &spread,
+                         double most) {
+        const Eigen::Vector3d off(led.x() - to.x, led.y() - to.y,
+                                  std::remainder(led.alpha() - to.theta, 2 * pi));
+        return off.dot(spread.ldlt().solve(off)) <= most;
+    }
+    // A covariance in a frame that is turned.
+    static Eigen::Matrix3d turned(const Eigen::Matrix3d &covariance, double angle) {
+        Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+        turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(angle).toRotationMatrix();
+        return turn * covariance * turn.transpose();
+    }
+    // The covariance of a pose, as that of `place`, which is rigid with it.
+    static Eigen::Matrix3d at(const Eigen::Matrix3d &covariance, const Pose2D &pose, const Pose2D &place);
+    // Of `place`, which is rigid with one of two scans, where the other one is certain.
+    static Eigen::Matrix3d spreadAt(const Pose2D &place, std::size_t a, std::size_t b,
+                                    const LoopCandidates &drive) {
+        const std::size_t late = std::max(a, b);
+        return at(drive.uncertainty().between(std::min(a, b), late), drive.scan(late).tracked, place);
+    }
+
+    std::vector<std::size_t> placed_; // scans to which the sensor was put, ascending
 };
 
 } // namespace vectorlib

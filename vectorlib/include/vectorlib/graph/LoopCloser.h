@@ -2,18 +2,16 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/PackedPoints.h"
-#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/graph/LoopAgreement.h"
 #include "vectorlib/graph/LoopCandidates.h"
-#include "vectorlib/graph/LoopGate.h"
-#include "vectorlib/graph/PoseConstraint.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
-#include "vectorlib/mapping/TrackedBy.h"
+#include "vectorlib/mapping/TimedScan.h"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -79,7 +77,11 @@ public:
     /// nothing fits. progress: as of PoseGraph.
     bool correct(const std::function<void(std::size_t done, std::size_t all)> &progress = {});
     /// Loops found since the last correction count as closed.
-    LoopCounts counts() const;
+    LoopCounts counts() const {
+        LoopCounts counts = counts_;
+        counts.refused = counts.tried - counts.closed;
+        return counts;
+    }
     std::size_t scans() const { return scans_.size(); }
     /// Of a scan; one between two key scans has moved with them, by its part of the way.
     Pose2D pose(std::size_t scan) const;
@@ -87,7 +89,11 @@ public:
     /// Of the key scans.
     const PoseGraph &graph() const { return graph_; }
     /// Memory that it takes, about, but for what is in reserve.
-    std::size_t bytes() const;
+    std::size_t bytes() const {
+        return pointBytes_ + keys_.size() * (sizeof(Key) + sizeof(Pose2D)) +
+               scans_.size() * sizeof(OnTheWay) + graph_.constraints.size() * sizeof(PoseConstraint) +
+               candidates_.bytes();
+    }
     /// The scan that a pose of the graph is of.
     std::size_t scanOf(std::size_t key) const { return keys_[key].scan; }
 
@@ -154,7 +160,11 @@ private:
     // The nearest scans of earlier passes; where no loop was found, those near the place that the last
     // waiting one tells; and where the drive may be astray by more, the one that looks most alike.
     void tryLoops();
-    void tryNearest(const Pose2D &here, std::size_t most, std::size_t sure);
+    void tryNearest(const Pose2D &here, std::size_t most, std::size_t sure) {
+        for (const std::size_t k : candidates_.nearest(here, most, sure, settings))
+            if (std::find(tried_.begin(), tried_.end(), k) == tried_.end())
+                tryLoop(k);
+    }
     void tryLoop(std::size_t earlier, std::size_t among = 1);
     // `known` leads across, too, where the sensor was put elsewhere in between.
     bool isNear(const PoseConstraint &c, const PoseConstraint *known) const;

@@ -2,15 +2,14 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
-#include "vectorlib/edges/MapEdge.h"
-#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/graph/LoopCloser.h"
-#include "vectorlib/graph/PoseConstraint.h"
+#include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MapReview.h"
-#include "vectorlib/mapping/TrackedBy.h"
+#include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <functional>
@@ -35,20 +34,35 @@ public:
     /// Memory that it takes, about, but for what is in reserve.
     std::size_t bytes() const { return loops.bytes() + edgeBytes_ + known.size() * sizeof(MapEdge); }
     /// The builder's map becomes that of all scans so far, where they are now.
-    void rebuild(MapBuilder &builder) const;
+    void rebuild(MapBuilder &builder) const {
+        startAnew(builder);
+        extend(builder, 0);
+    }
     /// The same at other poses, one a scan; progress counts the scans.
     void rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses,
                  const std::function<void(std::size_t done, std::size_t all)> &progress = {}) const;
     /// The builder's map takes the scans from that number on.
-    void extend(MapBuilder &builder, std::size_t from) const;
+    void extend(MapBuilder &builder, std::size_t from) const {
+        for (std::size_t i = from; i < edges_.size(); ++i)
+            if (!edges_[i].empty())
+                builder.place(edges_[i], loops.pose(i));
+    }
     /// The same at other poses (one a scan of the drive), up to that number.
     void extend(MapBuilder &builder, const std::vector<Pose2D> &poses, std::size_t from,
-                std::size_t end) const;
+                std::size_t end) const {
+        for (std::size_t i = from; i < end; ++i)
+            if (!edges_[i].empty())
+                builder.place(edges_[i], poses[i]);
+    }
     /// The loops of the graph as motions between scans.
     std::vector<PoseConstraint> loopsOfScans() const;
 
     /// Walls that stand twice and those that scans saw through leave the map, which was made at these poses.
-    MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const;
+    MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const {
+        MapReview review;
+        review.settings.known = static_cast<int>(known.size());
+        return review(map, {edges_, poses});
+    }
     /// Of each scan, sensor frame.
     const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }
 
@@ -56,7 +70,11 @@ private:
     static std::size_t bytesOf(const std::vector<EdgeRaw2D> &edges) {
         return sizeof edges + edges.capacity() * sizeof(EdgeRaw2D);
     }
-    void startAnew(MapBuilder &builder) const;
+    void startAnew(MapBuilder &builder) const {
+        builder.clear();
+        for (const MapEdge &edge : known)
+            builder.map.add(edge, edge.observations);
+    }
 
     std::vector<std::vector<EdgeRaw2D>> edges_;
     std::size_t edgeBytes_ = 0;

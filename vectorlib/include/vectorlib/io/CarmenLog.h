@@ -4,13 +4,56 @@
 #include "vectorlib/geometry/Angle.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/io/CarmenScan.h"
-#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/TextInput.h"
+#include "vectorlib/motion/OdometryBuffer.h"
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace vectorlib {
+
+/// A line `ODOM x y theta tv rv accel ipc_timestamp host logger_timestamp`; metres, radians, seconds.
+struct CarmenOdometry {
+    std::size_t line = 0;
+    double stamp = 0;
+    Pose2D pose;
+};
+
+/// A line FLASER or ROBOTLASER1: one scan, counter-clockwise; metres, radians, seconds.
+struct CarmenScan {
+    std::size_t line = 0;
+    double stamp = 0;
+    double startAngle = 0; ///< of the first ray, in the sensor's frame
+    double angleStep = 0;
+    /// Ranges from here on mean no return. FLASER does not say it: CarmenLog::guessMaxRange fills it in.
+    double maxRange = std::numeric_limits<double>::infinity();
+    std::vector<float> ranges; ///< every ray, also those without return
+    Pose2D laserPose;          ///< first triple; the reference pose in corrected logs
+    Pose2D robotPose;          ///< second triple; the odometry in ordinary logs
+    /// Motion since the previous scan by the ODOM lines between them, begun at the previous scan's pose as
+    /// corrected logs write it. Never holds this scan's own pose. Nothing when no ODOM line stands between
+    /// that says more than the scan itself.
+    std::optional<Transformation2D> wheelMotion;
+    bool hasOdometry = true; ///< robotPose is a pose; else it was refused (CarmenOptions::refusesOdometry)
+
+    /// Whether a ray met something: its range is above 0 and less than maxRange.
+    bool isReturn(std::size_t ray) const { return ranges[ray] > 0 && ranges[ray] < maxRange; }
+    /// Appends the points of the rays with return, in the sensor's frame and in ray order.
+    template <typename Scalar>
+    void appendPoints(std::vector<Vector2D<Scalar>> &points) const {
+        for (std::size_t i = 0; i < ranges.size(); ++i) {
+            if (!isReturn(i))
+                continue;
+            const double angle = startAngle + angleStep * static_cast<double>(i);
+            points.emplace_back(Scalar(ranges[i] * std::cos(angle)), Scalar(ranges[i] * std::sin(angle)));
+        }
+    }
+};
+
+} // namespace vectorlib
 
 namespace vectorlib {
 
@@ -114,6 +157,60 @@ private:
 inline Expected<CarmenLog> readCarmenLog(std::istream &in, std::string name, CarmenOptions options = {}) {
     return detail::CarmenReader(in, std::move(name), options).read();
 }
+
+} // namespace vectorlib
+
+namespace vectorlib {
+
+/// The way of the robot through a log, scan by scan, as its odometry tells it and as far as it can be
+/// believed.
+class CarmenDrive {
+public:
+    /// A motion is a leap when it is longer than leap_m and the way at fastest_mps, or turns by more than
+    /// leap_rad and what is turned at fastest_radps; metres, radians, seconds.
+    static constexpr double leap_m = 1, fastest_mps = 5, leap_rad = 0.8, fastest_radps = 3;
+    static constexpr double longestPause_s = 5; ///< no more of the time counts
+    static constexpr std::size_t repeated = 16; ///< a scan is compared with so many before it
+
+    /// The log must outlive this.
+    CarmenDrive(const CarmenLog &log, CarmenOdometryKind kind)
+        : log_(log)
+        , kind_(kind) {}
+
+    /// Goes on to the next scan; there must be one.
+    void advance();
+    /// Whether the last scan has the stamp and the ranges of one shortly before it.
+    bool isRepeated() const { return isRepeated_; }
+    /// The robot at the last scan; nothing where the log does not tell.
+    std::optional<OdometryTrack> odometry() const;
+
+    /// Repeated scans so far.
+    std::size_t repetitions() const { return repeated_; }
+    /// Leaps so far.
+    std::size_t leaps() const { return leaps_; }
+
+private:
+    // The robot at a scan, by odometry since its last gap.
+    struct Step {
+        Transformation2D robot;
+        std::uint64_t epoch = 0;
+        std::size_t known = 0; // the last scan up to here with odometry
+        bool isKnown = true;
+    };
+
+    static bool isSame(const CarmenScan &a, const CarmenScan &b) {
+        return a.stamp == b.stamp && a.ranges == b.ranges;
+    }
+    Step stepTo(std::size_t i);
+    // The clock of a log may stand, or be set back: then it was any pause.
+    static bool leaps(const Transformation2D &motion, double seconds);
+
+    const CarmenLog &log_;
+    CarmenOdometryKind kind_;
+    std::vector<Step> steps_;
+    std::size_t repeated_ = 0, leaps_ = 0;
+    bool isRepeated_ = false;
+};
 
 } // namespace vectorlib
 

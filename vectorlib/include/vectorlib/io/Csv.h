@@ -1,14 +1,27 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/io/InputError.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/io/Number.h"
 #include "vectorlib/io/TextInput.h"
 
+#include <algorithm>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace vectorlib {
+
+/// Pairs of segments that readCsvPairs() read; metres.
+struct PairTable {
+    std::vector<SegmentPair> pairs;
+    bool hasWeights = false; ///< the file has a column `weight`
+};
+
+/// Pairs from CSV: `sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]`. A segment of no length or a weight that is not
+/// above 0 is an error, and so is a file without a pair.
+Expected<PairTable> readCsvPairs(std::istream &in, std::string name);
 
 /// Which columns a CSV file must and may have.
 struct CsvColumns {
@@ -22,7 +35,10 @@ struct CsvColumns {
 /// of no bytes.
 class CsvReader {
 public:
-    CsvReader(std::istream &in, std::string name, CsvColumns columns, bool furtherColumns = false);
+    CsvReader(std::istream &in, std::string name, CsvColumns columns, bool furtherColumns = false)
+        : lines_(in, std::move(name))
+        , columns_(std::move(columns))
+        , furtherColumns_(furtherColumns) {}
 
     /// The next row: the values of all required columns, then of the optional ones the file has. Nothing at
     /// the end of the file or on an error, see error().
@@ -49,7 +65,10 @@ private:
 
     bool takeRow();
 
-    const std::string &columnName(std::size_t i) const;
+    const std::string &columnName(std::size_t i) const {
+        return i < columns_.required.size() ? columns_.required[i]
+                                            : columns_.optional[i - columns_.required.size()];
+    }
     /// `columns x,y` or `columns a,b[,weight]`
     std::string expectation() const;
 
@@ -65,6 +84,26 @@ private:
     std::vector<double> row_;
     std::optional<InputError> error_;
 };
+
+/// Segments of a CSV file with whatever else stands in their rows.
+struct SegmentTable {
+    std::vector<LineSegment2D<double>> segments; ///< metres; free space on the left
+    std::vector<std::string> furtherNames;       ///< of the columns beside x1,y1,x2,y2; empty without header
+    std::vector<std::vector<std::string>> further; ///< their fields, row by row
+};
+
+/// Segments from CSV: columns `x1,y1,x2,y2`, by name where there is a header, else the first four. A segment
+/// too long for its length to be told is an error.
+Expected<SegmentTable> readCsvSegments(std::istream &in, std::string name);
+
+/// Segments as CSV with the header `x1,y1,x2,y2`.
+template <typename Scalar>
+void writeCsvSegments(std::ostream &out, const std::vector<LineSegment2D<Scalar>> &segments) {
+    out << "x1,y1,x2,y2\n";
+    for (const auto &s : segments)
+        out << Number(s.begin().x) << ',' << Number(s.begin().y) << ',' << Number(s.end().x) << ','
+            << Number(s.end().y) << '\n';
+}
 
 } // namespace vectorlib
 

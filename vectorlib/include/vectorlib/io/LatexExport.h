@@ -3,10 +3,10 @@
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/io/LatexPicture.h"
-#include "vectorlib/io/LatexText.h"
-#include "vectorlib/io/Picture.h"
+#include "vectorlib/io/Svg.h"
 
 #include <iosfwd>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -38,7 +38,11 @@ public:
         LatexPicture(picture, frame).write(out_);
     }
     /// What the layers with a label mean.
-    void legend(const std::vector<Picture::Layer> &layers);
+    void legend(const std::vector<Picture::Layer> &layers) {
+        out_ << "{\\small\\raggedright\n";
+        LatexPicture::writeLegend(out_, layers);
+        out_ << "\\par}\n\\bigskip\n";
+    }
     /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
     /// header; others that are wider than the page are made smaller.
     void table(const Table &table);
@@ -57,7 +61,10 @@ public:
     }
 
     /// The end of the document; nothing is written after it.
-    void finish();
+    void finish() {
+        if (as_ == As::Document)
+            out_ << "\\end{document}\n";
+    }
 
 private:
     template <typename Write>

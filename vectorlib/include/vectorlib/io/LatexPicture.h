@@ -3,11 +3,36 @@
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/io/Number.h"
-#include "vectorlib/io/Picture.h"
+#include "vectorlib/io/Svg.h"
 
+#include <cstdio>
 #include <ostream>
 #include <string>
 #include <vector>
+
+namespace vectorlib {
+
+namespace latex {
+
+/// What stands for a character that is no letter; nothing where there is none.
+const char *sign(char32_t c);
+
+/// Letters beyond ASCII that the fonts of the T1 encoding have.
+bool isLetter(char32_t c);
+
+/// One character of ASCII; control characters are blanks.
+std::string plain(char c, char next);
+
+/// Whether an exponent begins behind a ^: m^2, s^-1.
+std::size_t exponentLength(const std::string &text, std::size_t at);
+
+} // namespace latex
+
+/// Any UTF-8 text as it must be written in a LaTeX document with the T1 encoding; `^2` and the like are
+/// raised. What pdflatex has no sign for stands as its number, [U+4E2D]; bytes that are no UTF-8 as ?.
+std::string latexText(const std::string &text);
+
+} // namespace vectorlib
 
 namespace vectorlib {
 
@@ -61,8 +86,15 @@ private:
     void writePart(std::ostream &out, const Picture::Layer &layer, std::size_t from, std::size_t to) const;
     void writeArea(std::ostream &out, const Picture::Layer &layer) const;
     void writeNormals(std::ostream &out, const Picture::Layer &layer) const;
-    static void openDraw(std::ostream &out, const Picture::Style &style);
-    static void writePose(std::ostream &out, Point p, double heading, const Picture::Style &style);
+    static void openDraw(std::ostream &out, const Picture::Style &style) {
+        out << "\\draw[color=" << latex::colour(style.colour) << ", line width=" << Fixed{style.width / 2, 2}
+            << "pt" << (style.dashed ? ", dashed" : "") << ']';
+    }
+    static void writePose(std::ostream &out, Point p, double heading, const Picture::Style &style) {
+        out << "\\fill[color=" << latex::colour(style.colour) << "] " << At{p} << " circle (1.8pt);\n";
+        openDraw(out, {style.colour, 2, ""});
+        out << ' ' << At{p} << "--+" << At{Point(std::cos(heading), std::sin(heading)) * 0.25} << ";\n";
+    }
     static void writeSample(std::ostream &out, const Picture::Layer &layer);
 
     const Picture &picture_;

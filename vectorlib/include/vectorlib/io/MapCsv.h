@@ -1,8 +1,8 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/edges/MapEdge.h"
-#include "vectorlib/io/InputError.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
+#include "vectorlib/io/TextInput.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/io/Tum.h"
 
 #include <iosfwd>
@@ -9,6 +9,13 @@
 #include <vector>
 
 namespace vectorlib {
+
+/// A map as a DXF drawing (release 12, which every CAD program reads): one LINE a segment on layer MAP, one
+/// unit a metre.
+void writeDxf(std::ostream &out, const std::vector<MapEdge> &map);
+
+/// A map as GeoJSON: one LineString a segment. Coordinates are metres in the map's own frame, not degrees.
+void writeGeoJson(std::ostream &out, const std::vector<MapEdge> &map);
 
 /// A map and what belongs into a picture of it; metres, map frame.
 struct MapDrawing {

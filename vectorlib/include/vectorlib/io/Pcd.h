@@ -2,7 +2,6 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/TextInput.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Tum.h"
@@ -26,9 +26,16 @@ public:
                                                 double resolution = 0.05, double driven = 0.25);
 
     /// Writes the picture; occupied cells are black, free ones white.
-    void writePgm(std::ostream &out) const;
+    void writePgm(std::ostream &out) const {
+        out << "P5\n" << width_ << ' ' << height_ << "\n255\n";
+        out.write(reinterpret_cast<const char *>(cells_.data()), static_cast<std::streamsize>(cells_.size()));
+    }
     /// picture: name of the PGM file as the YAML file shall refer to it.
-    void writeYaml(std::ostream &out, const std::string &picture) const;
+    void writeYaml(std::ostream &out, const std::string &picture) const {
+        out << "image: " << picture << "\nresolution: " << Number(resolution_) << "\norigin: ["
+            << Number(origin_.x) << ", " << Number(origin_.y)
+            << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    }
 
 private:
     static constexpr unsigned char occupiedCell = 0, unknownCell = 205, freeCell = 254;
@@ -38,7 +45,12 @@ private:
     void line(Vector2D<double> a, Vector2D<double> b, double radius, unsigned char value);
     void disc(Vector2D<double> centre, double radius, unsigned char value);
     // The picture's first row is the map's highest.
-    void set(int column, int row, unsigned char value);
+    void set(int column, int row, unsigned char value) {
+        if (column < 0 || row < 0 || column >= static_cast<int>(width_) || row >= static_cast<int>(height_))
+            return;
+        cells_[(height_ - 1 - static_cast<std::size_t>(row)) * width_ + static_cast<std::size_t>(column)] =
+            value;
+    }
 
     double resolution_ = 0.05;
     Vector2D<double> origin_; ///< lower left corner

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/io/InputError.h"
+#include "vectorlib/error/Result.h"
 
 #include <array>
+#include <cstddef>
 #include <istream>
 #include <optional>
 #include <string>
@@ -11,6 +12,35 @@
 #include <vector>
 
 namespace vectorlib {
+
+/// Why an input could not be read: where it is, what was found there and what was expected instead.
+struct InputError {
+    std::string file;     ///< name of the input as the caller gave it
+    std::size_t line = 0; ///< counted from 1; 0 when the input as a whole is meant
+    std::string found;
+    std::string expected;
+
+    /// `room.csv:12: found "nan", expected a finite number`
+    std::string message() const {
+        const std::string place = line > 0 ? file + ":" + std::to_string(line) : file;
+        return place + ": found " + found + ", expected " + expected;
+    }
+};
+
+/// What was read, or why it could not be read.
+template <typename T>
+using Expected = Result<T, InputError>;
+
+/// A character of a text in UTF-8, and how many bytes it takes: 1 where it is none.
+struct Utf8Character {
+    char32_t code = 0;
+    std::size_t length = 1;
+    bool isValid() const { return code != 0; }
+};
+
+/// The character that begins at a byte of the text. No such character are bytes that are cut short or stand
+/// alone, longer forms than needed, surrogates, and what lies beyond Unicode.
+Utf8Character nextCharacter(const std::string &text, std::size_t at);
 
 /// Lines of a text input, read in blocks; memory stays bounded whatever the input holds. CR LF counts as one
 /// line end.

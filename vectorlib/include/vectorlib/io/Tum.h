@@ -2,7 +2,7 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Pose2D.h"
-#include "vectorlib/io/InputError.h"
+#include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/io/TextInput.h"
 
 #include <iosfwd>
@@ -10,6 +10,11 @@
 #include <vector>
 
 namespace vectorlib {
+
+/// A graph in the format of g2o: `VERTEX_SE2 number x y theta` and `EDGE_SE2 from to x y theta` with the
+/// upper triangle of the information matrix, multiplied by the weight of the constraint, in the frame of the
+/// second pose as measured; metres, radians.
+void writeG2o(std::ostream &out, const PoseGraph &graph);
 
 /// A pose and when it was taken.
 struct StampedPose {

@@ -1,21 +1,80 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/correspondence/ShiftVotes.h"
-#include "vectorlib/correspondence/TurnVotes.h"
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/correspondence/Votes.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/mapping/GlobalPairMatch.h"
-#include "vectorlib/mapping/MatchProbability.h"
-#include "vectorlib/registration/PointCovariance.h"
 #include "vectorlib/registration/PointRefinement.h"
+#include "vectorlib/registration/RegistrationCovariance.h"
 #include "vectorlib/registration/ScanSurface.h"
-#include "vectorlib/registration/SurfaceRefinement.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
 namespace vectorlib {
+
+/// A motion that may be the one between two scans.
+struct GlobalPairSolution {
+    Transformation2D pose;      ///< of the second scan's sensor in the frame of the first
+    SurfaceAgreement agreement; ///< of both scans
+    double score = 0;           ///< that of the agreement; solutions are ranked by it
+    double probability = 0;     ///< that the motion is within 10 cm and 2 degrees; see MatchProbability
+};
+
+/// What is known of the motion between two scans.
+enum class GlobalPairVerdict {
+    Found,         ///< the first solution is to be trusted
+    Ambiguous,     ///< several motions fit alike: look at all solutions
+    OpenDirection, ///< the scans slide on each other, as along a corridor: solutions stand all along it
+    TooUnlike,     ///< no motion explains enough
+    NothingFixed,  ///< the first scan shows too few surfaces
+    NothingMoving  ///< the second scan shows too few surfaces
+};
+
+/// The verdict in words, for people.
+const char *describe(GlobalPairVerdict verdict);
+
+/// The motion between two scans of which nothing else is known.
+struct GlobalPairMatch {
+    std::vector<GlobalPairSolution> solutions; ///< distinct ones, best first
+    GlobalPairVerdict verdict = GlobalPairVerdict::TooUnlike;
+    /// By how much the score falls when the best solution slides half a metre where it is held least.
+    double slideLoss = 0;
+    bool searchedWidely = false; ///< the first, quick search did not convince
+
+    bool isAccepted() const { return verdict == GlobalPairVerdict::Found; }
+};
+
+/// How probable it is that a solution of a match without estimate is right: within 10 cm and 2 degrees of
+/// corrected poses, whose own errors count as those of the match. A logistic function of how well the best
+/// solution agrees, up to a ceiling, tells whether the right one is among them; powers of how well each of
+/// them fits divide that among them: of two that fit alike each has half. It takes for granted that the scans
+/// show the same place.
+struct MatchProbability {
+    using Features = std::array<double, 5>;
+
+    /// Of the features. With the ceiling and the sharpness fitted to the first half of the
+    /// pairs of five logs, neighbouring scans and ones farther apart, by hermes-vector experiment calibration
+    /// --half 1 --log intel... (docs/algorithms.md has all of it).
+    Features weights{-3.92, -10.99, 12.39, 2.44, -3.19};
+    double ceiling = 0.986;  ///< however well two scans agree: corrected poses have errors, too
+    double sharpness = 36.7; ///< how much a difference of fit tells
+
+    /// What tells whether the right solution is among those of a match that has some: a constant 1, the part
+    /// that the best contradicts of what it explains or contradicts, what it loses by sliding, the logarithm
+    /// of how many metres of surface it explains, and its score.
+    static Features features(const GlobalPairMatch &match);
+    /// Half of it counts what is out of the other scan's sight, half of it hardly does.
+    static double fit(const GlobalPairSolution &s) {
+        return (s.agreement.score() + s.agreement.consistency()) / 2;
+    }
+    /// That the right solution is among those of a match with these features.
+    double ofAny(const Features &f) const;
+    /// Sets the probability of every solution of a match; they add up to at most `ceiling`.
+    void operator()(GlobalPairMatch &match) const;
+};
 
 /// How thoroughly motions are searched.
 struct GlobalSearchEffort {
@@ -96,21 +155,36 @@ private:
     bool isRival(const GlobalPairSolution &s, const GlobalPairSolution &best, double margin) const {
         return isFar(s, best) && s.agreement.consistency() > best.agreement.consistency() - margin;
     }
-    bool hasRival(double margin) const;
+    bool hasRival(double margin) const {
+        const Solutions &all = match_.solutions;
+        return std::any_of(all.begin(), all.end(), [&](const auto &s) { return isRival(s, all[0], margin); });
+    }
     bool convinces() const;
 
     // By about so many points of each scan.
     GlobalPairSolution judged(const Transformation2D &pose, double deviation, int points) const;
-    GlobalPairSolution refined(const Transformation2D &pose);
+    GlobalPairSolution refined(const Transformation2D &pose) {
+        const Expectation nothing{{}, 1e6, 1e6};
+        return judged(refine(pose, nothing), settings.deviation, allPoints);
+    }
     bool isSame(const Transformation2D &a, const Transformation2D &b) const {
         return isNear(a, b, settings.sameXY, settings.sameAlpha);
     }
-    static bool isNear(const Transformation2D &a, const Transformation2D &b, double xy, double alpha);
+    static bool isNear(const Transformation2D &a, const Transformation2D &b, double xy, double alpha) {
+        return (a.translation() - b.translation()).squaredNorm() < xy * xy &&
+               a.cos() * b.cos() + a.sin() * b.sin() > std::cos(alpha);
+    }
     // Best first, and of those that are the same the best.
     void keepDistinct(Solutions &list) const;
 
-    GlobalPairSolution slid(const GlobalPairSolution &from, double metres) const;
-    double slideLossOf(const GlobalPairSolution &s) const;
+    GlobalPairSolution slid(const GlobalPairSolution &from, double metres) const {
+        const Vector2D<double> t = from.pose.translation() + from.agreement.openDirection() * metres;
+        return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
+    }
+    double slideLossOf(const GlobalPairSolution &s) const {
+        const double own = judged(s.pose, settings.deviation, settings.slidePoints).score;
+        return own - std::max(slid(s, 2 * settings.slideStep).score, slid(s, -2 * settings.slideStep).score);
+    }
     // Where the best solution is held least, places beside it may be better, and how much worse they are
     // tells how firmly it is held at all.
     void slide();

@@ -2,15 +2,14 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
-#include "vectorlib/edges/MapEdge.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/mapping/MapRegistration.h"
+#include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/VectorMap.h"
 #include "vectorlib/observation/Observer.h"
-#include "vectorlib/places/PlaceFit.h"
+#include "vectorlib/places/PlaceFitter.h"
 #include "vectorlib/places/PlaceSearch.h"
 #include "vectorlib/places/Relocalized.h"
 
@@ -18,6 +17,11 @@
 #include <vector>
 
 namespace vectorlib {
+
+/// Adds a map, moved, to another one: walls that both have become one by their sums, their observations are
+/// added, and the others are new. Walls farther apart than `distance` (root mean square, metres) stay two.
+void mergeMap(VectorMap &map, const std::vector<MapEdge> &added, const Transformation2D &motion,
+              double distance = 0.10);
 
 /// How the search of one map in another ended.
 struct MapAlignment {
@@ -78,20 +82,38 @@ private:
     void findVotes(VectorMap &fixed, const std::vector<MapEdge> &moving);
     static const Relocalized &search(PlaceSearch &search, const std::vector<MapEdge> &map,
                                      const PlaceOfMap &place);
-    bool isNear(const Transformation2D &a, const Pose2D &b, double way) const;
-    bool agree(const Vote &a, const Vote &b) const;
+    bool isNear(const Transformation2D &a, const Pose2D &b, double way) const {
+        const Transformation2D off = a.inverse() * Transformation2D(b);
+        return off.translation().norm() <= same + bent * way && std::abs(off.alpha()) <= sameAlpha;
+    }
+    bool agree(const Vote &a, const Vote &b) const {
+        const Transformation2D there = a.motion * Transformation2D(b.pose);
+        const Transformation2D found = b.motion * Transformation2D(b.pose);
+        return isNear(there, found.pose(), std::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y));
+    }
     // The one that most agree with; and how many agree with each other, and not with it.
     std::size_t bestVote(MapAlignment &result) const;
     // Least squares over the places that agree with one: they lie apart, and tell the angle better than each.
     Transformation2D motionOfAll(const Vote &best) const;
     // Places where the first map shows something else, and walls that would be looked through. Doors and
     // furniture move: places that agree, or where most is alike, are none.
-    std::size_t countContradictions(const Transformation2D &motion);
+    std::size_t countContradictions(const Transformation2D &motion) {
+        std::size_t against = 0;
+        forEachFit(motion, [&](const PlaceFit &fit) { against += isAgainst(fit); });
+        return against;
+    }
     static bool isAgainst(const PlaceFit &fit) {
         return fit.hiddenShare() > mostHidden && fit.explainedShare() < leastAlike;
     }
     template <typename Take>
-    void forEachFit(const Transformation2D &motion, Take take);
+    void forEachFit(const Transformation2D &motion, Take take) {
+        for (const PlaceOfMap &place : places_) {
+            inFixed_.scan.take(place.edges, {});
+            take(inFixed_.fit.judge(inFixed_.index().tiles(), inFixed_.scan.points(),
+                                    motion * Transformation2D(place.pose), 1, true,
+                                    inFixed_.scan.wallOfPoint()));
+        }
+    }
 
     Observer<double> observe_;
     PlaceSearch inFixed_, inMoving_;

@@ -6,17 +6,59 @@
 #include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/geometry/LineSegment2D.h"
-#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/VectorMap.h"
+#include "vectorlib/registration/LineSegmentRegistration.h"
 
 #include <chrono>
 #include <vector>
 
 namespace vectorlib {
+
+/// How far two maps show the same walls, by some motion of the second one.
+struct MapOverlap {
+    Transformation2D motion; ///< moves the second map onto the first
+    double length = 0;       ///< of walls that both have; metres
+    double rms = 0;          ///< root mean square distance of these walls from each other; metres
+    double reliability = 0;  ///< in [0, 1], of the directions of these walls
+};
+
+/// Lays one map onto another, beginning nearby: walls that lie beside each other and face alike are pairs,
+/// and the motion follows from all pairs in closed form, step by step nearer.
+class MapRegistration {
+public:
+    double firstGate = 0.5, lastGate = 0.2;   ///< most distance of two walls, as maps bend; metres
+    double firstTurn = 0.15, lastTurn = 0.05; ///< most angle between them; radians
+    double leastOverlap = 0.2;                ///< of two walls; metres
+    int steps = 16;
+
+    /// `moving` changes no more than its motion. The first map is not const as its search keeps buffers.
+    MapOverlap operator()(VectorMap &fixed, const std::vector<MapEdge> &moving, Transformation2D motion);
+
+private:
+    void collect(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &motion,
+                 double gate, double turn);
+    // Mean square distance of the part that lies beside the other; m^2.
+    static double apart(const LineSegment2D<double> &known, const LineSegment2D<double> &wall) {
+        const double t0 = wall.along(known.begin()), t1 = wall.along(known.end());
+        return known.meanSquareAcross(
+            wall.part(std::max(0.0, std::min(t0, t1)), std::min(wall.length(), std::max(t0, t1))));
+    }
+    // Walls are registered in a frame in their middle, where an error of the angle is none of the position.
+    LineSegmentRegistration registration(Vector2D<double> middle) const;
+    Vector2D<double> middle() const;
+    Transformation2D improved(const Transformation2D &motion) const {
+        const Vector2D<double> m = middle();
+        const Transformation2D step = registration(m).transformation();
+        return Transformation2D(m.x, m.y, 0) * step * Transformation2D(-m.x, -m.y, 0) * motion;
+    }
+    MapOverlap judge(const Transformation2D &motion) const;
+
+    std::vector<SegmentPair> pairs_; // both in the frame of the fixed map; weighted by their overlap
+};
 
 /// What happened to one scan, and how long each step took; milliseconds.
 struct ScanReport {
@@ -59,7 +101,10 @@ public:
 
     /// Takes a scan (sensor frame, in the order of ScanOrder) and where the sensor is expected to be (map
     /// frame), by odometry or by its motion so far.
-    const ScanReport &process(PointSpan<float> scan, const Pose2D &expected);
+    const ScanReport &process(PointSpan<float> scan, const Pose2D &expected) {
+        find(scan, expected);
+        return conclude(scan, true);
+    }
     /// The first half of it, which may be done again for the same scan, straightened otherwise or expected
     /// elsewhere: the pose. Leaves the map alone.
     const ScanReport &find(PointSpan<float> given, const Pose2D &expected);
@@ -95,7 +140,10 @@ public:
     const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
 
     /// The sensor was put elsewhere: the next scan is matched with the map alone.
-    void forgetPrevious();
+    void forgetPrevious() {
+        previousPoints_.clear();
+        passedOver_ = 0;
+    }
     /// Takes a map that was made anew and gives the old one; `moved` tells where in it a pose of the old one
     /// lies.
     void correct(VectorMap &other, const Transformation2D &moved);
@@ -112,7 +160,10 @@ private:
     Transformation2D expectedByPrevious(PointSpan<float> scan, const Pose2D &given);
     void remember(PointSpan<float> scan);
     // Not where the next scan would be looked for anywhere, nor too many in a row.
-    bool passesOver() const;
+    bool passesOver() const {
+        return !followed_ && report_.outcome != ScanReport::Outcome::Matched &&
+               !matchPair.settings.searchAnywhere && passedOver_ + 1 < settings.lostBeforeRestart;
+    }
     void locate(const Transformation2D &expected);
     // The part of the map that the scan can touch from any permitted pose.
     void collectVisible(const Transformation2D &expected);

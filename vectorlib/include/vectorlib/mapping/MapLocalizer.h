@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/MapBuilder.h"
@@ -44,14 +44,25 @@ public:
     MapLocalizerSettings settings;
     ScanTracker tracker; ///< takes scans only here
 
-    explicit MapLocalizer(const std::vector<MapEdge> &map);
+    explicit MapLocalizer(const std::vector<MapEdge> &map) {
+        for (const MapEdge &edge : map)
+            tracker.builder.map.add(edge, edge.observations);
+        apply({});
+    }
     /// The search takes the time that it needs.
-    void apply(ScanTrackerSettings of);
+    void apply(ScanTrackerSettings of) {
+        of.relocalizeSeconds = 1e6;
+        tracker.apply(of);
+        tracker.builder.settings.grow = false;
+    }
 
     /// The next scan of the drive.
     void take(const TimedScan &scan);
     /// After the last scan: a place that nothing confirmed does not count.
-    void finish();
+    void finish() {
+        if (state_ == State::Proposed)
+            drop();
+    }
 
     const std::vector<LocalizedScan> &scans() const { return scans_; }
     std::size_t searches() const { return searches_; }
@@ -72,7 +83,10 @@ private:
     };
 
     void seek();
-    Relocalized search();
+    Relocalized search() {
+        ++searches_;
+        return tracker.relocalize(false);
+    }
     bool isFarFromSought(const TimedScan &scan);
     bool isKeyMotion(const Transformation2D &way) const {
         return way.translation().norm() >= settings.keyWay || std::abs(way.alpha()) >= settings.keyTurn;

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/ParallelTwins.h"
-#include "vectorlib/mapping/ScanDrive.h"
+#include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/VectorMap.h"
 #include "vectorlib/mapping/WallEvidence.h"
 #include "vectorlib/tls/TlsSums.h"

@@ -6,9 +6,9 @@
 #include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/mapping/ScanDrive.h"
+#include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/VectorMap.h"
-#include "vectorlib/mapping/WallFinder.h"
+#include "vectorlib/mapping/WallEvidence.h"
 
 #include <cstdint>
 #include <map>

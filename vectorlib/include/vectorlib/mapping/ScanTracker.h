@@ -5,20 +5,16 @@
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/geometry/Twist2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/MapBuilder.h"
-#include "vectorlib/mapping/PoseTrust.h"
+#include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/TimedScan.h"
-#include "vectorlib/mapping/TrackedBy.h"
 #include "vectorlib/mapping/VectorMap.h"
-#include "vectorlib/motion/MotionCompensation.h"
 #include "vectorlib/motion/MotionModel.h"
-#include "vectorlib/motion/OdometryModel.h"
-#include "vectorlib/motion/TwistCorrection.h"
+#include "vectorlib/motion/OdometryBuffer.h"
 #include "vectorlib/places/PlaceSearch.h"
 #include "vectorlib/places/Relocalized.h"
-#include "vectorlib/segmentation/EarSettings.h"
+#include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <chrono>
 #include <cstdint>
@@ -88,10 +84,16 @@ public:
     TrackedBy trackedBy() const;
     /// The motion from the pose of the scan before to the last scan, as this tells it: one that the map shows
     /// again leaps by what went wrong since it did so last.
-    Transformation2D tracked(const Transformation2D &before) const;
+    Transformation2D tracked(const Transformation2D &before) const {
+        const bool isLeap = trackedBy() == TrackedBy::Scan;
+        return before.inverse() * (isLeap ? builder.expected() : Transformation2D(builder.report().pose));
+    }
     /// How probable it is that the pose of the last scan is right, as of PoseTrust; 0 of a scan that was lost
     /// or skipped, or that the map had nothing to compare with.
-    double trust() const;
+    double trust() const {
+        const auto features = trustFeatures();
+        return features ? poseTrust(*features) : 0;
+    }
     /// What it goes by; nothing where it is 0 anyway.
     std::optional<PoseTrust::Features> trustFeatures() const;
     /// The frame of the odometry in that of the map, by the last scan that had any.

@@ -2,12 +2,12 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
-#include "vectorlib/edges/MapEdge.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/geometry/Vector2D.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -67,9 +67,17 @@ public:
     /// Another edge on the same wall; id and observations stay.
     void replace(int number, const EdgeRaw2D &edge);
     /// Takes the edge of that number out of the map; its slot stays.
-    void remove(int number);
+    void remove(int number) {
+        edges_[static_cast<std::size_t>(number)].observations = 0;
+        --alive_;
+        changed_.push_back(number);
+    }
     /// Numbers of edges that were added, merged or removed since the last call, for those who send changes.
-    std::vector<int> takeChanges();
+    std::vector<int> takeChanges() {
+        std::sort(changed_.begin(), changed_.end());
+        changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+        return std::exchange(changed_, {});
+    }
 
 private:
     template <typename Place, typename Size>

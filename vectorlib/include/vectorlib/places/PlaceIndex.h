@@ -1,15 +1,123 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/places/WallTiles.h"
+#include "vectorlib/registration/ScanIndex.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace vectorlib {
+
+/// A point of a scan and the direction of the wall there, free space on its left; sensor frame.
+struct WallPoint {
+    Vector2D<float> position;  ///< metres
+    Vector2D<float> direction; ///< of unit length
+    int object = 0;            ///< by ScanObjects
+};
+
+/// Tells which points of a scan lie on one and the same object, so that what they say is said once. An object
+/// is a wall, or the walls that meet at corners that stick out, as those of a cupboard do; pieces of one line
+/// are one wall.
+class ScanObjects {
+public:
+    static constexpr int most = 63; ///< objects; the last one is all further ones
+    double meeting = 0.25;          ///< between the ends of walls that meet; metres
+    double sticksOut = 0.3;         ///< sine of the angle at such a corner, at least
+    double beside = 0.1;            ///< a point lies on a wall so near; metres
+    double sameLine = 0.985;        ///< cosine between pieces of one line, at least
+    double gap = 0.3;               ///< between points of one object that is no wall; metres
+
+    /// Walls with the most telling first, points counter-clockwise; both in the sensor's frame.
+    void number(const std::vector<LineSegment2D<double>> &walls, std::vector<WallPoint> &points);
+
+private:
+    using Vector = Vector2D<double>;
+    using Wall = LineSegment2D<double>;
+    static constexpr double sameFacing = 0.8; // cosine between a point's wall and one it lies on, at least
+
+    void join(const std::vector<Wall> &walls);
+    bool isOne(const Wall &a, const Wall &b) const;
+    int wallOf(const std::vector<Wall> &walls, const WallPoint &point) const;
+    int root(int i) const {
+        while (parent_[at(i)] != i)
+            i = parent_[at(i)];
+        return i;
+    }
+    static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+    int count_ = 0; // of walls
+    std::array<int, most> parent_{};
+};
+
+/// A scan as the search of a place needs it: its walls, the most telling first, and points that stand for
+/// about as much wall each. Keeps its buffers.
+class PlaceScan {
+public:
+    std::size_t mostPoints = 160; ///< that are compared with a map
+    double spacing = 0.08;        ///< between them, at least; metres
+    ScanObjects objects;
+
+    /// Edges and points in the sensor's frame, metres; points counter-clockwise. Without points the edges
+    /// stand for them. What is not finite is left out.
+    void take(const std::vector<EdgeRaw2D> &edges, PointSpan<float> points);
+    const std::vector<WallPoint> &points() const { return points_; }
+    /// First the longest, then the longest that crosses it, then the others by length.
+    const std::vector<LineSegment2D<double>> &walls() const { return walls_; }
+    /// How much wall a point stands for; metres.
+    double wallOfPoint() const { return wallOfPoint_; }
+
+private:
+    static constexpr std::size_t mostRead = 4000; // of a scan with more points, every n-th is read
+    static constexpr double crossing = 0.5;       // sine of the angle of walls that cross
+
+    void takeWalls(const std::vector<EdgeRaw2D> &edges);
+    void takePoints(PointSpan<float> points);
+    void takePointsOfWalls();
+    // Keeps so many, evenly.
+    void thin();
+
+    ScanIndex index_;
+    std::vector<WallPoint> points_;
+    std::vector<LineSegment2D<double>> walls_;
+    double wallOfPoint_ = 0;
+};
+
+/// Which eighth of a turn a direction lies in, 0 to 7 counter-clockwise from the x axis.
+template <typename Scalar>
+int octantOf(Vector2D<Scalar> d) {
+    int octant = 0;
+    if (d.y < 0) {
+        d = -d;
+        octant = 4;
+    }
+    if (d.x < 0) {
+        d = {d.y, -d.x};
+        octant += 2;
+    }
+    return (octant + (d.y > d.x)) & 7;
+}
+
+/// One bit for the eighth of a turn that a wall faces: its direction with free space on the left.
+template <typename Scalar>
+std::uint8_t facingBit(Vector2D<Scalar> direction) {
+    return static_cast<std::uint8_t>(1u << octantOf(direction));
+}
+
+/// The bits of all directions within 25 degrees of a wall's.
+inline std::uint8_t facingBits(Vector2D<double> direction) {
+    constexpr double cosine = 0.9063, sine = 0.4226;
+    const Vector2D<double> d = direction;
+    return static_cast<std::uint8_t>(
+        facingBit(d) | facingBit(Vector2D<double>(cosine * d.x - sine * d.y, sine * d.x + cosine * d.y)) |
+        facingBit(Vector2D<double>(cosine * d.x + sine * d.y, cosine * d.y - sine * d.x)));
+}
 
 /// The walls of a map for the search of places: by length, and by where they are. Grows and changes with the
 /// map at a cost that follows the change.
@@ -68,7 +176,11 @@ private:
         std::size_t place = 0; // among those of about its length
     };
 
-    static bool isUsable(const Wall &w);
+    static bool isUsable(const Wall &w) {
+        const double far = std::max(
+            {std::abs(w.begin().x), std::abs(w.begin().y), std::abs(w.end().x), std::abs(w.end().y)});
+        return w.length() <= longest && far < farthest;
+    }
     static int lengthBinOf(double length) {
         return length > 0.1 ? std::clamp(static_cast<int>(2 * std::log2(length * 10)), 0, lengthBins - 1) : 0;
     }

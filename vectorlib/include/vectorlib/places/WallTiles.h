@@ -3,7 +3,6 @@
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/places/TileTable.h"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,41 @@
 #include <vector>
 
 namespace vectorlib {
+
+/// Numbers the square tiles of an unbounded plane in the order in which they are first entered: a hash table
+/// with open addressing, a few nanoseconds a look-up.
+class TileTable {
+public:
+    explicit TileTable(double side)
+        : perMetre_(1 / side) {}
+
+    /// Of the tile that holds a coordinate. Coordinates beyond 10^9 tiles are in the last one, NaN is in 0.
+    std::int32_t index(double coordinate) const {
+        const double i = std::floor(coordinate * perMetre_);
+        return i == i ? static_cast<std::int32_t>(std::clamp(i, -1e9, 1e9)) : 0;
+    }
+    /// The number of a tile, or -1.
+    int find(std::int32_t i, std::int32_t j) const;
+    /// The number of a tile, which is entered when it is new.
+    int enter(std::int32_t i, std::int32_t j);
+
+private:
+    struct Slot {
+        std::int32_t i = 0, j = 0;
+        int number = -1;
+    };
+    static std::size_t hash(std::int32_t i, std::int32_t j) {
+        const std::uint64_t key =
+            static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 | static_cast<std::uint32_t>(j);
+        return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 32);
+    }
+    void put(const Slot &slot);
+    void grow();
+
+    double perMetre_;
+    std::vector<Slot> slots_; // a power of two of them, at most half of them taken
+    std::size_t count_ = 0;
+};
 
 /// The walls of a map by place, in square tiles: which walls lie near a point, what a ray meets, and, in
 /// cells of 10 cm, whether a wall that faces some way is beside a point. Walls come and go by number. Map
@@ -88,7 +122,11 @@ private:
     }
     int rasterOf(Tile &t);
     void forgetRasters();
-    void redraw(Tile &t);
+    void redraw(Tile &t) {
+        rasters_[static_cast<std::size_t>(t.raster)].fill(0);
+        for (int number : t.walls)
+            draw(t, wall(number));
+    }
     void draw(Tile &t, const Wall &wall);
 
     TileTable table_{tile};

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/segmentation/ScanOrder.h"
+#include "vectorlib/simd/Lanes.h"
 
+#include <cmath>
 #include <vector>
 
 namespace vectorlib {
@@ -29,7 +31,11 @@ public:
     int nearest(Vector2D<float> p, float squaredGate) const;
     /// The same among the eight points in about the direction of p only: fast, and enough where p is nearly
     /// right.
-    int nearestAhead(Vector2D<float> p, float squaredGate) const;
+    int nearestAhead(Vector2D<float> p, float squaredGate) const {
+        const int first = ahead(p) - window / 2; // what lies outside is padding, far away
+        const simd::NearestOfEight nearest(x_.data() + at(first), y_.data() + at(first), p.x, p.y);
+        return nearest.squared < squaredGate ? first + nearest.number : -1;
+    }
     /// Whether the scanner looked past p: both points beside its direction lie well behind it.
     bool looksPast(Vector2D<float> p) const;
 
@@ -54,6 +60,53 @@ private:
     int size_ = 0;
     std::vector<Vector2D<float>> normals_;
     std::vector<int> first_; // by bin: the first point in it or in a later one
+};
+
+/// A rigid transformation in the scalars of points, for loops over many of them.
+struct FloatMotion {
+    float cos, sin;
+    Vector2D<float> translation;
+
+    explicit FloatMotion(const Transformation2D &t)
+        : cos(static_cast<float>(t.cos()))
+        , sin(static_cast<float>(t.sin()))
+        , translation(t.translation()) {}
+    /// A direction, turned.
+    Vector2D<float> rotate(Vector2D<float> v) const { return {cos * v.x - sin * v.y, sin * v.x + cos * v.y}; }
+    /// A point, moved.
+    Vector2D<float> operator*(Vector2D<float> p) const { return rotate(p) + translation; }
+};
+
+/// How well the points of two scans lie on each other.
+class PointAgreement {
+public:
+    /// Judges every n-th of the points, moved into the frame of the other scan.
+    void add(const ScanIndex &points, const Transformation2D &motion, const ScanIndex &other, double gate,
+             int sample);
+    /// How many points have one of the other scan beside them.
+    double explainedPoints() const { return explained_; }
+    /// Share of the points with one of the other scan beside them.
+    double explained() const { return points_ > 0 ? explained_ / points_ : 0; }
+    /// Of the points that can be judged, the share where the other scan saw something farther away. Points
+    /// outside its view or behind what it saw cannot be judged.
+    double contradicted() const {
+        const double judged = explained_ + contradicted_;
+        return judged > 0 ? contradicted_ / judged : 0;
+    }
+    /// Share of all points where the other scan saw something farther away.
+    double contradictedOfAll() const { return points_ > 0 ? contradicted_ / points_ : 0; }
+    /// In [-1, 1]: explained less contradicted points, and less the farther apart they are; 1 is perfect.
+    double score() const { return points_ > 0 ? (explained_ - distances_ - contradicted_) / points_ : 0; }
+    /// In [0, 1], of the walls' directions as that of lines (paper (28)): small along a corridor.
+    double reliability() const {
+        const double sum = xx_ + yy_;
+        return sum > 0 ? 2 * std::sqrt(std::max(0.0, xx_ * yy_ - xy_ * xy_)) / sum : 0;
+    }
+
+private:
+    double points_ = 0, explained_ = 0, contradicted_ = 0;
+    double distances_ = 0;            // squared, in units of the gate
+    double xx_ = 0, xy_ = 0, yy_ = 0; // sums over the walls' normals
 };
 
 } // namespace vectorlib

@@ -21,7 +21,10 @@ public:
     double distance = 0.10;      ///< and as on one line; metres
 
     const VectorMap &map() const { return map_; }
-    void clear();
+    void clear() {
+        map_.clear();
+        last_.clear();
+    }
     /// Adds a scan. Pairs hold numbers of segments of the scan before (fixed) and of this one (moving); pose
     /// is that of the sensor in the map.
     void update(const std::vector<CorrespondencePair> &pairs, const std::vector<TypedSegment> &scan,

@@ -35,13 +35,19 @@ struct MatchedArea {
 class MatchErrors {
 public:
     /// Global rotational and translational error of a scan. 6.2.
-    static PoseError ofPose(const Pose2D &estimate, const Pose2D &truth);
+    static PoseError ofPose(const Pose2D &estimate, const Pose2D &truth) {
+        return {std::abs(wrapAngle(estimate.theta - truth.theta)),
+                std::hypot(estimate.x - truth.x, estimate.y - truth.y)};
+    }
     /// Rotational and translational error between two scans as published: differences of coordinates in the
     /// frame of the map, so that an old error of the heading counts again in every translation. 6.2.
     static PoseError ofStep(const Pose2D &estimatedReference, const Pose2D &estimatedCurrent,
                             const Pose2D &trueReference, const Pose2D &trueCurrent);
     /// The same in the frame of the reference scan: of this match alone, whatever was wrong before.
-    static PoseError ofMotion(const Transformation2D &estimate, const Transformation2D &truth);
+    static PoseError ofMotion(const Transformation2D &estimate, const Transformation2D &truth) {
+        return {std::abs((estimate.inverse() * truth).alpha()),
+                (estimate.translation() - truth.translation()).norm()};
+    }
 
     /// The areas of all pairs at a pose that moves the current scan onto the reference. Pairs of which a
     /// segment is seen from behind or not finite are left out, and those without segments.

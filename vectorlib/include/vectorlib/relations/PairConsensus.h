@@ -7,14 +7,54 @@
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
-#include "vectorlib/registration/PointToLineRefinement.h"
+#include "vectorlib/registration/PointRefinement.h"
+#include "vectorlib/relations/MatchingTable.h"
 #include "vectorlib/relations/TypedSegment.h"
 #include "vectorlib/tls/TlsSums.h"
 
+#include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace vectorlib {
+
+/// The pairs of a matching table, best first. Algorithm 5: the pair of the largest merged score sets the
+/// rotation, the others must have the same within the window; what is matched makes the rest of its row and
+/// column invalid (Algorithm 7), or all that is not in its order (Algorithm 10). Keeps its buffers.
+class PairSearch {
+public:
+    double threshold = 0;                     ///< merged scores must be above it
+    double window = 5 * pi / 180;             ///< of rotations; radians
+    bool sameOrder = false;                   ///< Algorithm 10 instead of 7
+    static constexpr int mostSteps = 1 << 14; ///< pairs looked at, matched or not
+
+    /// rotation(row, column) is the angle that turns the current segment onto the reference one. What was
+    /// matched stays in the table, its rivals are gone. fixed is a row, moving a column.
+    template <typename RotationOf>
+    const std::vector<CorrespondencePair> &operator()(MatchingTable &table, RotationOf rotation) {
+        pairs_.clear();
+        MatchingTable::Cell best = table.maximum();
+        const double angle = best.score > 0 ? rotation(best.row, best.column) : 0;
+        for (int step = 0; best.score > threshold && step < mostSteps; ++step) {
+            if (std::abs(wrapAngle(rotation(best.row, best.column) - angle)) <= window) {
+                pairs_.push_back({best.row, best.column});
+                table.take(best.row, best.column);
+                if (sameOrder)
+                    table.keepInOrder(best.row, best.column);
+                else
+                    table.keepOnly(best.row, best.column);
+            } else {
+                table.invalidate(best.row, best.column);
+            }
+            best = table.maximum();
+        }
+        return pairs_;
+    }
+
+private:
+    std::vector<CorrespondencePair> pairs_;
+};
 
 /// The pairs that agree on one place, and the pose that fits them best. Algorithm 5 asks of its pairs only
 /// that they agree on the rotation; a wall taken for a parallel one does that too. Every two pairs that are
@@ -57,7 +97,11 @@ private:
 
     // How far apart two segments lie: at the middle of the shorter, whose line may be unsure elsewhere.
     // Metres; more than the limit where they are turned too much.
-    double apart(const LineSegment2D<double> &r, const LineSegment2D<double> &c) const;
+    double apart(const LineSegment2D<double> &r, const LineSegment2D<double> &c) const {
+        if (!(r.direction().dot(c.direction()) >= std::cos(angle)))
+            return 2 * distance;
+        return std::abs(c.length() < r.length() ? r.across(c.middle()) : c.across(r.middle()));
+    }
     void choose(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
                 const Segments &current, const Transformation2D &pose);
     // Of all segments, those that lie on each other: each current one with the nearest reference.
@@ -76,8 +120,14 @@ private:
     static TlsSums sumsOf(const TypedSegment &s);
     // Keeps the proposals of the most length, one of each place.
     void enter(const Proposal &p);
-    int addEmpty();
-    bool isNear(const Transformation2D &a, const Transformation2D &b) const;
+    int addEmpty() {
+        proposals_[static_cast<std::size_t>(count_)].length = 0;
+        return count_++;
+    }
+    bool isNear(const Transformation2D &a, const Transformation2D &b) const {
+        return (a.translation() - b.translation()).squaredNorm() <= 4 * distance * distance &&
+               a.cos() * b.cos() + a.sin() * b.sin() >= std::cos(2 * angle);
+    }
     // Whether an end of both is an edge that is known well enough, and where it is.
     bool commonEnd(const TypedSegment &r, const TypedSegment &c, bool atEnd, Vector2D<double> &there,
                    Vector2D<double> &here) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/Body.h"
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/relations/RelationSet.h"
 #include "vectorlib/relations/RelationSettings.h"
@@ -11,6 +12,27 @@
 #include <vector>
 
 namespace vectorlib {
+
+/// How much of one scan stands where the other has looked through: what is between a sensor and a segment
+/// that it sees is free. Two rooms that are alike but not the same contradict each other so.
+class SeenThrough {
+public:
+    double margin = 0.25; ///< how far in front of the other's segment counts; metres
+    int samples = 4;      ///< along each segment
+
+    /// Length of the segments of either scan that stand in the free space of the other when the pose brings
+    /// the current scan onto the reference; metres.
+    double operator()(const std::vector<TypedSegment> &reference, const std::vector<TypedSegment> &current,
+                      const Transformation2D &pose) const {
+        return standingIn(reference, current, pose) + standingIn(current, reference, pose.inverse());
+    }
+
+private:
+    double standingIn(const std::vector<TypedSegment> &seen, const std::vector<TypedSegment> &others,
+                      const Transformation2D &pose) const;
+    // Between the sensor, in the origin, and a segment of its scan, by more than the margin.
+    bool isInFront(const std::vector<TypedSegment> &seen, Vector2D<double> p) const;
+};
 
 /// The segments of a scan that take part in a match, with their relations. Left out are those that are not
 /// finite, lie beyond 1000 km or have no length, and of more than the bound all but the longest; the order

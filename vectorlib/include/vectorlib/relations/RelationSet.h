@@ -1,16 +1,114 @@
 #pragma once
 
 #include "vectorlib/Body.h"
-#include "vectorlib/relations/BinnedOrder.h"
-#include "vectorlib/relations/Corner.h"
 #include "vectorlib/relations/RelationSettings.h"
-#include "vectorlib/relations/Relations.h"
 #include "vectorlib/relations/TypedSegment.h"
+#include "vectorlib/relations/TypedSegmentExtractor.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace vectorlib {
+
+/// An angle as a 65536th of a turn: differences wrap by themselves.
+using TurnPart = std::uint16_t;
+
+/// The part of a turn of an angle in radians.
+TurnPart turnPart(double radians);
+/// Whether two angles differ by at most `window`; 65536ths of a turn.
+inline bool isWithin(TurnPart a, TurnPart b, int window) {
+    return std::abs(static_cast<std::int16_t>(static_cast<TurnPart>(a - b))) <= window;
+}
+
+/// Relation A of pose-free thesis 4.3: two segments and the relative angle between them.
+struct AngleRelation {
+    std::int16_t first = 0, second = 0;
+    TurnPart angle = 0;
+};
+
+/// How two parallel segments lie beside each other. Pose-free thesis 4.4.
+enum class OverlapKind : std::uint8_t { Overlap, MayOverlap, NoOverlap };
+
+/// Relation P of pose-free thesis 4.4: two parallel segments.
+struct ParallelRelation {
+    std::int16_t first = 0, second = 0;
+    TurnPart angle = 0;
+    OverlapKind kind = OverlapKind::MayOverlap;
+    bool isLeast = false; ///< the overlap may be longer: an end that limits it is interior
+    float along = 0;      ///< overlap length, or the gap of NoOverlap; metres. MayOverlap: undefined, 0
+    float across = 0;     ///< distance of the lines; metres
+};
+
+/// Relation E of pose-free thesis 4.5: two corners, their distance, and the angles from their segments to the
+/// line from the first corner to the second. A jump has one segment, and one angle is missing.
+struct CornerRelation {
+    std::int16_t first = 0, second = 0;
+    float distance = 0;                ///< metres
+    TurnPart angles[4] = {0, 0, 0, 0}; ///< of the first corner's segments, then the second's
+    std::uint8_t present = 0;          ///< bit i: angles[i] is there
+};
+
+/// How two segments of one scan lie beside each other, when they are parallel within the window; false when
+/// they are not.
+bool parallelRelation(const TypedSegment &a, const TypedSegment &b, double window,
+                      ParallelRelation &relation);
+
+/// Two corners of one scan; false when they are too near to each other to have a direction.
+bool cornerRelation(const std::vector<TypedSegment> &segments, const Corner &a, const Corner &b, double least,
+                    CornerRelation &relation);
+
+/// Whether the parameters of two relations are equal within the windows (metres; 65536ths of a turn).
+bool parametersMatch(const ParallelRelation &a, const ParallelRelation &b, float window, int turn);
+/// The same for two relations of corners: angles that both have, and the distance.
+bool parametersMatch(const CornerRelation &a, const CornerRelation &b, float window, int turn);
+
+/// Things ordered by a parameter in bins as wide as a window: all that lie within the window of a value are
+/// in the three bins around it. The last bin is followed by the first, so that no value is too large and
+/// those of a circle meet. Built in linear time; keeps its buffers.
+template <typename Thing>
+class BinnedOrder {
+public:
+    /// key(thing) in units of the window, 0 and above; at least three bins.
+    template <typename Key>
+    void build(const std::vector<Thing> &things, int bins, Key key) {
+        starts_.assign(static_cast<std::size_t>(bins) + 1, 0);
+        for (const Thing &t : things)
+            ++starts_[bin(key(t)) + 1];
+        for (std::size_t i = 1; i < starts_.size(); ++i)
+            starts_[i] += starts_[i - 1];
+        next_.assign(starts_.begin(), starts_.end() - 1);
+        things_.resize(things.size());
+        for (const Thing &t : things)
+            things_[next_[bin(key(t))]++] = t;
+    }
+    /// Calls take(thing) for all whose key is within 1 of this one, and for others of the same bins; returns
+    /// for how many.
+    template <typename Take>
+    std::size_t near(double key, Take take) const {
+        std::size_t visited = 0;
+        const std::size_t last = starts_.size() - 2, middle = bin(key);
+        for (const std::size_t b : {middle > 0 ? middle - 1 : last, middle, middle < last ? middle + 1 : 0}) {
+            for (std::size_t i = starts_[b]; i < starts_[b + 1]; ++i)
+                take(things_[i]);
+            visited += starts_[b + 1] - starts_[b];
+        }
+        return visited;
+    }
+
+private:
+    std::size_t bin(double key) const {
+        constexpr double most = 1e9; // what lies beyond shares a bin
+        const std::size_t bins = starts_.size() - 1;
+        const auto number = static_cast<std::size_t>(std::min(key, most));
+        return number < bins ? number : number % bins;
+    }
+
+    std::vector<std::size_t> starts_, next_;
+    std::vector<Thing> things_;
+};
 
 /// All geometric relations of a scan's segments, each kind in the order of its first parameter, so that those
 /// that match a given one are found by a range query. Pose-free thesis chapter 4. Keeps its buffers.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "vectorlib/Body.h"
 #include "vectorlib/geometry/Angle.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/tls/TlsSums.h"
@@ -35,8 +34,10 @@ struct TypedSegment {
 
 /// The relative angle from one segment to another, counter-clockwise, in [0, 2 pi). Pose-free thesis 4.3: the
 /// angle at which the second lies when the ends of both are put together and the first lies on the x axis.
-double relativeAngle(const LineSegment2D<double> &from, const LineSegment2D<double> &to);
+inline double relativeAngle(const LineSegment2D<double> &from, const LineSegment2D<double> &to) {
+    const Vector2D<double> a = from.direction(), b = to.direction();
+    const double angle = std::atan2(a.cross(b), a.dot(b));
+    return angle < 0 ? angle + 2 * pi : angle;
+}
 
 } // namespace vectorlib
-
-#include VECTORLIB_BODIES("vectorlib/src/relations/TypedSegment.cpp")

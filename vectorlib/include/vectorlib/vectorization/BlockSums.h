@@ -1,9 +1,9 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/simd/SumBlocksNeon.h"
-#include "vectorlib/vectorization/Cut.h"
 #include "vectorlib/vectorization/SumTable.h"
+#include "vectorlib/vectorization/VectorizedLine.h"
 
 #include <algorithm>
 #include <vector>

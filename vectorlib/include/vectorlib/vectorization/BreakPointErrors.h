@@ -1,8 +1,8 @@
 #pragma once
 
-#include "vectorlib/simd/Bits.h"
+#include "vectorlib/simd/Lanes.h"
 #include "vectorlib/simd/Simd.h"
-#include "vectorlib/vectorization/Cut.h"
+#include "vectorlib/vectorization/VectorizedLine.h"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/tls/PlainSums.h"
+#include "vectorlib/tls/TlsSums.h"
 #include "vectorlib/vectorization/Polyline.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/vectorization/BreakPointErrors.h"
 
 #include <algorithm>
