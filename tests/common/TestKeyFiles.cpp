@@ -48,12 +48,12 @@ void TestKeyFiles::aFullDiskTakesNoKey() {
     QTemporaryDir folder;
     const Authority authority(folder.filePath("keys"));
     QVERIFY(authority.init("owner", 10, 10));
-    const QByteArray before = contents(folder.filePath("keys/own.key"));
+    const QByteArray before = contentOf(folder.filePath("keys/own.key"));
     {
-        const LongestFile limit(100);
+        const FileSizeLimit limit(rlim_t(100));
         QVERIFY(!writeKeyFile(folder.filePath("keys/own.key"), QByteArray(200, 'k')));
     }
-    QCOMPARE(contents(folder.filePath("keys/own.key")), before);
+    QCOMPARE(contentOf(folder.filePath("keys/own.key")), before);
 }
 
 void TestKeyFiles::onlyAnAbsentListIsNone() {
