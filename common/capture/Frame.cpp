@@ -8,8 +8,8 @@ namespace hermes {
 namespace {
 
 constexpr std::uint16_t etherTypeIpv4 = 0x0800;
-constexpr std::uint16_t etherTypeVlan = 0x8100;
-constexpr std::uint16_t etherTypeProviderVlan = 0x88A8;
+constexpr std::uint16_t etherTypesVlan[] = {0x8100, 0x88A8, 0x9100, 0x9200,
+                                            0x9300}; // the last of older switches
 constexpr std::uint8_t protocolUdp = 17;
 
 struct Link {
@@ -78,7 +78,8 @@ FrameFault skipLink(LinkType link, const std::uint8_t *frame, std::size_t size, 
     if (size < offset)
         return FrameFault::Short;
     std::uint16_t type = word(frame + typeAt);
-    while (type == etherTypeVlan || type == etherTypeProviderVlan) {
+    while (std::find(std::begin(etherTypesVlan), std::end(etherTypesVlan), type) !=
+           std::end(etherTypesVlan)) {
         if (size < offset + 4)
             return FrameFault::Short;
         type = word(frame + offset + 2);

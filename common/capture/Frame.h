@@ -33,9 +33,9 @@ bool isKnownLinkType(int linkType);
 /// All of them by name and number, for messages.
 std::string knownLinkTypes();
 
-/// Finds the datagram in a frame; its payload points into the frame. 802.1Q and 802.1ad tags are stepped
-/// over. The UDP length and the captured length count: the position packets of real sensors carry a wrong
-/// total length of IPv4.
+/// Finds the datagram in a frame; its payload points into the frame. 802.1Q and 802.1ad tags, and those that
+/// came before the standard, are stepped over. The UDP length and the captured length count: the position
+/// packets of real sensors carry a wrong total length of IPv4.
 FrameFault parseFrame(LinkType link, const std::uint8_t *frame, std::size_t size, Datagram &datagram);
 
 constexpr std::size_t frameHeaderSize = 42;   ///< Ethernet 14, IPv4 20, UDP 8

@@ -21,6 +21,26 @@ constexpr std::int64_t second_ns = 1000000000;
 
 } // namespace
 
+PcapReader::Counts &PcapReader::Counts::operator+=(const Counts &more) {
+    for (auto count : {&Counts::records, &Counts::datagrams, &Counts::notUdp, &Counts::fragments,
+                       &Counts::unknownLinks, &Counts::cut})
+        this->*count += more.*count;
+    return *this;
+}
+
+std::string PcapReader::Counts::leftOut(bool isAll) const {
+    std::string text;
+    const auto add = [&text](std::uint64_t count, const char *what) {
+        if (count > 0)
+            text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+    };
+    add(cut, " cut to their beginning (tcpdump -s 0 keeps them whole)");
+    add(fragments, " fragments of datagrams");
+    add(unknownLinks, " of a link type that is not read");
+    add(isAll ? notUdp : 0, " of other protocols than UDP over IPv4");
+    return text.empty() ? text : "of " + std::to_string(records) + " records were left out: " + text;
+}
+
 PcapReader::PcapReader() = default;
 PcapReader::~PcapReader() = default;
 

@@ -23,6 +23,11 @@ public:
         std::uint64_t fragments = 0;
         std::uint64_t unknownLinks = 0; ///< of an interface whose link type is not read
         std::uint64_t cut = 0;          ///< shorter than its own lengths say
+
+        Counts &operator+=(const Counts &more);
+        /// For people, what of UDP was left out, and how to have it; empty: nothing. isAll: also other
+        /// protocols.
+        std::string leftOut(bool isAll = false) const;
     };
 
     /// Where a record begins.

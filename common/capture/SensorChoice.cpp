@@ -1,6 +1,7 @@
 #include "common/capture/SensorChoice.h"
 
 #include <cstdlib>
+#include <sstream>
 
 namespace hermes {
 
@@ -8,9 +9,11 @@ namespace {
 
 /// Noise that looks like packets of ever more sensors must not fill the memory.
 constexpr std::size_t mostSensors = 16;
+constexpr std::int64_t anew_ns = 1000000000; ///< a sensor that begins anew has been silent for longer
 
 bool isOf(const SensorChoice::Sensor &sensor, const Datagram &datagram) {
-    return sensor.address == datagram.source && sensor.port == datagram.destinationPort;
+    return sensor.address == datagram.source && sensor.from == datagram.sourcePort &&
+           sensor.port == datagram.destinationPort;
 }
 
 } // namespace
@@ -23,7 +26,10 @@ bool SensorChoice::takes(const Datagram &packet) {
     if (taken_ && taken_ != found) {
         if (!lastTaken_ns_)
             lastTaken_ns_ = packet.stamp_ns;
-        if (!options_.patience_ns || std::abs(packet.stamp_ns - *lastTaken_ns_) <= *options_.patience_ns)
+        const bool mayBeginAnew =
+            sensors_[*taken_].address == packet.source && sensors_[*taken_].port == packet.destinationPort;
+        const auto patience_ns = options_.patience_ns || !mayBeginAnew ? options_.patience_ns : anew_ns;
+        if (!patience_ns || std::abs(packet.stamp_ns - *lastTaken_ns_) <= *patience_ns)
             return false;
     }
     taken_ = found;
@@ -49,13 +55,29 @@ std::size_t SensorChoice::find(const Datagram &packet) {
         sensors_.emplace_back();
     const std::size_t last = sensors_.size() - 1;
     const std::size_t place = taken_ == last ? last - 1 : last;
-    sensors_[place] = {packet.source, packet.destinationPort, 0};
+    sensors_[place] = {packet.source, packet.sourcePort, packet.destinationPort, 0};
     return place;
 }
 
 bool SensorChoice::isWanted(const Datagram &datagram) const {
     return options_.port.value_or(datagram.destinationPort) == datagram.destinationPort &&
            options_.address.value_or(datagram.source) == datagram.source;
+}
+
+std::optional<std::uint32_t> addressFrom(const std::string &text) {
+    std::istringstream in(text);
+    std::uint32_t address = 0;
+    int parts = 0;
+    for (std::string part; std::getline(in, part, '.'); ++parts) {
+        const bool isDecimal = !part.empty() && part.size() <= 3 &&
+                               part.find_first_not_of("0123456789") == std::string::npos &&
+                               (part == "0" || part[0] != '0');
+        const unsigned long number = isDecimal ? std::stoul(part) : 256;
+        if (number > 255)
+            return std::nullopt;
+        address = address << 8 | std::uint32_t(number);
+    }
+    return parts == 4 && text.back() != '.' ? std::optional(address) : std::nullopt;
 }
 
 std::string addressText(std::uint32_t address) {
@@ -66,7 +88,8 @@ std::string addressText(std::uint32_t address) {
 }
 
 std::string toText(const SensorChoice::Sensor &sensor) {
-    return addressText(sensor.address) + " to port " + std::to_string(sensor.port);
+    return addressText(sensor.address) + ':' + std::to_string(sensor.from) + " to port " +
+           std::to_string(sensor.port);
 }
 
 } // namespace hermes

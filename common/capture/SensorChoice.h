@@ -9,17 +9,19 @@
 namespace hermes {
 
 /// Of several sensors whose data packets stand in one capture, or come in on one port, takes the first. A
-/// sensor is told from others by its address and by the port that it sends to.
+/// sensor is told from others by its address and by the ports that it sends from and to.
 class SensorChoice {
 public:
     struct Options {
         std::optional<std::uint16_t> port;    ///< only sensors that send to it
         std::optional<std::uint32_t> address; ///< only the sensor that has it
-        /// Another takes the place of one that has been silent for longer; never without.
+        /// Another takes the place of one that has been silent for longer; never without, unless it only
+        /// sends from another port: a sensor that began anew may.
         std::optional<std::int64_t> patience_ns;
     };
     struct Sensor {
         std::uint32_t address = 0;
+        std::uint16_t from = 0; ///< the port that it sends from
         std::uint16_t port = 0; ///< that it sends to
         std::uint64_t packets = 0;
     };
@@ -54,9 +56,11 @@ private:
     std::optional<std::int64_t> lastTaken_ns_; ///< when the last packet of the one taken came in
 };
 
+/// Of four decimal numbers with dots between. Not with zeros before them: elsewhere such are octal.
+std::optional<std::uint32_t> addressFrom(const std::string &text);
 /// "192.168.1.201".
 std::string addressText(std::uint32_t address);
-/// "192.168.1.201 to port 2368".
+/// "192.168.1.201:443 to port 2368".
 std::string toText(const SensorChoice::Sensor &sensor);
 
 } // namespace hermes

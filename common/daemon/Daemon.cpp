@@ -172,16 +172,19 @@ void Daemon::waitForMended(const QString &file) {
 Result<void> Daemon::launch() {
     const bool insecure = configuration_.flag(QStringLiteral("insecure"));
     openAudit();
-    std::vector<AnnouncedPort> reachable; // by others on the network
+    Result<void> failed;
     for (const QJsonValue &url : configuration_.value(QStringLiteral("listen")).toArray()) {
-        const auto listening = channels_.listen(url.toString(), insecure);
-        if (!listening) {
-            channels_.close();
-            return listening;
-        }
-        if (const auto port = AnnouncedPort::of(self_.name, url.toString(), channels_.addresses().last()))
-            reachable.push_back(*port);
+        const auto listening = listen(url.toString());
+        failed = listening ? failed : listening;
+        if (!listening && listening.error().is(ErrorCode::InputOutput))
+            unheard_.insert(url.toString(), listening.error().message);
+        else if (!listening) // it will not be otherwise later
+            return channels_.close(), listening;
     }
+    // Whoever started it by hand waits for a word; a service is not to be given up.
+    if (!failed && channels_.addresses().isEmpty() && !systemd::isService())
+        return channels_.close(), failed;
+    listenLater();
     if (insecure) {
         healthItems_.set(
             QStringLiteral("insecure"), HealthLevel::Warn,
@@ -202,8 +205,8 @@ Result<void> Daemon::launch() {
     connect(&healthItems_, &Health::changed, this, &Daemon::publishStatus);
     connect(&statusTimer_, &QTimer::timeout, this, &Daemon::publishStatus); // an item may have become stale
     statusTimer_.start(500);
-    if (!reachable.empty())
-        announcement_ = std::make_unique<Announcement>(self_.name, reachable);
+    if (!reachable_.empty())
+        announcement_ = std::make_unique<Announcement>(self_.name, reachable_);
     systemd::notify("READY=1");
     const auto interval = systemd::watchdogInterval();
     if (interval.count() > 0 && !watchdogByHand_) {
@@ -213,12 +216,48 @@ Result<void> Daemon::launch() {
     return {};
 }
 
+Result<void> Daemon::listen(const QString &url) {
+    const auto listening = channels_.listen(url, configuration_.flag(QStringLiteral("insecure")));
+    if (!listening)
+        return listening;
+    if (const auto port = AnnouncedPort::of(self_.name, url, channels_.addresses().last()))
+        reachable_.push_back(*port);
+    return {};
+}
+
+/// An address that comes up late, a port that somebody still has, keys that are not valid before the clock is
+/// set.
+void Daemon::listenLater() {
+    if (unheard_.isEmpty())
+        return;
+    for (const QString &why : qAsConst(unheard_))
+        logError(self_.name, why + QStringLiteral("; it is tried again each second"));
+    connect(&listenAgain_, &QTimer::timeout, this, [this] {
+        const auto before = reachable_.size();
+        for (const QString &url : unheard_.keys()) {
+            const auto listening = listen(url);
+            if (listening)
+                unheard_.remove(url);
+            else
+                unheard_[url] = listening.error().message;
+        }
+        if (unheard_.isEmpty())
+            listenAgain_.stop();
+        if (reachable_.size() > before) {
+            announcement_.reset();
+            announcement_ = std::make_unique<Announcement>(self_.name, reachable_);
+        }
+    });
+    listenAgain_.start(std::chrono::seconds(1));
+}
+
 void Daemon::shutDown(int status) {
     if (ownState_ == DaemonState::Stopping)
         return;
     setState(DaemonState::Stopping);
     systemd::notify("STOPPING=1");
     statusTimer_.stop();
+    listenAgain_.stop();
     stop();
     announcement_.reset();
     logInfo(self_.name, QStringLiteral("stopped"));
@@ -320,7 +359,7 @@ void Daemon::updateChannelHealth() {
     QString message = QStringLiteral("%1 clients, %2 topic messages dropped for slow readers")
                           .arg(counters.value(QStringLiteral("clients")).toInt())
                           .arg(dropped);
-    const QStringList failures = channels_.failures();
+    const QStringList failures = channels_.failures() + unheard_.values();
     if (!failures.isEmpty())
         message = QStringLiteral("no client is heard on: ") + failures.join(QStringLiteral("; "));
     healthItems_.set(QStringLiteral("channel"), failures.isEmpty() ? HealthLevel::Ok : HealthLevel::Failed,

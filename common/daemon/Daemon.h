@@ -127,6 +127,8 @@ private:
     void applyCommonSettings();
     void openAudit();
     void waitForMended(const QString &file);
+    Result<void> listen(const QString &url);
+    void listenLater();
     void updateChannelHealth();
     void publishStatus();
     /// Each change of the level or the reason; numbers in it change all the time.
@@ -149,7 +151,9 @@ private:
     bool launched_ = false;
     bool watchdogByHand_ = false;
     bool runsWithWrongFile_ = false;
-    QTimer watchdog_, mended_;
+    QTimer watchdog_, mended_, listenAgain_;
+    QMap<QString, QString> unheard_;       // addresses that cannot be listened at yet, and why
+    std::vector<AnnouncedPort> reachable_; // by others on the network
     QString toldState_;
     QMap<QString, QString> toldLevels_, loggedReasons_; // of the health items
     QTimer statusTimer_;

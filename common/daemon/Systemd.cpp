@@ -21,7 +21,9 @@ void notify(const QByteArray &state) {
     if (address.sun_path[0] == '@')
         address.sun_path[0] = '\0'; // the abstract name space
     const auto size = socklen_t(offsetof(sockaddr_un, sun_path) + size_t(path.size()));
-    ::sendto(socket, state.constData(), size_t(state.size()), MSG_NOSIGNAL,
+    // Who does not read holds up no cycle; but that it is ready must be heard.
+    const int wait = state == "READY=1" ? 0 : MSG_DONTWAIT;
+    ::sendto(socket, state.constData(), size_t(state.size()), MSG_NOSIGNAL | wait,
              reinterpret_cast<const sockaddr *>(&address), size);
     ::close(socket);
 }

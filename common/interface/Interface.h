@@ -69,6 +69,13 @@ public:
     /// tell.
     virtual QMap<QString, quint64> systemErrors() const { return {}; }
 
+    /// Datagrams of senders that are not read, and who they are: a device is read from one.
+    struct Strangers {
+        quint64 datagrams = 0;
+        QStringList names;
+    };
+    virtual Strangers strangers() const { return {}; }
+
     void setReconnecting(bool on) { reconnecting_ = on; }
     /// The pause between attempts grows up to this.
     void setLongestRetry(std::chrono::milliseconds pause);

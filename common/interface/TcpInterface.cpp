@@ -41,7 +41,7 @@ TcpInterface::TcpInterface(QTcpSocket *connected, QObject *theHost)
     url_.host = socket_->peerAddress().toString();
     url_.port = socket_->peerPort();
     socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
-    socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+    watchPeer();
     prepare();
 }
 
@@ -54,9 +54,29 @@ void TcpInterface::begin() {
         return takeConnected(own);
     }
     socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
-    socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+    watchPeer();
     readLater(); // what has come already
     nowOpen();
+}
+
+/// One that vanished is found within 5 s, whether it is only read or something waits for it.
+void TcpInterface::watchPeer() {
+    constexpr int period_ms = 1000;
+    sockets::askPeer(socket_->socketDescriptor());
+    watch_.start(period_ms, this);
+}
+
+void TcpInterface::timerEvent(QTimerEvent *event) {
+    if (event->timerId() != watch_.timerId())
+        return Interface::timerEvent(event);
+    if (!isOpen())
+        return watch_.stop();
+    if (!sockets::isPeerLost(socket_->socketDescriptor()))
+        return;
+    watch_.stop();
+    socket_->abort();
+    forgetWaiting();
+    nowClosed(QStringLiteral("%1: the peer does not answer any more").arg(name()), true);
 }
 
 int TcpInterface::connectToOwn() const {

@@ -3,6 +3,7 @@
 #include "common/interface/Interface.h"
 #include "common/interface/InterfaceUrl.h"
 
+#include <QBasicTimer>
 #include <QHostAddress>
 #include <QPointer>
 #include <QTcpSocket>
@@ -10,8 +11,9 @@
 
 namespace hermes {
 
-/// A byte stream over TCP: a client that connects to an address, or the server's side of one connection. With
-/// the option `own=1` a client tries the daemon's Unix socket first (OwnSocket.h).
+/// A byte stream over TCP: a client that connects to an address, or the server's side of one connection. A
+/// peer that vanished without a word is found within 5 s. With the option `own=1` a client tries the daemon's
+/// Unix socket first (OwnSocket.h).
 class TcpInterface : public Interface {
     Q_OBJECT
 public:
@@ -50,6 +52,8 @@ protected:
 
 private:
     void prepare();
+    void watchPeer();
+    void timerEvent(QTimerEvent *event) override;
     int connectToOwn() const;
     void readSome();
     void noteUnread();
@@ -60,6 +64,7 @@ private:
     InterfaceUrl url_;
     QTcpSocket *const socket_;
     QPointer<QObject> host_; // of a peer of a server
+    QBasicTimer watch_;
     // Not yet given to the socket: that copies, or encrypts, all that it is given at once.
     std::deque<QByteArray> waiting_;
     int begunBytes_ = 0; // of the first of them, which have been given

@@ -22,6 +22,12 @@ UdpInterface::UdpInterface(const InterfaceUrl &address, QObject *parent)
         peerPort_ = remote->port;
         peerFixed_ = true;
     }
+    const QString from = url_.option(QStringLiteral("from"));
+    keepsToFirst_ = from == QStringLiteral("first");
+    if (!keepsToFirst_) {
+        from_ = QHostAddress(from.section(QLatin1Char(':'), 0, 0));
+        fromPort_ = quint16(from.section(QLatin1Char(':'), 1).toUInt());
+    }
     connect(&socket_, &QUdpSocket::readyRead, this, &UdpInterface::readAll);
 }
 
@@ -52,6 +58,10 @@ void UdpInterface::doOpen() {
     if (!peerText.isEmpty() && peer_.isNull())
         return nowClosed(QStringLiteral("%1: peer \"%2\" is not IP:PORT").arg(url_.toString(), peerText),
                          true);
+    const QString from = url_.option(QStringLiteral("from"));
+    if (!from.isEmpty() && !keepsToFirst_ && from_.isNull())
+        return nowClosed(
+            QStringLiteral("%1: from \"%2\" is not IP, IP:PORT or first").arg(url_.toString(), from), true);
     if (!socket_.bind(host, url_.port))
         return nowClosed(QStringLiteral("cannot bind %1: %2").arg(url_.toString(), socket_.errorString()),
                          true);
@@ -77,12 +87,32 @@ void UdpInterface::readAll() {
         const QNetworkDatagram datagram = socket_.receiveDatagram();
         if (!datagram.isValid())
             continue; // an ICMP report about something sent earlier
+        if (!isRead(datagram.senderAddress(), quint16(datagram.senderPort())))
+            continue;
         if (!peerFixed_) {
             peer_ = datagram.senderAddress();
             peerPort_ = quint16(datagram.senderPort());
         }
         nowReceived(datagram.data());
     }
+}
+
+bool UdpInterface::isRead(const QHostAddress &address, quint16 port) {
+    constexpr qint64 longestSilence_ms = 3000;
+    constexpr int mostNames = 5;
+    if (keepsToFirst_ && (from_.isNull() || sinceFrom_.elapsed() > longestSilence_ms)) {
+        from_ = address;
+        fromPort_ = port;
+    }
+    if (from_.isNull() || (from_.isEqual(address) && (fromPort_ == 0 || fromPort_ == port))) {
+        sinceFrom_.start();
+        return true;
+    }
+    ++strangers_.datagrams;
+    const QString name = QStringLiteral("%1:%2").arg(address.toString()).arg(port);
+    if (!strangers_.names.contains(name) && strangers_.names.size() < mostNames)
+        strangers_.names.append(name);
+    return false;
 }
 
 } // namespace hermes

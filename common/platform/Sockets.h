@@ -40,6 +40,12 @@ Socket duplicate(Socket socket);
 /// What was written arrives, and then the end; bytes unread are lost.
 void endAndClose(Socket socket);
 void close(Socket socket);
+/// The system asks a peer of TCP that says nothing whether it is there, and ends a connection without an
+/// answer within 5 s.
+void askPeer(Socket socket);
+/// Whether the peer of TCP answers nothing that was sent to it, for 4 s and more. Not one who does not read:
+/// its system answers.
+bool isPeerLost(Socket socket);
 /// Whether bytes have come that were not read.
 bool hasUnread(Socket socket);
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -102,6 +103,26 @@ void endAndClose(Socket socket) {
 void close(Socket socket) {
     if (socket != none)
         ::close(int(socket));
+}
+
+void askPeer(Socket socket) {
+    const auto set = [descriptor = int(socket)](int level, int option, int value) {
+        ::setsockopt(descriptor, level, option, &value, sizeof value);
+    };
+    set(SOL_SOCKET, SO_KEEPALIVE, 1);
+    set(IPPROTO_TCP, TCP_KEEPIDLE, 2);
+    set(IPPROTO_TCP, TCP_KEEPINTVL, 1);
+    set(IPPROTO_TCP, TCP_KEEPCNT, 2);
+}
+
+bool isPeerLost(Socket socket) {
+    // The system would go on for a quarter of an hour. TCP_USER_TIMEOUT would end also whom nobody reads.
+    constexpr unsigned leastTries = 3, leastSilence_ms = 4000;
+    tcp_info info{};
+    socklen_t size = sizeof info;
+    return ::getsockopt(int(socket), IPPROTO_TCP, TCP_INFO, &info, &size) == 0 &&
+           std::max<unsigned>(info.tcpi_retransmits, info.tcpi_probes) >= leastTries &&
+           info.tcpi_last_ack_recv >= leastSilence_ms;
 }
 
 bool hasUnread(Socket socket) {

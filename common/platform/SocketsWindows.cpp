@@ -109,6 +109,15 @@ void close(Socket socket) {
         ::closesocket(SOCKET(socket));
 }
 
+void askPeer(Socket socket) {
+    const DWORD on = 1;
+    ::setsockopt(SOCKET(socket), SOL_SOCKET, SO_KEEPALIVE, reinterpret_cast<const char *>(&on), sizeof on);
+}
+
+bool isPeerLost(Socket) {
+    return false; // the system ends it itself, after 20 s
+}
+
 bool hasUnread(Socket socket) {
     u_long unread = 0;
     return ::ioctlsocket(SOCKET(socket), FIONREAD, &unread) == 0 && unread > 0;

@@ -11,7 +11,8 @@ namespace {
 constexpr int longestRecordingName = 100; // bytes; file systems allow 255, and files add to it
 
 bool isNameCharacter(QChar c) {
-    return c.category() != QChar::Other_Control && c != '/';
+    return c.category() != QChar::Other_Control && c != QChar::LineSeparator &&
+           c != QChar::ParagraphSeparator && c != '/'; // as NamedFile reads
 }
 
 } // namespace

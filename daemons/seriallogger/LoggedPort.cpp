@@ -2,6 +2,8 @@
 
 #include "common/Time.h"
 
+#include <QDateTime>
+
 namespace hermes::seriallogger {
 
 namespace {
@@ -9,6 +11,10 @@ namespace {
 // What is so long without an NMEA sentence, of 82 bytes at most, is something else.
 constexpr quint64 foreignBytes = 1000;
 constexpr double foreign_s = 3;
+
+QString dateText(double stamp) {
+    return QDateTime::fromSecsSinceEpoch(qint64(stamp), Qt::UTC).date().toString(Qt::ISODate);
+}
 
 QString toText(Interface::State state) {
     return state == Interface::State::Open      ? "open"
@@ -125,13 +131,25 @@ std::pair<HealthLevel, QString> LoggedPort::health() {
         message += QString("; the system tells of %1 errors on the line").arg(errors);
     if (damaged > 0)
         message += QString("; %1 NMEA sentences were damaged").arg(damaged);
+    if (state.strangers.datagrams > 0)
+        message += QString("; %1 datagrams of %2 are not read, from=ADDRESS in the url chooses")
+                       .arg(state.strangers.datagrams)
+                       .arg(state.strangers.names.join(", "));
     if (noChecksum > 0)
         message += QString("; %1 had no checksum: checksum=lenient accepts them").arg(noChecksum);
     if (unread > 0)
         message += QString("; %1 positions could not be read: %2")
                        .arg(unread)
                        .arg(nmeaCounts().lastFault.value_or(QString()));
-    return {faults_.level(double(recording_.lost() + errors + damaged + noChecksum + unread)), message};
+    const std::optional<Fix> &fix = view_.lastFix();
+    const bool isRolledOver = fix && fix->time && nmea::isRolledOver(*fix->time, fix->arrival.stamp());
+    if (isRolledOver)
+        message += "; the receiver tells " + dateText(*fix->time) +
+                   ", 1024 weeks off the clock: its count of weeks began anew (GPS week roll-over)";
+    const quint64 wrong =
+        recording_.lost() + errors + damaged + noChecksum + unread + state.strangers.datagrams;
+    const HealthLevel level = faults_.level(double(wrong));
+    return {isRolledOver && level == HealthLevel::Ok ? HealthLevel::Warn : level, message};
 }
 
 } // namespace hermes::seriallogger

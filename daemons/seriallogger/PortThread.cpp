@@ -42,7 +42,10 @@ PortThread::State PortThread::state() const {
 void PortThread::run() {
     if (settings_.url.startsWith("serial:")) // a driver keeps 4 KiB: 44 ms of 921,600 baud
         becomeRealtime(realtimePriority);    // where it may
-    const Result<Interface *> made = makeInterface(*InterfaceUrl::parse(settings_.url), nullptr);
+    InterfaceUrl url = *InterfaceUrl::parse(settings_.url);
+    if (url.scheme == QStringLiteral("udp") && url.option("from").isEmpty())
+        url.options.insert("from", "first"); // not two devices mixed into one
+    const Result<Interface *> made = makeInterface(url, nullptr);
     const std::unique_ptr<Interface> carrier(*made); // the settings were checked
     carrier_ = carrier.get();
     carrier->setReconnecting(true);
@@ -96,6 +99,10 @@ void PortThread::changed(const QString &reason) {
 void PortThread::checkErrors() {
     if (!carrier_->isOpen())
         return;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        state_.strangers = carrier_->strangers();
+    }
     const QMap<QString, quint64> errors = carrier_->systemErrors();
     if (errors == errorsNow_)
         return;

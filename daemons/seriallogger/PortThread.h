@@ -21,7 +21,8 @@ public:
         QString device; ///< that a link led to as it was opened
         InterfaceCounters counters;
         QMap<QString, quint64> systemErrors; ///< since the start, over all openings
-        std::optional<Arrival> last;         ///< bytes
+        Interface::Strangers strangers;
+        std::optional<Arrival> last; ///< bytes
     };
     /// What happened to the port, in its thread: "opened", "closed" {reason}, "errors" {kind: count}.
     using Note = std::function<void(const QString &event, const QJsonObject &details)>;

@@ -57,9 +57,11 @@ void SupervisedProcess::Child::setupChildProcess() {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
-SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
+SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, std::shared_ptr<ProcessGuard> guard,
+                                     QObject *parent)
     : QObject(parent)
     , entry_(entry)
+    , guard_(std::move(guard))
     , family_(QUuid::createUuid().toString(QUuid::Id128)) {
     process_.setProcessChannelMode(QProcess::MergedChannels);
     process_.setStandardInputFile(QProcess::nullDevice());
@@ -74,6 +76,8 @@ SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
         logInfo("process",
                 QString("%1: started with process id %2").arg(entry_.name).arg(process_.processId()));
         group_ = pid_t(process_.processId());
+        if (guard_)
+            guard_->add(group_);
         if (state_ == State::Stopping)
             process_.terminate();
         Q_EMIT changed();
@@ -116,6 +120,8 @@ SupervisedProcess::~SupervisedProcess() {
 void SupervisedProcess::endFamily() {
     if (group_ > 1)
         ::kill(-group_, SIGKILL); // also those that have cleared their environment
+    if (group_ > 1 && guard_)
+        guard_->remove(group_);
     group_ = 0;
     ProcessFamily::end(family_);
 }
@@ -200,23 +206,42 @@ void SupervisedProcess::retryLater() {
 }
 
 void SupervisedProcess::readOutput() {
-    partialLine_ += process_.readAll();
-    while (true) {
-        qsizetype end = partialLine_.indexOf('\n');
-        if (end < 0 && partialLine_.size() > longestLine)
-            end = longestLine;
-        if (end < 0)
-            return;
-        keepLine(partialLine_.left(int(std::min<qsizetype>(end, longestLine))));
-        partialLine_.remove(0, int(end) + (partialLine_[int(end)] == '\n' ? 1 : 0));
+    const QByteArray bytes = process_.readAll();
+    for (int begin = 0; begin < bytes.size();) {
+        const int room = longestLine - partialLine_.size(), end = bytes.indexOf('\n', begin);
+        const int size = std::min(room, (end < 0 ? bytes.size() : end) - begin);
+        partialLine_ += QByteArray::fromRawData(bytes.constData() + begin, size);
+        begin += size;
+        const bool isWhole = begin == end;
+        if (isWhole || (partialLine_.size() == longestLine && begin < bytes.size()))
+            keepLine(std::exchange(partialLine_, {}));
+        begin += isWhole;
     }
 }
 
 void SupervisedProcess::keepLine(const QByteArray &line) {
     lines_.push_back(QString::fromUtf8(line.constData(), line.size())); // zeros, too
-    Log::instance().pass(entry_.name, lines_.back());
+    passLine(lines_.back());
     if (lines_.size() > keptLines)
         lines_.pop_front();
+}
+
+/// One that writes without end keeps neither the supervisor nor the log for itself.
+void SupervisedProcess::passLine(const QString &line) {
+    constexpr double most = 1000, perSecond = 100;
+    const double now = monotonicNow();
+    mayPass_ = std::min(most, mayPass_ + (now - passed_) * perSecond);
+    passed_ = now;
+    if (mayPass_ < 1) {
+        ++leftOut_;
+        return;
+    }
+    --mayPass_;
+    if (leftOut_ > 0)
+        logWarning("process", QString("%1: %2 lines are not in the log, it writes more than 100 a second")
+                                  .arg(entry_.name)
+                                  .arg(std::exchange(leftOut_, 0)));
+    Log::instance().pass(entry_.name, line);
 }
 
 QStringList SupervisedProcess::output(int lines) const {

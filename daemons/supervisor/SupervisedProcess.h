@@ -1,5 +1,6 @@
 #pragma once
 
+#include "daemons/supervisor/ProcessGuard.h"
 #include "protocol/messages/Processes.h"
 
 #include <QJsonArray>
@@ -7,13 +8,15 @@
 #include <QProcess>
 #include <QTimer>
 #include <deque>
+#include <memory>
 #include <sys/types.h>
 
 namespace hermes::supervisor {
 
 /// One process that is kept running. When it ends by itself with an error it is started again, after a
 /// back-off that doubles; a wrong command line (exit status 2) is not tried again before the entry changes,
-/// nor is an end in order (0). It ends with the supervisor, however that ends.
+/// nor is an end in order (0). It ends with the supervisor, however that ends. Of what it writes, 100 lines a
+/// second go to the log.
 class SupervisedProcess : public QObject {
     Q_OBJECT
 public:
@@ -23,7 +26,9 @@ public:
     static constexpr std::chrono::milliseconds wellAfter{10000};
     static constexpr std::size_t keptLines = 200;
 
-    explicit SupervisedProcess(const ProcessEntry &entry, QObject *parent = nullptr);
+    /// guard: ends it when the supervisor is killed; may be null.
+    explicit SupervisedProcess(const ProcessEntry &entry, std::shared_ptr<ProcessGuard> guard = {},
+                               QObject *parent = nullptr);
     ~SupervisedProcess() override;
 
     /// Where a program is: beside the supervisor first, so that an installation that is not in PATH finds its
@@ -65,11 +70,13 @@ private:
     void retryLater();
     void readOutput();
     void keepLine(const QByteArray &line);
+    void passLine(const QString &line);
     /// Those that it started and left behind.
     void endFamily();
     void setState(State state);
 
     ProcessEntry entry_;
+    const std::shared_ptr<ProcessGuard> guard_;
     Child process_;
     State state_ = State::Stopped;
     const QString family_;
@@ -82,6 +89,8 @@ private:
     QString lastExit_;
     std::deque<QString> lines_;
     QByteArray partialLine_;
+    double mayPass_ = 0, passed_ = 0; // lines for the log; when the last was looked at, monotonic
+    quint64 leftOut_ = 0;
     double measured_ = 0, used_s_ = 0, cpu_ = 0;
     qint64 memory_bytes_ = 0;
 };

@@ -152,6 +152,7 @@ Command Supervisor::processCommand(const QString &name, const QString &summary,
 }
 
 Result<void> Supervisor::start() {
+    guard_ = std::make_shared<ProcessGuard>();
     reconcile();
     timer_.start(std::chrono::seconds(1));
     setState(DaemonState::Running);
@@ -176,7 +177,7 @@ void Supervisor::reconcile() {
             changes.emplace_back(next.back().get(), entry);
             continue;
         }
-        next.push_back(std::make_unique<SupervisedProcess>(entry));
+        next.push_back(std::make_unique<SupervisedProcess>(entry, guard_));
         connect(next.back().get(), &SupervisedProcess::changed, this, &Supervisor::update);
         if (entry.autostart)
             starts.push_back(next.back().get());

@@ -36,6 +36,7 @@ private:
     ProcessesMessage list();
     void update();
 
+    std::shared_ptr<ProcessGuard> guard_;
     std::vector<std::unique_ptr<SupervisedProcess>> processes_;
     QTimer timer_;
     std::unique_ptr<Setup> setup_;

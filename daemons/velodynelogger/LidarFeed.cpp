@@ -57,7 +57,7 @@ void LidarFeed::begin(const Options &options, bool replays) {
     options_ = options;
     replays_ = replays;
     LidarStream::Options stream;
-    stream.sensor = {options.onlyPort, {}, patience_ns};
+    stream.sensor = {options.onlyPort, options.sender, patience_ns};
     stream.model = options.model;
     stream.dataPort = options.dataPort;
     stream_ = LidarStream(stream);

@@ -21,6 +21,7 @@ public:
         std::uint16_t dataPort = velodyne::dataPort; ///< see LidarStream
         std::uint16_t positionPort = 0;              ///< received live as well; 0: none
         std::optional<std::uint16_t> onlyPort{};     ///< only a sensor that sends to it is decoded
+        std::optional<std::uint32_t> sender{};       ///< only the sensor with this address is
     };
     /// How turns of all lasers are thinned.
     struct Thinning {

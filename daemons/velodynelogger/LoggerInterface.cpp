@@ -19,6 +19,12 @@ void VelodyneLogger::declareSettings() {
                    .byDefault(velodyne::dataPort)
                    .appliesOnRestart()
                    .group("Source"));
+    addSetting(Field::text("source.sender", "IPv4 address of the sensor; empty: the first that sends, and no "
+                                            "other as long as it does")
+                   .with("pattern", "^$|^([0-9]{1,3}\\.){3}[0-9]{1,3}$")
+                   .byDefault("")
+                   .appliesOnRestart()
+                   .group("Source"));
     addSetting(
         Field::integer("source.position_port", "UDP port of the sensor's position packets; 0: not received")
             .range(0, 65535)
@@ -90,6 +96,12 @@ void VelodyneLogger::declareSettings() {
             addSetting(field);
     }
     settings().addRule(Recording::checkSettings);
+    settings().addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
+        const QString sender = values["source"].toObject()["sender"].toString();
+        if (sender.isEmpty() || addressFrom(sender.toStdString()))
+            return {};
+        return {{"source.sender", sender, "an IPv4 address, as 192.168.1.201, or nothing"}};
+    });
 }
 
 void VelodyneLogger::declareTopics() {

@@ -160,13 +160,19 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     };
     const QString sensors = QString::fromStdString(velodyne::sensorNames());
     const auto receiveError = feed_.receiveError();
-    if (source_.state() == State::None)
+    if (!unopened_.isEmpty())
+        set(HealthLevel::Failed, unopened_ + "; it is tried again each second");
+    else if (source_.state() == State::None)
         set(HealthLevel::Warn, "no source is open; source.open opens one");
     else if (receiveError || !source_.error().isEmpty())
         set(HealthLevel::Failed, receiveError ? QString::fromStdString(*receiveError) : source_.error());
-    else if (source_.state() == State::Ended && (counts.decoded || counts.other + packets.otherModel == 0))
-        set(HealthLevel::Ok, source_.name() + " has been played to its end");
-    else if (source_.state() == State::Live && sincePacket_.elapsed() > 3000)
+    else if (source_.state() == State::Ended && (counts.decoded || counts.other + packets.otherModel == 0)) {
+        const auto leftOut =
+            QString::fromStdString(feed_.player().counts().leftOut(!counts.decoded.has_value()));
+        set(counts.turns > 0 && leftOut.isEmpty() ? HealthLevel::Ok : HealthLevel::Warn,
+            source_.name() + " has been played to its end" + (counts.turns > 0 ? "" : ", and gave no scan") +
+                (leftOut.isEmpty() ? "" : "; " + leftOut));
+    } else if (source_.state() == State::Live && sincePacket_.elapsed() > 3000)
         set(HealthLevel::Stale,
             QString("no packet on %1 for %2 s").arg(source_.name()).arg(sincePacket_.elapsed() / 1000));
     else if (counts.other > 0 && !counts.decoded)
@@ -186,7 +192,8 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
                                    .arg(counts.blind_s, 0, 'f', 0));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
-            textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");
+            textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) +
+                QString(" too: %1 were left out; source.sender chooses").arg(counts.otherSensors));
     else if (counts.model && settings().integer("decode.laser") >= counts.model->lasers)
         set(HealthLevel::Warn, QString("decode.laser is %1, but a %2 has lasers 0 to %3: scans are empty")
                                    .arg(settings().integer("decode.laser"))

@@ -41,7 +41,7 @@ void PcapIndex::run(PcapSequence &reader, PlayTime time) {
             duration_ns_ = time.now_ns();
             return;
         }
-        time.advance(datagram.stamp_ns);
+        time.advance(datagram);
         if (reader.canSeek() && here.before.now_ns() - last.before.now_ns() >= markTime_ns &&
             (here.place.file != last.place.file ||
              here.place.inFile.offset - last.place.inFile.offset >= markBytes)) {

@@ -51,6 +51,7 @@ void PcapPlayer::run() {
         }
         if (next == PcapReader::Next::Failed)
             return end_(reader_.error());
+        counts_ = reader_.counts();
         const Playback::Turn turn = playback_.waitToEnd();
         if (turn == Playback::Turn::End || (turn == Playback::Turn::Seek && !goTo(playback_.takeSeek())))
             return;
@@ -67,7 +68,7 @@ void PcapPlayer::run() {
 
 /// False when playing is at its end.
 bool PcapPlayer::play(const Datagram &datagram) {
-    switch (playback_.waitFor(time_.advance(datagram.stamp_ns))) {
+    switch (playback_.waitFor(time_.advance(datagram))) {
     case Playback::Turn::Due:
         sink_(datagram);
         return true;
@@ -90,7 +91,7 @@ bool PcapPlayer::goTo(std::int64_t time_ns) {
     playback_.jump(time_ns);
     while (!playback_.isInterrupted() && reader_.next(target_) == PcapReader::Next::Datagram) {
         PlayTime after = time_;
-        if (after.advance(target_.stamp_ns) >= time_ns) {
+        if (after.advance(target_) >= time_ns) {
             atTarget_ = true;
             break;
         }

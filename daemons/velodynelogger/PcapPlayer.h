@@ -33,6 +33,8 @@ public:
     Playback &playback() { return playback_; }
     /// Clock jumps left out; nothing until the files have been read through.
     std::optional<double> duration_s() const;
+    /// What the files gave, once End was called.
+    const PcapReader::Counts &counts() const { return counts_; }
 
 private:
     void run();
@@ -49,6 +51,7 @@ private:
     // Of the thread while it runs.
     PcapSequence reader_;
     PlayTime time_;
+    PcapReader::Counts counts_;
     bool atTarget_ = false; ///< the datagram that a seek ended at is yet to be played
     Datagram target_;       ///< that datagram
 

@@ -28,11 +28,14 @@ public:
     /// Goes on at a place that was told for the same files.
     Outcome<void> seek(const Place &place);
     const std::string &error() const { return reader_.error(); }
+    /// Since the beginning; what was read twice is counted twice.
+    PcapReader::Counts counts() const;
 
 private:
     std::vector<std::string> paths_;
     std::size_t file_ = 0;
     PcapReader reader_;
+    PcapReader::Counts before_; ///< of the files before this one
 };
 
 } // namespace hermes::velodynelogger

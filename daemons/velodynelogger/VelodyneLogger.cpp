@@ -56,11 +56,13 @@ Result<void> VelodyneLogger::start() {
     second_.start(1000);
     const QString pcap = settings().text("source.pcap");
     recording_.open();
-    const Result<void> result =
-        pcap.isEmpty()
-            ? openLive()
-            : openPcap(absolutePath(pcap), {absolutePath(pcap)},
-                       {settings().number("source.speed"), settings().flag("source.loop"), false}, options());
+    Result<void> result;
+    if (pcap.isEmpty())
+        tryLive();
+    else
+        result =
+            openPcap(absolutePath(pcap), {absolutePath(pcap)},
+                     {settings().number("source.speed"), settings().flag("source.loop"), false}, options());
     updateHealth();
     return result;
 }
@@ -85,6 +87,12 @@ LidarFeed::Options VelodyneLogger::options() {
     return options;
 }
 
+/// What this logger has received, other than a capture of elsewhere.
+LidarFeed::Options VelodyneLogger::ofSender(LidarFeed::Options options) {
+    options.sender = addressFrom(settings().text("source.sender").toStdString());
+    return options;
+}
+
 LidarFeed::Options VelodyneLogger::replayedOptions(const Call &call) {
     LidarFeed::Options replayed = options();
     if (call.has("port"))
@@ -99,13 +107,23 @@ Result<void> VelodyneLogger::openLive() {
     source_.close();
     updateClouds();
     const auto live = feed_.openLive(address.toStdString(), quint16(port),
-                                     settings().integer("source.receive_buffer_bytes"), options());
+                                     settings().integer("source.receive_buffer_bytes"), ofSender(options()));
     if (!live) {
-        opened(State::None, {});
+        if (unopened_.isEmpty())
+            opened(State::None, {});
         return diskError(QString::fromStdString(live.error()), name);
     }
     opened(State::Live, name);
     return {};
+}
+
+/// A port that somebody still has, an address that comes up late: until it can be opened, or another source
+/// is.
+void VelodyneLogger::tryLive() {
+    const Result<void> live = openLive();
+    if (!live && unopened_.isEmpty())
+        logError("source", live.error().message + "; it is tried again each second");
+    unopened_ = live ? QString() : live.error().message;
 }
 
 Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &paths,
@@ -138,6 +156,7 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
 
 void VelodyneLogger::opened(State state, const QString &name) {
     replayEnd_.reset();
+    unopened_.clear();
     sinceRoom_.start();
     packetsAtTick_ = datagramsAtTick_ = othersAtTick_ = goodAtTick_ = 0;
     sinceOther_.invalidate();
@@ -181,7 +200,7 @@ Result<void> VelodyneLogger::openRecording(const Call &call, const StoredRecordi
     if (!files || files->isEmpty())
         return files ? diskError(stored.folder + ": the recording has no files", stored.folder)
                      : files.error();
-    return openPcap(stored.folder, *files, replayOptions(call), replayedOptions(call),
+    return openPcap(stored.folder, *files, replayOptions(call), ofSender(replayedOptions(call)),
                     PlayTime(std::int64_t(stored.start_s * 1e9), std::int64_t(stored.length_s * 1e9),
                              std::int64_t(call.number("delay_s") * 1e9)),
                     stored.isWhole());
@@ -275,6 +294,8 @@ void VelodyneLogger::publishTurns() {
 }
 
 void VelodyneLogger::tick() {
+    if (!unopened_.isEmpty())
+        tryLive();
     const LidarFeed::Counts counts = feed_.counts();
     const std::uint64_t packets = counts.packets.packets, datagrams = packets + counts.other;
     const std::uint64_t good = packets - counts.packets.wrong();

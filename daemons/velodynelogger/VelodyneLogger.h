@@ -32,6 +32,8 @@ private:
     void declareRecordCommands();
 
     LidarFeed::Options options();
+    void tryLive();
+    LidarFeed::Options ofSender(LidarFeed::Options options);
     LidarFeed::Options replayedOptions(const Call &call);
     Result<void> openLive();
     /// whole: what is told when all was played.
@@ -66,7 +68,8 @@ private:
     QTimer retry_;            ///< of publishing: the next turn, or what a reader had no room for
     QElapsedTimer sinceRoom_; ///< every reader had room
     bool cloudsWanted_ = false;
-    QElapsedTimer sinceCapture_;            ///< since the last capture.turn
+    QElapsedTimer sinceCapture_; ///< since the last capture.turn
+    QString unopened_;           ///< why nothing can be received yet; empty: it can be, or is not wanted
     std::optional<Result<void>> replayEnd_; ///< the replay is at its end; what waits is yet to be published
     QElapsedTimer sincePacket_;             ///< since the last second in which one came
     QElapsedTimer sinceOther_;              ///< one of another model did; invalid before the first

@@ -245,6 +245,18 @@ private:
     std::unique_ptr<Client> client_;
 };
 
+/// A shell takes it for one word and nothing else, whoever has chosen the name.
+QString quotedForShell(const QString &text) {
+    const QString plain = QStringLiteral("_-./:=,@%+");
+    QString quoted;
+    for (const QChar c : text) {
+        if (!c.isLetterOrNumber() && !c.isSurrogate() && !plain.contains(c))
+            quoted += QLatin1Char('\\');
+        quoted += c;
+    }
+    return quoted;
+}
+
 } // namespace
 
 int printCandidates(const QString &line) {
@@ -253,7 +265,9 @@ int printCandidates(const QString &line) {
         if (known.contains(candidate.text))
             continue;
         known.append(candidate.text);
-        printLine(candidate.text + QLatin1Char('\t') + candidate.meaning.simplified());
+        if (printable(candidate.text) == candidate.text) // nobody could type the others
+            printLine(quotedForShell(candidate.text) + QLatin1Char('\t') +
+                      printable(candidate.meaning.simplified()));
     }
     return 0;
 }

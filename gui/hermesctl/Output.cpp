@@ -29,13 +29,11 @@ Destination destination;
     const QString text =
         QStringLiteral("%1 cannot be written: %2")
             .arg(destination.name, why.isEmpty() ? QString::fromUtf8(std::strerror(errno)) : why);
-    if (destination.jsonNotes)
-        std::fprintf(stderr, "%s\n",
-                     compactJson(QJsonObject{{QStringLiteral("code"), int(ErrorCode::InputOutput)},
-                                             {QStringLiteral("message"), text}})
-                         .constData());
-    else
-        std::fprintf(stderr, "hermesctl: %s\n", qPrintable(text));
+    const QJsonObject object{{QStringLiteral("code"), int(ErrorCode::InputOutput)},
+                             {QStringLiteral("message"), text}};
+    printError((destination.jsonNotes ? QString::fromUtf8(compactJson(object))
+                                      : QStringLiteral("hermesctl: ") + text) +
+               QLatin1Char('\n'));
     std::_Exit(1);
 }
 
@@ -78,7 +76,7 @@ void checkOutput() {
 void printLine(const QString &text) {
     if (destination.isGone)
         return;
-    std::fputs((text + QLatin1Char('\n')).toUtf8().constData(), opened());
+    std::fputs((printable(text, false) + QLatin1Char('\n')).toUtf8().constData(), opened());
     checkOutput();
 }
 
@@ -98,18 +96,30 @@ void setJsonNotes(bool on) {
     destination.jsonNotes = on;
 }
 
-QString printable(QString text) {
-    for (QChar &c : text)
-        if (!c.isPrint())
-            c = QLatin1Char('?');
-    return text;
+QString printable(const QString &text, bool isOneLine) {
+    QString result;
+    result.reserve(text.size());
+    for (const QChar c : text) {
+        const bool isLayout = !isOneLine && (c == QLatin1Char('\n') || c == QLatin1Char('\t'));
+        const bool isCommand = c.category() == QChar::Other_Control || c.category() == QChar::Other_Format ||
+                               c == QChar::LineSeparator || c == QChar::ParagraphSeparator;
+        if (isCommand && !isLayout)
+            result += QStringLiteral("\\u%1").arg(c.unicode(), 4, 16, QLatin1Char('0'));
+        else
+            result += c;
+    }
+    return result;
+}
+
+void printError(const QString &text) {
+    std::fputs(printable(text, false).toLocal8Bit().constData(), stderr);
 }
 
 void note(const QString &text) {
-    if (destination.jsonNotes)
-        std::fprintf(stderr, "%s\n", compactJson(QJsonObject{{QStringLiteral("note"), text}}).constData());
-    else
-        std::fprintf(stderr, "hermesctl: %s\n", qPrintable(text));
+    printError((destination.jsonNotes
+                    ? QString::fromUtf8(compactJson(QJsonObject{{QStringLiteral("note"), text}}))
+                    : QStringLiteral("hermesctl: ") + text) +
+               QLatin1Char('\n'));
 }
 
 void runStream(QEventLoop &loop) {

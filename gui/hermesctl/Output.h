@@ -19,14 +19,20 @@ void printLine(const QString &text);
 /// One value as one line.
 void printJson(const QJsonValue &value);
 
-/// Checks what was printed by other means.
+/// Checks what was printed.
 void checkOutput();
 
 /// Nobody reads stdout any more: a stream ends.
 bool readerIsGone();
 
-/// Anybody on the network may announce anything: nothing that a terminal would take for more than text.
-QString printable(QString text);
+/// What is not of this program (a daemon's answer, the name of a file or of a client) may hold anything.
+/// Control and format characters, with which a terminal is commanded, are escaped (\u001b), so that JSON
+/// stays the same. All that is printed by functions of this file passes here; lines and tabs stay unless
+/// isOneLine.
+QString printable(const QString &text, bool isOneLine = true);
+
+/// Prints to stderr as it is, without a line feed.
+void printError(const QString &text);
 
 /// Notes are JSON objects {"note": TEXT} from now on, one a line.
 void setJsonNotes(bool on);

@@ -1,8 +1,8 @@
 #include "gui/hermesctl/Question.h"
 
 #include "common/platform/Console.h"
+#include "gui/hermesctl/Output.h"
 
-#include <cstdio>
 #include <iostream>
 #include <string>
 
@@ -13,7 +13,7 @@ bool canAsk() {
 }
 
 QString answerTo(const QString &question) {
-    std::fprintf(stderr, "%s ", qPrintable(question));
+    printError(question + QLatin1Char(' '));
     std::string line;
     if (!std::getline(std::cin, line))
         return QStringLiteral("q");

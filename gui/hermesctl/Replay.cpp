@@ -72,8 +72,8 @@ Result<void> replay(const Arguments &arguments) {
             progress->update(position_s, duration_s);
         } else if (isTerminal(StandardStream::Errors)) {
             shown = true;
-            std::fprintf(stderr, "\r\033[K%s: %.1f of %.1f s, %.0f s left ", qPrintable(session->name),
-                         position_s, duration_s,
+            std::fprintf(stderr, "\r\033[K%s: %.1f of %.1f s, %.0f s left ",
+                         qPrintable(printable(session->name)), position_s, duration_s,
                          std::ceil(std::max(0.0, duration_s - position_s) / arguments.speed));
         }
     });

@@ -42,21 +42,18 @@ void tell(const Error &error, const QStringList &advice, bool json) {
             object.insert(QStringLiteral("data"), error.data);
         if (!advice.isEmpty())
             object.insert(QStringLiteral("hint"), advice.join(QLatin1Char('\n')));
-        std::fprintf(stderr, "%s\n", compactJson(object).constData());
-        return;
+        return printError(QString::fromUtf8(compactJson(object)) + QLatin1Char('\n'));
     }
-    std::fprintf(stderr, "hermesctl: %s (%d)\n", qPrintable(error.message), error.code);
-    for (const QString &line : advice.isEmpty() ? linesOf(error) : QStringList())
-        std::fprintf(stderr, "  %s\n", qPrintable(line));
-    for (const QString &line : advice)
-        std::fprintf(stderr, "  %s\n", qPrintable(line));
+    printError(QStringLiteral("hermesctl: %1 (%2)\n").arg(error.message).arg(error.code));
+    for (const QString &line : advice.isEmpty() ? linesOf(error) : advice)
+        printError(QStringLiteral("  ") + line + QLatin1Char('\n'));
 }
 
 int usageError(const QString &text, bool json) {
     if (json)
         tell(Error(ErrorCode::InvalidParams, text), {}, true);
     else
-        std::fprintf(stderr, "hermesctl: %s\nhermesctl --help tells what there is\n", qPrintable(text));
+        printError(QStringLiteral("hermesctl: %1\nhermesctl --help tells what there is\n").arg(text));
     return usageStatus;
 }
 

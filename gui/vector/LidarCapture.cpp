@@ -4,34 +4,15 @@
 #include "gui/vector/Options.h"
 #include "vectorlib/io/TextInput.h"
 
-#include <sstream>
-
 namespace hermes::vector {
 
 namespace {
-
-/// Of four decimal numbers with dots between. Not with zeros before them: elsewhere such are octal.
-std::optional<std::uint32_t> addressOf(const std::string &text) {
-    std::istringstream in(text);
-    std::uint32_t address = 0;
-    int parts = 0;
-    for (std::string part; std::getline(in, part, '.'); ++parts) {
-        const bool isDecimal = !part.empty() && part.size() <= 3 &&
-                               part.find_first_not_of("0123456789") == std::string::npos &&
-                               (part == "0" || part[0] != '0');
-        const unsigned long number = isDecimal ? std::stoul(part) : 256;
-        if (number > 255)
-            return std::nullopt;
-        address = address << 8 | std::uint32_t(number);
-    }
-    return parts == 4 && text.back() != '.' ? std::optional(address) : std::nullopt;
-}
 
 LidarStream::Options streamOf(const SensorOptions &options, velodyne::Model model) {
     LidarStream::Options stream;
     stream.model = model;
     stream.sensor.port = options.port;
-    stream.sensor.address = addressOf(options.sender); // none of an empty one
+    stream.sensor.address = addressFrom(options.sender); // none of an empty one
     return stream;
 }
 
@@ -58,9 +39,10 @@ void SensorOptions::addTo(CLI::App &sub) {
     sub.add_option("--sender", sender, "Of a capture: the sensor that has this address")
         ->check(CLI::Validator(
             [](const std::string &text) {
-                return addressOf(text) ? std::string()
-                                       : "found " + vectorlib::quoted(text) +
-                                             ", expected an IPv4 address: four decimal numbers, dots between";
+                return addressFrom(text)
+                           ? std::string()
+                           : "found " + vectorlib::quoted(text) +
+                                 ", expected an IPv4 address: four decimal numbers, dots between";
             },
             "", "address"))
         ->type_name("ADDRESS");
@@ -82,7 +64,9 @@ std::string LidarCapture::read(velodyne::TurnAssembler &assembler) {
     if (next == PcapReader::Next::Failed)
         throw Failure(reader_.error());
     assembler.finish();
-    return notice(assembler.counts());
+    const std::string others = notice(assembler.counts()), leftOut = reader_.counts().leftOut();
+    return others + (others.empty() || leftOut.empty() ? "" : "; ") +
+           (leftOut.empty() ? "" : name_ + ": " + leftOut);
 }
 
 std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
@@ -95,11 +79,13 @@ std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
         throw Failure(name_ + ": found data packets of " + listOthers(choice) + " only, expected some" +
                       (options_.port ? " to port " + std::to_string(*options_.port) : "") +
                       (options_.sender.empty() ? "" : " from " + options_.sender));
+    const std::string leftOut = reader_.counts().leftOut(true);
     throw Failure(
         name_ + ": found " +
         (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +
         ", expected those of an " + velodyne::sensorNames() +
-        ": UDP datagrams of 1206 bytes whose blocks begin with FF EE");
+        ": UDP datagrams of 1206 bytes whose blocks begin with FF EE" +
+        (leftOut.empty() ? "" : "; " + leftOut));
 }
 
 } // namespace hermes::vector

@@ -27,8 +27,8 @@ public:
     LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model = velodyne::Model::Blank);
 
     /// Feeds all of them to an assembler and lets the sensor's position packets tell the hour. Gives a
-    /// message about who else sent data packets, or nothing. Throws Failure where the capture is damaged,
-    /// after feeding what came before, and when the sensor is not in it.
+    /// message about who else sent data packets and what was left out, or nothing. Throws Failure where the
+    /// capture is damaged, after feeding what came before, and when the sensor is not in it.
     std::string read(velodyne::TurnAssembler &assembler);
 
 private:

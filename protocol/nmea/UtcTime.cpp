@@ -49,6 +49,12 @@ std::optional<double> toStamp(const Date &date, const UtcTime &time) {
     return days * secondsOfDay + time.hour * 3600 + time.minute * 60 + time.second;
 }
 
+bool isRolledOver(double told, double clock) {
+    constexpr double weeks = 1024 * 7 * secondsOfDay, alike = 2 * secondsOfDay;
+    const double periods = std::round((clock - told) / weeks);
+    return periods != 0 && std::abs(clock - told - periods * weeks) < alike;
+}
+
 std::optional<UtcTime> timeOf(double stamp) {
     if (!isStamp(stamp))
         return std::nullopt;

@@ -30,4 +30,8 @@ std::optional<double> toStamp(const Date &date, const UtcTime &time);
 std::optional<UtcTime> timeOf(double stamp);
 std::optional<Date> dateOf(double stamp);
 
+/// Whether a receiver's time is 1024 weeks, or a multiple, off a clock: its count of weeks began anew, and
+/// its program does not know that. Seconds since the Unix epoch.
+bool isRolledOver(double told, double clock);
+
 } // namespace hermes::nmea

@@ -39,8 +39,6 @@ PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size, Model
         if (packet.azimuth(block) >= azimuthSteps)
             return PacketFault::Value;
     }
-    if (packet.stamp_us() >= stampPeriod_us)
-        return PacketFault::Value;
     const Model model = packet.model();
     const bool isExpected = expected == Model::Blank || model == Model::Blank || model == expected;
     return isExpected && isDecoded(packet.returnMode(), model) ? PacketFault::None : PacketFault::Model;

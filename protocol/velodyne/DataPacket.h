@@ -38,8 +38,9 @@ public:
     std::uint8_t intensity(int block, int slot) const { return bytes_[returnOffset(block, slot) + 2]; }
     /// How many slots of a block have a return.
     int filledSlots(int block) const;
-    /// Microseconds since the top of the hour, when the first laser of the packet fired.
-    std::uint32_t stamp_us() const { return word(1200) | std::uint32_t(word(1202)) << 16; }
+    /// Microseconds since the top of the hour, when the first laser of the packet fired. Some sensors count
+    /// on beyond the hour.
+    std::uint32_t stamp_us() const { return (word(1200) | std::uint32_t(word(1202)) << 16) % stampPeriod_us; }
     ReturnMode returnMode() const { return ReturnMode(bytes_[1204]); }
     Model model() const { return Model(bytes_[1205]); }
     /// Blocks that hold the same firings: 2 in dual return mode, else 1.

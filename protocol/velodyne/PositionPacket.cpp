@@ -60,10 +60,9 @@ const char *toText(Pps pps) {
 PositionFault decodePosition(const std::uint8_t *bytes, std::size_t size, PositionPacket &packet) {
     if (size != positionPacketSize)
         return PositionFault::Size;
-    const std::uint32_t stamp_us = word(bytes + stampAt) | word(bytes + stampAt + 2) << 16;
-    if (stamp_us >= stampPeriod_us || bytes[ppsAt] > std::uint8_t(Pps::Error))
+    if (bytes[ppsAt] > std::uint8_t(Pps::Error))
         return PositionFault::Value;
-    packet.stamp_us = stamp_us;
+    packet.stamp_us = (word(bytes + stampAt) | word(bytes + stampAt + 2) << 16) % stampPeriod_us;
     packet.pps = Pps(bytes[ppsAt]);
     for (std::size_t i = 0; i < packet.chips.size(); ++i) {
         const std::uint8_t *chip = bytes + chipsAt + 8 * i;

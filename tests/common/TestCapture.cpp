@@ -154,6 +154,10 @@ void TestCapture::tagsAreSteppedOver() {
     QCOMPARE(parse(frame, d), FrameFault::None);
     frame.insert(12, QByteArray::fromHex("88a8000b"));
     QCOMPARE(parse(frame, d), FrameFault::None);
+    for (const char *old : {"91000001", "92000002", "93000003"}) {
+        frame.insert(12, QByteArray::fromHex(old));
+        QCOMPARE(parse(frame, d), FrameFault::None);
+    }
     QCOMPARE(d.size, std::size_t(7));
 }
 

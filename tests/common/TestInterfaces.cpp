@@ -10,11 +10,13 @@
 #include "tests/support/LoopbackInterface.h"
 #include "tests/support/Patience.h"
 
+#include <QProcess>
 #include <QTcpServer>
 #include <QTcpSocket>
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include <sched.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,6 +35,7 @@ private Q_SLOTS:
     void closedInterfaceRefusesAndCounts();
     void writeLimitRefusesWhole();
     void udpKeepsDatagramsWhole();
+    void udpKeepsToItsSender();
     void localSocketsNameTheirPeer();
     void localSocketsReplaceOnlyWhatIsDead();
     void socketsHaveAnOwner_data();
@@ -41,6 +44,8 @@ private Q_SLOTS:
     void loopbackIsAsynchronous();
     void faultsAreRepeatable();
     void faultyKeepsOrderWithDelays();
+    void aPeerThatVanishedIsFound_data();
+    void aPeerThatVanishedIsFound();
 };
 
 void TestInterfaces::parsesUrls_data() {
@@ -180,6 +185,39 @@ void TestInterfaces::udpKeepsDatagramsWhole() {
     QSignalSpy closed(&second, &Interface::closed);
     second.open();
     QCOMPARE(closed.count(), 1); // the port is in use
+}
+
+void TestInterfaces::udpKeepsToItsSender() {
+    QUdpSocket one, two;
+    QVERIFY(one.bind(QHostAddress("127.0.0.1"), 0) && two.bind(QHostAddress("127.0.0.2"), 0));
+    const auto interface = [](const QString &from) {
+        return std::make_unique<UdpInterface>(*InterfaceUrl::parse("udp://127.0.0.1:0?from=" + from),
+                                              nullptr);
+    };
+    const QString both = QString("%1:%2");
+    const auto first = interface("first"), second = interface("127.0.0.2"),
+               third = interface(QString("127.0.0.2:%1").arg(two.localPort()));
+    for (const auto &[reader, wanted] :
+         {std::pair(first.get(), QByteArray("one")), {second.get(), "two"}, {third.get(), "two"}}) {
+        QSignalSpy received(reader, &Interface::received);
+        reader->open();
+        QVERIFY(reader->isOpen());
+        for (int i = 0; i < 3; ++i) {
+            one.writeDatagram("one", QHostAddress("127.0.0.1"), reader->localPort());
+            two.writeDatagram("two", QHostAddress("127.0.0.1"), reader->localPort());
+        }
+        QTRY_COMPARE(received.count() + int(reader->strangers().datagrams), 6);
+        QCOMPARE(received.count(), 3);
+        for (const auto &arguments : received)
+            QCOMPARE(arguments[0].toByteArray(), wanted);
+        const QUdpSocket &stranger = wanted == "one" ? two : one;
+        QCOMPARE(reader->strangers().names,
+                 QStringList{both.arg(stranger.localAddress().toString()).arg(stranger.localPort())});
+    }
+    const auto wrong = interface("somebody");
+    QSignalSpy closed(wrong.get(), &Interface::closed);
+    wrong->open();
+    QVERIFY2(closed[0][0].toString().contains("somebody"), qPrintable(closed[0][0].toString()));
 }
 
 void TestInterfaces::localSocketsNameTheirPeer() {
@@ -346,6 +384,37 @@ void TestInterfaces::faultyKeepsOrderWithDelays() {
         faulty.write(piece);
     }
     QTRY_COMPARE(got, sent);
+}
+
+void TestInterfaces::aPeerThatVanishedIsFound_data() {
+    QTest::addColumn<bool>("writes");
+    QTest::newRow("only read") << false;
+    QTest::newRow("written to") << true;
+}
+
+/// The last one: this process goes to a network of its own, whose only cable is then pulled.
+void TestInterfaces::aPeerThatVanishedIsFound() {
+    QFETCH(bool, writes);
+    if (::unshare(CLONE_NEWNET) != 0)
+        QSKIP("no network namespace (needs root rights)");
+    const auto setLink = [](const char *state) {
+        return QProcess::execute("ip", {"link", "set", "lo", state});
+    };
+    QCOMPARE(setLink("up"), 0);
+    TcpServerInterface server(*InterfaceUrl::parse("tcp://127.0.0.1:0"), nullptr);
+    QVERIFY(server.listen());
+    std::unique_ptr<Interface> peer;
+    connect(&server, &Listener::accepted, this, [&peer](Interface *arrived) { peer.reset(arrived); });
+    TcpInterface client(*InterfaceUrl::parse(server.address()), nullptr);
+    client.open();
+    QTRY_VERIFY(client.isOpen() && peer);
+    QVERIFY(client.write("here"));
+    QTRY_COMPARE(peer->counters().bytesIn, quint64(4));
+    QSignalSpy closed(&client, &Interface::closed), peerClosed(peer.get(), &Interface::closed);
+    QCOMPARE(setLink("down"), 0);
+    if (writes)
+        QVERIFY(client.write("to nobody") && peer->write("to nobody"));
+    QTRY_VERIFY_WITH_TIMEOUT(closed.count() == 1 && peerClosed.count() == 1, 60000); // hours without
 }
 
 QTEST_GUILESS_MAIN(TestInterfaces)

@@ -10,11 +10,12 @@ namespace {
 constexpr std::uint32_t first = 0xC0A801C9, second = 0xC0A801CA;
 constexpr std::int64_t second_ns = 1000000000;
 
-Datagram packet(std::uint32_t address, std::int64_t stamp_ns = 0, std::uint16_t port = 2368) {
+Datagram packet(std::uint32_t address, std::int64_t stamp_ns = 0, std::uint16_t port = 2368,
+                std::uint16_t from = 443) {
     Datagram datagram;
     datagram.source = address;
     datagram.destinationPort = port;
-    datagram.sourcePort = std::uint16_t(stamp_ns); // no matter
+    datagram.sourcePort = from;
     datagram.stamp_ns = stamp_ns;
     return datagram;
 }
@@ -34,6 +35,7 @@ private Q_SLOTS:
     void theFirstIsTaken();
     void onlyWhatIsAskedForIsTaken();
     void anotherTakesThePlaceOfASilentOne();
+    void twoOfOneAddressAreTwo();
     void aJumpIsNoSilence();
     void manySensorsDoNotFillTheMemory();
 };
@@ -49,7 +51,7 @@ void TestSensorChoice::theFirstIsTaken() {
     QVERIFY(choice.mayTake(packet(first)) && !choice.mayTake(packet(second)));
     QVERIFY(choice.isFromTaken(packet(first, 0, 8308)) && !choice.isFromTaken(packet(second, 0, 8308)));
     QCOMPARE(choice.sensors().size(), std::size_t(3));
-    QCOMPARE(toText(*choice.taken()), std::string("192.168.1.201 to port 2368"));
+    QCOMPARE(toText(*choice.taken()), std::string("192.168.1.201:443 to port 2368"));
     QCOMPARE(choice.taken()->packets, std::uint64_t(2));
 }
 
@@ -78,6 +80,16 @@ void TestSensorChoice::anotherTakesThePlaceOfASilentOne() {
     QVERIFY(!choice.takes(packet(second, second_ns)));
     QVERIFY(choice.takes(packet(second, second_ns + 1)));
     QVERIFY(!choice.takes(packet(first, second_ns + 2)));
+}
+
+void TestSensorChoice::twoOfOneAddressAreTwo() {
+    for (SensorChoice choice : {SensorChoice(), patient()}) {
+        QVERIFY(choice.takes(packet(first)));
+        QVERIFY(!choice.takes(packet(first, 500, 2368, 5000)) && choice.takes(packet(first, 1000)));
+        QCOMPARE(choice.sensors().size(), std::size_t(2));
+        QVERIFY(choice.takes(packet(first, 2 * second_ns, 2368, 5000))); // it began anew
+        QVERIFY(!choice.takes(packet(second, 2 * second_ns)));
+    }
 }
 
 void TestSensorChoice::aJumpIsNoSilence() {

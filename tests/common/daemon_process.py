@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "docs", "examples"))
@@ -91,6 +92,44 @@ class CommandLine(unittest.TestCase):
             shown = run("--listen", f"tcp://127.0.0.1:{daemon.port}")
             self.assertEqual(shown.returncode, 1)
             self.assertIn(f"port {daemon.port} of 127.0.0.1 is already in use", shown.stderr)
+
+    def test_an_address_that_cannot_be_had_yet_ends_nothing(self):
+        with tempfile.TemporaryDirectory() as folder, Running() as other:
+            busy = f"tcp://127.0.0.1:{other.port}"
+            keys = f"tls://127.0.0.1:0?keys={folder}/keys"  # none yet
+            with Running("--listen", busy, "--listen", keys) as daemon, Daemon(port=daemon.port) as client:
+                def channel():
+                    return next(item for item in client.call("daemon.status")["health"] if item["name"] == "channel")
+                self.assertEqual(channel()["level"], "error")
+                self.assertIn(f"port {other.port} of 127.0.0.1 is already in use", channel()["message"])
+                self.assertIn(f"{folder}/keys", channel()["message"])
+                other.process.kill()
+                other.end()
+                until = time.monotonic() + 30
+                while len(client.call("daemon.info")["listen"]) < 2 and time.monotonic() < until:
+                    time.sleep(0.05)
+                self.assertIn(busy, client.call("daemon.info")["listen"])
+                with Daemon(port=other.port) as late:
+                    late.call("daemon.info")
+                self.assertEqual(channel()["level"], "error")
+                self.assertNotIn(str(other.port), channel()["message"])
+
+    def test_a_service_waits_for_its_only_address(self):
+        with tempfile.TemporaryDirectory() as folder, Running() as other:
+            process = subprocess.Popen([PROGRAM, "--listen", f"tcp://127.0.0.1:{other.port}"], stderr=subprocess.PIPE, text=True,
+                                       env={**os.environ, "NOTIFY_SOCKET": os.path.join(folder, "nobody")})
+            line = ""
+            while "tried again" not in line:
+                line = process.stderr.readline()
+                self.assertTrue(line, "it ended")
+            other.process.kill()
+            other.end()
+            while "listening on" not in line:
+                line = process.stderr.readline()
+                self.assertTrue(line, "it ended")
+            process.terminate()
+            process.stderr.close()
+            self.assertEqual(process.wait(20), 0)
 
     def test_network_is_refused(self):
         shown = run("--listen", "tcp://0.0.0.0:0")

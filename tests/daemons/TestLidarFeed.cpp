@@ -266,7 +266,8 @@ void TestLidarFeed::ofSeveralSensorsOnOnePortOneIsDecoded() {
         send(far, farPacket(i));
     }
     QTRY_COMPARE(listener.feed.counts().udp.received, std::uint64_t(40));
-    const std::string sensorText = "127.0.0.1 to port " + std::to_string(listener.feed.port());
+    const std::string sensorText =
+        "127.0.0.1:" + std::to_string(near.localPort()) + " to port " + std::to_string(listener.feed.port());
     listener.feed.close();
     listener.take();
     QCOMPARE(rangesOf(listener.turns), std::set<double>{5.0});

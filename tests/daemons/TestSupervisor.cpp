@@ -26,6 +26,7 @@ private Q_SLOTS:
     void whatAProcessLeavesBehindIsKilled();
     void restartsInAStormEndInOneProcess();
     void keepsTheLastOutput();
+    void whoWritesWithoutEndHoldsUpNobody();
     void reportsUse();
     void addAndRemove();
     void changedEntryIsStartedAnew_data();
@@ -33,6 +34,7 @@ private Q_SLOTS:
     void aMendedEntryIsStarted_data();
     void aMendedEntryIsStarted();
     void refusals();
+    void childrenEndWithAKilledSupervisor_data();
     void childrenEndWithAKilledSupervisor();
     void runsADaemon();
 
@@ -248,6 +250,21 @@ void TestSupervisor::keepsTheLastOutput() {
     QCOMPARE(lines(1), QJsonArray{zero});
 }
 
+void TestSupervisor::whoWritesWithoutEndHoldsUpNobody() {
+    launch({shell("one", "exec yes ''"), shell("two", "exec yes ''"), shell("three", "exec yes word")});
+    QTRY_COMPARE(call("process.output", {{"name", "three"}, {"lines", 1}})->toArray(), QJsonArray{"word"});
+    QElapsedTimer time;
+    for (int i = 0; i < 20; ++i) {
+        time.start();
+        QCOMPARE(stateOf("one"), QString("running"));
+        QVERIFY2(time.elapsed() < 5000,
+                 qPrintable(QString::number(time.elapsed()))); // the watchdog waits for 10 s
+    }
+    for (const char *name : {"one", "two", "three"})
+        QVERIFY(call("process.stop", {{"name", name}}).ok());
+    QTRY_COMPARE(stateOf("three"), QString("stopped"));
+}
+
 void TestSupervisor::reportsUse() {
     launch({shell("busy", "while :; do :; done")});
     QTRY_VERIFY(process("busy")["cpu"].toDouble() > 0.1);
@@ -330,9 +347,17 @@ void TestSupervisor::refusals() {
     QVERIFY(message("process.add", {{"name", "x"}, {"port", 70000}}).contains("port"));
 }
 
+void TestSupervisor::childrenEndWithAKilledSupervisor_data() {
+    QTest::addColumn<QString>("script");
+    QTest::newRow("as told") << "echo $$ > %1; exec sleep 100";
+    QTest::newRow("that ignore SIGTERM") << "trap '' TERM; echo $$ > %1; while :; do sleep 0.02; done";
+    QTest::newRow("that stand still") << "echo $$ > %1; kill -STOP $$; sleep 100";
+}
+
 void TestSupervisor::childrenEndWithAKilledSupervisor() {
+    QFETCH(QString, script);
     QProcess supervisor;
-    const QJsonArray processes{shell("one", "echo $$ > " + folder_->filePath("pid") + "; exec sleep 100")};
+    const QJsonArray processes{shell("one", script.arg(folder_->filePath("pid")))};
     supervisor.start(
         qEnvironmentVariable("HERMES_BIN") + "/hermes-supervisor",
         {"--listen", "tcp://127.0.0.1:0", "--set",
@@ -344,7 +369,11 @@ void TestSupervisor::childrenEndWithAKilledSupervisor() {
     QCOMPARE(::kill(pid, 0), 0);
     supervisor.kill();
     QVERIFY(supervisor.waitForFinished());
-    QTRY_VERIFY(::kill(pid, 0) != 0);
+    const auto isGone = [pid] { // or is dead and was not collected
+        QFile state(QString("/proc/%1/stat").arg(pid));
+        return !state.open(QFile::ReadOnly) || state.readAll().contains(") Z");
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(isGone(), 20000);
 }
 
 void TestSupervisor::runsADaemon() {

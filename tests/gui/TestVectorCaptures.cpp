@@ -94,9 +94,9 @@ private Q_SLOTS:
         const Result ring = ran(QStringList{"ring", path("c.pcap")} + options);
         QCOMPARE(rangesOf(ring.out), QSet<double>{range});
         QCOMPARE(ring.out.count('\n'), 4801);
-        for (const char *told :
-             {"192.168.1.201 to port 2368 (400 packets)", "192.168.1.202 to port 2369 (400 packets)",
-              "192.168.1.203 to port 2368 (400 packets)", "--port", "--sender"})
+        for (const char *told : {"192.168.1.201:2368 to port 2368 (400 packets)",
+                                 "192.168.1.202:2369 to port 2369 (400 packets)",
+                                 "192.168.1.203:2368 to port 2368 (400 packets)", "--port", "--sender"})
             QVERIFY2(ring.err.contains(told), ring.err.constData());
         const Result map = ran(QStringList{"map", path("c.pcap"), "--out-map", path("m.csv")} + options);
         QCOMPARE(json(map.out)["scans"].toInt(), 3);
@@ -117,7 +117,7 @@ private Q_SLOTS:
     void whatIsMissingIsTold_data() {
         const Rows<QStringList, QByteArray> row("options", "told");
         row("port", {"--port", "2370"},
-            "found data packets of 192.168.1.201 to port 4711 (400 packets) "
+            "found data packets of 192.168.1.201:4711 to port 4711 (400 packets) "
             "only, expected some to port 2370");
         row("sender", {"--sender", "10.0.0.1"}, "only, expected some from 10.0.0.1");
     }
@@ -127,6 +127,28 @@ private Q_SLOTS:
         for (const char *command : {"ring", "map"}) {
             refused(run(QStringList{command, path("c.pcap"), "--out", path("out")} + options), 1, told);
             QCOMPARE(files(), QStringList{"c.pcap"});
+        }
+    }
+
+    // As tcpdump writes that keeps the beginnings of frames only.
+    void whatIsLeftOutIsTold() {
+        writeCapture(path("c.pcap"), 400);
+        const QByteArray whole = contents(path("c.pcap"));
+        const int header = int(hermes::PcapWriter::fileHeaderBytes), record = (whole.size() - header) / 400;
+        QByteArray cut = whole.left(header);
+        for (int i = 0; i < 400; ++i) {
+            QByteArray one = whole.mid(header + i * record, 16 + 96);
+            qToLittleEndian<quint32>(96, one.data() + 8);
+            cut += one;
+        }
+        write(path("cut.pcap"), cut);
+        write(path("half.pcap"), whole + cut.mid(header));
+        for (const char *command : {"ring", "map"}) {
+            const Result none = run({command, path("cut.pcap")}), half = run({command, path("half.pcap")});
+            QCOMPARE(none.status, 1);
+            QVERIFY2(none.err.contains("400 cut to their beginning"), none.err.constData());
+            QCOMPARE(half.status, 0);
+            QVERIFY2(half.err.contains("of 800 records were left out: 400 cut"), half.err.constData());
         }
     }
 

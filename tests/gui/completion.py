@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from ctl_support import BUILD, PROGRAM, SOURCE, ThermometerCase, ctl
+from ctl_support import BUILD, PROGRAM, SOURCE, MadeUpDaemon, ThermometerCase, ctl
 
 BEGIN_ZSH = "autoload -U compinit; compinit -u; "
 # How each is started, and what makes it complete: the script that is printed, or the file that is installed.
@@ -117,6 +117,23 @@ class Completion(ThermometerCase):
         self.assertEqual(candidates("list --host r"), ["rover"])
         self.assertEqual(candidates("list --host=r"), ["--host=rover"])
         self.assertEqual(candidates("list --host a"), [])
+
+    def test_names_are_words(self):
+        """Whoever has chosen a name: it does not become a command of the shell, nor a command to the terminal."""
+        names = ["run1;cd;touch pwned", "$(touch pwned)", "`x`", "a|b&c", "it's \"so\"", "über", "esc\x1b[2J", "line\nbreak", "\u202eevil"]
+        daemon = MadeUpDaemon({"topics.list": [{"name": name, "summary": "s\x1b[2J", "schema": {}} for name in names]})
+        self.addCleanup(daemon.stop)
+        self.assertEqual(candidates(f"watch {daemon.address} "),
+                         [r"run1\;cd\;touch\ pwned", r"\$\(touch\ pwned\)", r"\`x\`", r"a\|b\&c", r"it\'s\ \"so\"", "über"])
+        self.assertNotIn("\x1b", ctl("complete", f"hermesctl watch {daemon.address} ").stdout)
+        for name in SHELLS:
+            if shutil.which(SHELLS[name][0][0]):
+                with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                    shell = Shell(name, folder)
+                    self.assertEqual(shell.said(f"cd {folder}; hermesctl watch {daemon.address} run\t"),
+                                     f"watch {daemon.address} run1;cd;touch pwned")
+                    shell.end()
+                    self.assertFalse(os.path.exists(os.path.join(folder, "pwned")))
 
     def test_silent_without_a_daemon(self):
         begun = time.monotonic()

@@ -128,6 +128,30 @@ class Hermesctl(ThermometerCase):
             daemon.stderr.close()
             daemon.wait(20)
 
+    def test_nothing_commands_the_terminal(self):
+        """Whatever a daemon answers."""
+        odd = "\x1b]0;owned\x07\x1b[2J\x9b2J\u202e\r\u2028evil"
+        schema = {"type": "object", "properties": {"x" + odd: {"type": "number", "description": odd, "default": 1}}}
+        method = {"name": "a" + odd, "summary": odd, "params": [{"name": "p" + odd, "schema": {"type": "number", "description": odd}}],
+                  "result": {"name": "r", "schema": {"type": "null"}}}
+        other = MadeUpDaemon({
+            "rpc.discover": {"info": {"title": odd, "version": "1", "description": odd}, "methods": [method],
+                             "x-topics": [{"name": odd, "summary": odd, "schema": {}}]},
+            "settings.schema": schema, "settings.get": {"a" + odd: odd}, "settings.set": {"changed": [odd], "restart": []},
+            "log.tail": [{"stamp": 1.0, "level": "info" + odd, "source": odd, "text": odd}],
+            "daemon.info": {"name": "n" + odd, "version": odd, "pid": 1, "listen": []},
+            "daemon.status": {"state": "ready" + odd, "health": [{"name": odd, "level": "error", "message": odd, "values": {}, "age_s": 0}]},
+            "x.y": MadeUpDaemon.Error(code=-32005, message=odd, data={"why" + odd: odd})})
+        self.addCleanup(other.stop)
+        at = other.address
+        for words in (["call", at, "x.y"], ["call", "--json", at, "x.y"], ["call", at, "settings.get"], ["discover", at], ["doc", at],
+                      ["log", at], ["set", at, "a=1"], ["get", at], ["list", "--daemons", at], ["record", "list", "--daemons", at],
+                      ["replay", odd, "--daemons", at], ["call", at, odd], [odd]):
+            shown = ctl(*words)
+            wrong = [c for c in shown.stdout + shown.stderr if c in "\x1b\x07\x9b\u202e\r\u2028"]
+            self.assertEqual(wrong, [], words)
+        self.assertEqual(json.loads(self.ok("call", at, "settings.get")), {"a" + odd: odd})  # the same JSON
+
     def test_list_of_other_programs(self):
         foreign = "answers, but is no daemon of Hermes: "
         for replies, why in (({"daemon.info": {}}, "its reply to daemon.info has no name"),

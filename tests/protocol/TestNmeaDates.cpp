@@ -10,6 +10,7 @@ private Q_SLOTS:
     void stampsOfDates_data();
     void stampsOfDates();
     void stampsAndDatesAreInverse();
+    void aRolledOverCountOfWeeksIsSeen();
 };
 
 void TestNmeaDates::stampsOfDates_data() {
@@ -40,6 +41,15 @@ void TestNmeaDates::stampsAndDatesAreInverse() {
     for (const double wrong : {-1.0, nan, 1e300, 253402300800.0})
         QVERIFY(!dateOf(wrong) && !timeOf(wrong));
     QVERIFY(!toStamp({2015, 2, 29}, {0, 0, 0}) && !toStamp({2015, 2, 28}, {0, 0, nan}));
+}
+
+void TestNmeaDates::aRolledOverCountOfWeeksIsSeen() {
+    constexpr double now = 1795400000, weeks = 1024 * 7 * 86400;
+    for (const double off_s : {0.0, 3600.0, -80000.0}) {
+        QVERIFY(isRolledOver(now - weeks + off_s, now) && isRolledOver(now - 2 * weeks + off_s, now));
+        QVERIFY(isRolledOver(now + weeks + off_s, now));
+        QVERIFY(!isRolledOver(now + off_s, now) && !isRolledOver(now - weeks / 2 + off_s, now));
+    }
 }
 
 QTEST_APPLESS_MAIN(TestNmeaDates)

@@ -82,7 +82,7 @@ void TestPacketDecoder::faultsAreNamed_data() {
     row("first flag", 1206, 0, 0xFE, int(PacketFault::Flag));
     row("last flag", 1206, 1101, 0, int(PacketFault::Flag));
     row("azimuth", 1206, 3, 0x8D, int(PacketFault::Value));
-    row("stamp", 1206, 1203, 0xFF, int(PacketFault::Value));
+    row("stamp beyond the hour", 1206, 1203, 0xFF, int(PacketFault::None));
     row("VLP-16", 1206, 1205, 0x22, int(PacketFault::None));
     row("VLP-32C", 1206, 1205, 0x28, int(PacketFault::Model));
     row("model without mode", 1206, 1204, 0, int(PacketFault::Model));

@@ -194,7 +194,7 @@ def check_sensors(logger, capture):
     logger.call("source.open", pcap=capture, speed=1, loop=True, port=1)
     health = lambda: next(item for item in logger.call("daemon.status")["health"] if item["name"] == "lidar")  # noqa: E731
     wait_for("word of packets that nobody asked for", lambda: health()["level"] == "warn")
-    told = rf"no data packet is decoded, those that came are of [\d.]+ to port {port}"
+    told = rf"no data packet is decoded, those that came are of [\d.:]+ to port {port}"
     assert re.fullmatch(told, health()["message"]), health()
     refusal(logger, "source.open", -32602, live=True, port=1)
 

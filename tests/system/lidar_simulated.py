@@ -8,6 +8,7 @@ import os
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -81,7 +82,7 @@ def check_geometry(edges, scans, truth):
     return checked
 
 
-def check_refusals(folder, busy_port):
+def check_refusals(folder):
     """Bad input ends a program with status 1 or 2 and a message that names what is wrong."""
     empty = os.path.join(folder, "empty.json")
     put(empty, '{"name": "empty", "edges": []}\n')
@@ -91,14 +92,40 @@ def check_refusals(folder, busy_port):
             ("simulator", ["--set", "world=/nonexistent.json"], 1, ["/nonexistent.json", "No such file"]),
             ("simulator", ["--set", "lidar.rpms=600"], 1, ["lidar.rpms"]),
             ("simulator", ["--set", f"world={WORLD}", "--set", "lidar.host=nowhere"], 1, ["nowhere", "IPv4"]),
-            ("velodynelogger", ["--set", "source.pcap=/nonexistent.pcap"], 1, ["/nonexistent.pcap", "No such file"]),
-            ("velodynelogger", ["--set", f"source.port={busy_port}", "--set", "source.address=127.0.0.1"], 1,
-             [f"UDP port {busy_port}", "in use"])):
+            ("velodynelogger", ["--set", "source.pcap=/nonexistent.pcap"], 1, ["/nonexistent.pcap", "No such file"])):
         done = subprocess.run([os.path.join(BINARIES, "hermes-" + program)] + listen + arguments, timeout=20, check=False,
                               capture_output=True, text=True, stdin=subprocess.DEVNULL, cwd=folder)
         assert done.returncode in (1, 2) and done.returncode >= status, (program, arguments, done)
         for word in words:
             assert word in done.stderr, (program, arguments, word, done.stderr)
+
+
+def check_late_port(folder):
+    """A port that another program has is received on as soon as that ends; until then health says what is missing."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        port = other.getsockname()[1]
+        process = Process(BINARIES, "velodynelogger", free_port(0), folder,
+                          {"source.port": port, "source.address": "127.0.0.1", "record.folder": folder})
+        logger = process.connect()
+        health = lambda: next(item for item in logger.call("daemon.status")["health"] if item["name"] == "lidar")  # noqa: E731
+        assert health()["level"] == "error" and f"UDP port {port}" in health()["message"], health()
+    try:
+        wait_for("the port", lambda: logger.call("source.status")["source"]["state"] == "live")
+        assert health()["level"] != "error", health()
+        # Of a capture that kept only the beginnings of frames nothing is decoded: told where its end is told.
+        cut = os.path.join(folder, "cut.pcap")
+        frame = bytes(12) + b"\x08\x00\x45" + bytes(8) + b"\x11" + bytes(10) + struct.pack(">4H", 2368, 2368, 1214, 0) + bytes(54)
+        with open(cut, "wb") as file:
+            file.write(struct.pack("<IHHIIII", 0xa1b2c3d4, 2, 4, 0, 0, 96, 1))
+            for second in range(3):
+                file.write(struct.pack("<IIII", second, 0, len(frame), 1248) + frame)
+        logger.call("source.open", pcap=cut, speed=0)
+        wait_for("the end", lambda: logger.call("source.status")["source"]["state"] == "ended")
+        assert health()["level"] == "warn" and "gave no scan" in health()["message"], health()
+        assert "of 3 records were left out: 3 cut" in health()["message"], health()
+    finally:
+        process.stop()
 
 
 def check_tshark(path, packets):
@@ -140,7 +167,8 @@ def drive(folder):
         assert not any(status["losses"].values()) and status["counts"]["packets"] > 8000, status
         check_tshark(recorded, status["counts"]["packets"])
         check_state(lidar, logger)
-        check_refusals(folder, lidar_port)
+        check_refusals(folder)
+        check_late_port(folder)
         check_faults(simulator, logger)
         check_replay(logger, processes[0].port, recorded)
         check_end(processes)

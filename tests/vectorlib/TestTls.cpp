@@ -1,5 +1,7 @@
 #include <vectorlib/tls/TlsFit.h>
 
+#include "tests/support/Rows.h"
+
 #include <QtTest>
 
 #include <random>
