@@ -387,9 +387,9 @@ void TestInterfaces::faultyKeepsOrderWithDelays() {
 }
 
 void TestInterfaces::aPeerThatVanishedIsFound_data() {
-    QTest::addColumn<bool>("writes");
-    QTest::newRow("only read") << false;
-    QTest::newRow("written to") << true;
+    const Rows<bool> row("writes");
+    row("only read", false);
+    row("written to", true);
 }
 
 /// The last one: this process goes to a network of its own, whose only cable is then pulled.

@@ -137,9 +137,9 @@ void TestRecordingEnds::aFileThatIsRemovedJustBeforeTheStopIsMissed() {
 }
 
 void TestRecordingEnds::aFileThatIsCutIsMissed_data() {
-    QTest::addColumn<int>("told"); // bytes that the writer says it wrote
-    QTest::newRow("shorter than it was") << 0;
-    QTest::newRow("shorter than what was written") << 11;
+    const Rows<int> row("told"); // bytes that the writer says it wrote
+    row("shorter than it was", 0);
+    row("shorter than what was written", 11);
 }
 
 void TestRecordingEnds::aFileThatIsCutIsMissed() {
@@ -160,22 +160,16 @@ void TestRecordingEnds::aFileThatIsCutIsMissed() {
 }
 
 void TestRecordingEnds::whatLinksLeadToStays_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<QString>("target");
-    QTest::newRow("draft of the sidecar") << "cut/.logger.json.new"
-                                          << "victim";
-    QTest::newRow("room for the sidecar") << "cut/.logger.reserve"
-                                          << "victim";
-    QTest::newRow("lock") << ".logger.lock"
-                          << "none";
-    QTest::newRow("a recording elsewhere") << "linked"
-                                           << "cut";
+    const Rows<QString, QString> row("name", "target");
+    row("draft of the sidecar", "cut/.logger.json.new", "victim");
+    row("room for the sidecar", "cut/.logger.reserve", "victim");
+    row("lock", ".logger.lock", "none");
+    row("a recording elsewhere", "linked", "cut");
 }
 
 /// Beside recordings that are completed, and in the folder of one that begins.
 void TestRecordingEnds::whatLinksLeadToStays() {
-    QFETCH(QString, name);
-    QFETCH(QString, target);
+    FETCH(QString, name, QString, target);
     QTemporaryDir root, other, recorded;
     put(other.filePath("victim"), "precious");
     Logger killed(recorded.path());

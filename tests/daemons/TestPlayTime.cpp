@@ -47,21 +47,17 @@ void TestPlayTime::longStepsAreAClockThatWasSet() {
 }
 
 void TestPlayTime::theSensorTellsWhatPassed_data() {
-    QTest::addColumn<double>("host_s");
-    QTest::addColumn<double>("sensor_s");
-    QTest::addColumn<double>("played_s");
-    QTest::newRow("they agree") << 0.1 << 0.1 << 0.1;
-    QTest::newRow("the clock was set forward") << 15.1 << 0.1 << 0.1;
-    QTest::newRow("nothing came for long") << 15.0 << 15.0 << 15.0;
-    QTest::newRow("the sensor began anew") << 15.0 << -5.0 << 15.0;
-    QTest::newRow("the clock was set back") << -15.0 << 0.1 << 0.0;
-    QTest::newRow("a little off") << 0.9 << 0.1 << 0.9;
+    const Rows<double, double, double> row("host_s", "sensor_s", "played_s");
+    row("they agree", 0.1, 0.1, 0.1);
+    row("the clock was set forward", 15.1, 0.1, 0.1);
+    row("nothing came for long", 15.0, 15.0, 15.0);
+    row("the sensor began anew", 15.0, -5.0, 15.0);
+    row("the clock was set back", -15.0, 0.1, 0.0);
+    row("a little off", 0.9, 0.1, 0.9);
 }
 
 void TestPlayTime::theSensorTellsWhatPassed() {
-    QFETCH(double, host_s);
-    QFETCH(double, sensor_s);
-    QFETCH(double, played_s);
+    FETCH(double, host_s, double, sensor_s, double, played_s);
     for (const double hour_s : {100.0, 3599.95}) { // over the top of the hour, too
         velodyne::DataPacketWriter writer;
         const auto packet = [&writer](double from_start_s, double sensor, std::uint32_t source) {

@@ -63,8 +63,7 @@ void TestSerialRepair::whatLinksLeadToStays_data() {
 }
 
 void TestSerialRepair::whatLinksLeadToStays() {
-    QFETCH(QString, file);
-    QFETCH(bool, isHard);
+    FETCH(QString, file, bool, isHard);
     ChunkQueue queue(1000);
     SerialRecorder recorder;
     recorder.setPorts({{"a", "u", &queue}});

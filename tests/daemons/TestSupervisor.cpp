@@ -348,10 +348,10 @@ void TestSupervisor::refusals() {
 }
 
 void TestSupervisor::childrenEndWithAKilledSupervisor_data() {
-    QTest::addColumn<QString>("script");
-    QTest::newRow("as told") << "echo $$ > %1; exec sleep 100";
-    QTest::newRow("that ignore SIGTERM") << "trap '' TERM; echo $$ > %1; while :; do sleep 0.02; done";
-    QTest::newRow("that stand still") << "echo $$ > %1; kill -STOP $$; sleep 100";
+    const Rows<QString> row("script");
+    row("as told", "echo $$ > %1; exec sleep 100");
+    row("that ignore SIGTERM", "trap '' TERM; echo $$ > %1; while :; do sleep 0.02; done");
+    row("that stand still", "echo $$ > %1; kill -STOP $$; sleep 100");
 }
 
 void TestSupervisor::childrenEndWithAKilledSupervisor() {

@@ -210,8 +210,7 @@ void TestNmeaMessages::whatIsOddIsUnknown_data() {
 /// The position is as good as before. Without a fix receivers write anything, also in the fields of the
 /// position.
 void TestNmeaMessages::whatIsOddIsUnknown() {
-    QFETCH(int, field);
-    QFETCH(QByteArray, value);
+    FETCH(int, field, QByteArray, value);
     QByteArrayList fields =
         QByteArray("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D").split(',');
     fields[field] = value;
@@ -236,13 +235,11 @@ void TestNmeaMessages::whatIsOddIsUnknown() {
 }
 
 void TestNmeaMessages::zerosAtTheBeginningMayBeMissing_data() {
-    QTest::addColumn<QByteArray>("position");
-    QTest::addColumn<double>("latitude");
-    QTest::addColumn<double>("longitude");
-    QTest::newRow("one degree") << QByteArray("4426.291992,N,159.931976,W") << 44.4381999 << -1.9988663;
-    QTest::newRow("two degrees") << QByteArray("407.5,S,1026.6634,E") << -4.125 << 10.4443900;
-    QTest::newRow("no degree") << QByteArray("59.5,N,9.3,E") << 0.9916667 << 0.155;
-    QTest::newRow("nothing but zero") << QByteArray("0,N,0.0,E") << 0.0 << 0.0;
+    const Rows<QByteArray, double, double> row("position", "latitude", "longitude");
+    row("one degree", "4426.291992,N,159.931976,W", 44.4381999, -1.9988663);
+    row("two degrees", "407.5,S,1026.6634,E", -4.125, 10.4443900);
+    row("no degree", "59.5,N,9.3,E", 0.9916667, 0.155);
+    row("nothing but zero", "0,N,0.0,E", 0.0, 0.0);
 }
 
 void TestNmeaMessages::zerosAtTheBeginningMayBeMissing() {

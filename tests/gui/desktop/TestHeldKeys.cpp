@@ -182,19 +182,16 @@ public:
 } // namespace
 
 void TestHeldKeys::whatEndsTheHoldingEndsTheDrive_data() {
-    QTest::addColumn<QString>("end");
-    QTest::addColumn<QString>("reason");
+    const Rows<QString, QString> row("end", "reason");
     for (const char *const end : {"layout", "other letter", "group"})
-        QTest::newRow(end) << end << "layout of the keyboard";
-    QTest::newRow("grab") << "grab" << QString();
-    QTest::newRow("lost release") << "lost release"
-                                  << "does not say that its key is held";
+        row(end, end, "layout of the keyboard");
+    row("grab", "grab", QString());
+    row("lost release", "lost release", "does not say that its key is held");
 }
 
 // Whatever becomes of the release: W has another place in the other layout.
 void TestHeldKeys::whatEndsTheHoldingEndsTheDrive() {
-    QFETCH(QString, end);
-    QFETCH(QString, reason);
+    FETCH(QString, end, QString, reason);
     const QString key = "25"; // the key itself: W of the layout us
     QProcess::execute("setxkbmap", {end == "group" ? "us,fr" : "us"});
     OtherProgram other;

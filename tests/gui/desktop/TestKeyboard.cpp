@@ -103,17 +103,13 @@ void TestKeyboard::everyControlIsInTheTabOrder() {
 }
 
 void TestKeyboard::tabLeadsToWhatIsSeen_data() {
-    QTest::addColumn<QString>("front");
-    QTest::addColumn<QString>("other");
+    const Rows<QString, QString> row("front", "other");
     for (const char *const front : {"daemons", "settings", "commands", "log", "plots", "drive", "recordings",
                                     "setup", "events", "cloud"})
         QTest::addRow("%s in front", front) << front << QString();
-    QTest::newRow("one floats") << "recordings"
-                                << "floating";
-    QTest::newRow("parts are drawn shut") << "commands"
-                                          << "shut";
-    QTest::newRow("low") << "settings"
-                         << "low";
+    row("one floats", "recordings", "floating");
+    row("parts are drawn shut", "commands", "shut");
+    row("low", "settings", "low");
 }
 
 namespace {
@@ -129,8 +125,7 @@ bool isInSight(const QWidget &widget) {
 
 // Forward and back, until it is where it began.
 void TestKeyboard::tabLeadsToWhatIsSeen() {
-    QFETCH(QString, front);
-    QFETCH(QString, other);
+    FETCH(QString, front, QString, other);
     auto *const dock = window_->findChild<QDockWidget *>(front);
     dock->raise();
     dock->setFloating(other == "floating");
