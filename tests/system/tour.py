@@ -212,21 +212,7 @@ class AttendantTest(unittest.TestCase):
             with self.subTest(error=error, latched=latched), self.assertRaises(DriveError):
                 self.helped(error, latched)
 
-    class EndTest(unittest.TestCase):
-    def test_a_drive_that_does_not_come_on_ends(self):
-        follower, seen = mock.Mock(progress=0.0), []
-        look = run.watched(seen.append, limit_s=0.05)
-        for step in range(5):  # slowly, but on
-            follower.progress = step / 10
-            look(follower)
-            time.sleep(0.03)
-        with self.assertRaisesRegex(RuntimeError, "not come on .* 40 % of its path"):
-            while True:
-                look(follower)
-        self.assertGreater(len(seen), 5)
-
-
-@unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")
+    @unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")
     def test_a_controller_that_did_not_obey(self):
         """Simulator and motor control are true: the second controller keeps its set-point, whatever it hears, for two seconds."""
         with tempfile.TemporaryDirectory(prefix="hermes-test-") as folder:
@@ -262,6 +248,20 @@ class AttendantTest(unittest.TestCase):
                         wait_for("a fault holds the robot", lambda: motors.call("motor.state")["latched"])
                     helper.help(error)
             self.assertGreater(helper.releases, 0)
+
+
+class EndTest(unittest.TestCase):
+    def test_a_drive_that_does_not_come_on_ends(self):
+        follower, seen = mock.Mock(progress=0.0), []
+        look = run.watched(seen.append, limit_s=0.05)
+        for step in range(5):  # slowly, but on
+            follower.progress = step / 10
+            look(follower)
+            time.sleep(0.03)
+        with self.assertRaisesRegex(RuntimeError, "not come on .* 40 % of its path"):
+            while True:
+                look(follower)
+        self.assertGreater(len(seen), 5)
 
 
 @unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")
