@@ -170,7 +170,7 @@ private Q_SLOTS:
         QByteArray damaged = good;
         damaged[20] = char(damaged[20] ^ 1);
         const QByteArray foreign = "\xfe\x80 no GPS " + good.left(30) + "\xc3\xa4" + good.mid(30);
-        tracker.feed(viewOf(damaged + foreign + '$' + QByteArray(5000, 'y') +
+        tracker.feed(viewOf(damaged + foreign + "$GPTXT," + QByteArray(5000, 'y') +
                             Sentence::of("GPRMC,990000,A,,,,,,,010203")),
                      at(0), count);
         tracker.pause(count);
