@@ -204,9 +204,16 @@ void SchemaForm::setBaseline(const QJsonObject &values) {
     check();
 }
 
+QString SchemaForm::firstError() const {
+    if (errors_.empty())
+        return {};
+    const auto &[path, expected] = *errors_.begin();
+    return tr("%1: expected %2").arg(path.isEmpty() ? tr("all together") : path, expected);
+}
+
 void SchemaForm::setDefaults() {
     for (auto &[path, row] : rows_)
-        if (row.isInSight)
+        if (row.isInSight && !row.schema["readOnly"].toBool())
             row.editor->setValue(row.schema["default"]);
     errors_.clear();
     check();

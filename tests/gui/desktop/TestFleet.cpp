@@ -18,6 +18,7 @@ private Q_SLOTS:
     void namedNoMore();
     void whatIsChosenStaysChosen();
     void theRobotOfLastTimeIsChosen();
+    void whatIsNoAddressIsRefused();
     void twoNamesOfThisComputerAreOneHost();
     void oneProcessAtTwoAddressesIsTold();
     void robotsOfOneNameAreToldApart();
@@ -201,6 +202,16 @@ void TestFleet::theRobotOfLastTimeIsChosen() {
         QTRY_VERIFY(fleet.robotAt(addressOf(other)));
         QCOMPARE(fleet.robot(), fleet.robotAt(addressOf(isMeant ? one : other)));
     }
+}
+
+void TestFleet::whatIsNoAddressIsRefused() {
+    Fleet fleet;
+    for (const char *const wrong :
+         {"999.1.1.1", "999.1.1.1:7450", "1.2.3", "1.2.3.4.5", "256.0.0.1", "1..2.3"})
+        QVERIFY2(!fleet.add(wrong), wrong);
+    QVERIFY(fleet.addresses().isEmpty());
+    for (const char *const right : {"192.168.1.20", "10.0.0.1:7450", "rover-3", "rover.3d"})
+        QVERIFY2(fleet.add(right), right);
 }
 
 void TestFleet::twoNamesOfThisComputerAreOneHost() {

@@ -37,7 +37,14 @@ void TestMapPanel::measured() {
     drag(pixel(0, 0), pixel(3, 4));
     QVERIFY2(std::abs(message().section(' ', 0, 0).toDouble() - 5) < 2 / scale() + 1e-3,
              qPrintable(message()));
-    tool("measure"); // off again
+    const QPoint from = pixel(0, 0), to = pixel(3, 4); // let go farther on than it was dragged to
+    QTest::mousePress(&view(), Qt::LeftButton, {}, from);
+    QMouseEvent move(QEvent::MouseMove, (from + to) / 2, Qt::NoButton, Qt::LeftButton, {});
+    QApplication::sendEvent(&view(), &move);
+    QTest::mouseRelease(&view(), Qt::LeftButton, {}, to);
+    QVERIFY2(std::abs(message().section(' ', 0, 0).toDouble() - 5) < 2 / scale() + 1e-3,
+             qPrintable(message())); // as the line that stays
+    tool("measure");                 // off again
     QVERIFY(view().tool() == MapView::Tool::Pan);
 }
 

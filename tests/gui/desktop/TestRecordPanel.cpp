@@ -290,6 +290,7 @@ void TestRecordPanel::aLoggerThatDiesIsTold() {
     QTRY_VERIFY2(lost->text().contains("velodynelogger was recording run1 and is gone."),
                  qPrintable(lost->text()));
     QCOMPARE(find<QLabel>("amount")->text(), QString("No logger is connected."));
+    QVERIFY2(!find<QLabel>("message")->isVisible(), qPrintable(message())); // "Recording run1." of nobody
     robot.start("seriallogger", settings);
     QTRY_VERIFY_WITH_TIMEOUT(lost->text().contains("seriallogger was gone while it recorded run1"), 20000);
     QTRY_VERIFY(find<QPushButton>("record")->isEnabled() &&

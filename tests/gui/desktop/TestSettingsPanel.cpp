@@ -100,6 +100,7 @@ void TestSettingsPanel::wrongValueIsToldAsOneTypes() {
         QVERIFY2(note("motion.vx").startsWith("expected"), wrong);
         QVERIFY2(!isEnabled("apply"), wrong);
         QVERIFY2(isEnabled("revert"), wrong);
+        QVERIFY2(message().contains("motion.vx"), qPrintable(message())); // which may be out of sight
     }
     OpenWindow::click(panel_, "revert");
     QCOMPARE(note("motion.vx"), limits);
