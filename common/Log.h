@@ -29,6 +29,8 @@ struct LogRecord {
 /// after captureQtMessages().
 class Log {
 public:
+    static constexpr qint64 mostTailBytes = 1 << 20; ///< that tail() gives, to write more takes too long
+
     static Log &instance();
 
     void write(LogLevel level, const QString &source, const QString &text);
@@ -36,7 +38,7 @@ public:
     /// A line that another program wrote goes to stderr, too, after its name; it is no record.
     void pass(const QString &program, const QString &text);
 
-    /// The last count records, oldest first.
+    /// The last count records, oldest first; fewer where they would be larger than a mebibyte.
     std::vector<LogMessage> tail(int count) const;
 
     void setMinimumLevel(LogLevel level);

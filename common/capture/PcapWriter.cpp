@@ -30,7 +30,8 @@ Outcome<void> PcapWriter::open(const std::string &path, bool overwrite) {
     writtenPackets_ = writtenBytes_ = bufferedPackets_ = 0;
     buffer_.clear();
     buffer_.reserve(bufferSize + frameHeaderSize + 16 + maximumPayload);
-    file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
+    file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL),
+                   0644); // appends: what somebody cuts stays missing
     if (file_ < 0) {
         error_ =
             path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));

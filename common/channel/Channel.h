@@ -60,6 +60,8 @@ public:
     bool hasShortWaiting() const;
     /// Drops what is short and waits here, as if the line had lost it.
     void dropShortWaiting();
+    /// Come and not yet given.
+    qint64 bytesToRead() const { return waitingBytes_; }
     /// Taken and not yet given to the system.
     qint64 bytesToWrite() const;
     /// Whether a message of a topic would go out soon: until then it waits where a newer one can replace it.

@@ -133,6 +133,11 @@ void AuditFile::append(const QByteArray &line) {
     shared_->changed.notify_all();
 }
 
+bool AuditFile::isSlow() const {
+    const std::lock_guard<std::mutex> lock(shared_->mutex);
+    return shared_->waiting.size() > mostWaiting / 2;
+}
+
 AuditFile::State AuditFile::state() const {
     const std::lock_guard<std::mutex> lock(shared_->mutex);
     return shared_->state;

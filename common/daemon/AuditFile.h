@@ -29,6 +29,8 @@ public:
     /// Without its line feed.
     void append(const QByteArray &line);
     State state() const;
+    /// More waits for the disk than half of what can.
+    bool isSlow() const;
     QString path() const;
 
 private:

@@ -30,6 +30,7 @@ public:
     QJsonValue message(int i) const { return messages_.at(i); }
     /// frame: empty for a notification.
     void answer(int i, const QByteArray &frame);
+    qint64 bytes() const { return bytes_; }
     bool isTooLarge() const { return bytes_ > mostBytes; }
     /// The pieces of the frame; none when nothing is to be said.
     std::vector<QByteArray> take(const Codec &codec);

@@ -202,7 +202,8 @@ void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topi
     commands.add(
         Command(QStringLiteral("log.tail"), QStringLiteral("The last records of the log, oldest first"))
             .needs(Role::Observer)
-            .param(Field::integer(QStringLiteral("count"), QStringLiteral("How many"))
+            .param(Field::integer(QStringLiteral("count"), QStringLiteral("How many; fewer where they "
+                                                                          "would be larger than 1 MiB"))
                        .range(1, 100000)
                        .byDefault(100))
             .gives<std::vector<LogMessage>>()

@@ -181,6 +181,12 @@ void Daemon::openAudit() {
             return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, QStringLiteral("off"));
         const QJsonObject values{{QStringLiteral("written"), double(state->written)},
                                  {QStringLiteral("lost"), double(state->lost)}};
+        if (channels_.audit().isFlooded())
+            return healthItems_.set(
+                QStringLiteral("audit"), HealthLevel::Warn,
+                QStringLiteral("so many commands come that they are summed up: a line a minute for each "
+                               "client and command, without parameters"),
+                values);
         constexpr double told_s = 60;
         if (monotonicNow() - state->lostAt > told_s)
             return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, channels_.audit().path(),

@@ -2,12 +2,15 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
+#include "common/interface/Descriptors.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "common/interface/OwnSocket.h"
 
 #include <QStringList>
 #include <algorithm>
 #include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace hermes {
 namespace {
@@ -15,6 +18,7 @@ namespace {
 const QString source = QStringLiteral("server");
 constexpr double quiet_s = 1;     // after the last client has gone, before memory is given back
 constexpr double unheard_s = 0.4; // after a client has said anything, the same
+constexpr int look_ms = 250;      // at what clients take, and whether they are silent
 constexpr int mappedBytes = 4 << 20, keptBytes = 16 << 20;
 
 void addTo(QJsonObject &sums, const QString &key, quint64 count) {
@@ -45,6 +49,14 @@ void keepMemory() {
     ::mallopt(M_TRIM_THRESHOLD, keptBytes);
 }
 
+/// That all clients together may take.
+qint64 memoryOfClients() {
+    rlimit room{};
+    ::getrlimit(RLIMIT_AS, &room);
+    const rlim_t there = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGESIZE));
+    return qint64(std::min(there, room.rlim_cur) / 8);
+}
+
 QString howToGetMore(const Peer &peer) {
     if (peer.certificate)
         return QStringLiteral("the certificate of \"%1\" says so, hermesctl keys issue makes another one")
@@ -72,11 +84,12 @@ Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
         for (Session *session : qAsConst(sessions_))
             session->becomeFresh();
     });
-    idleTimer_.setInterval(1000);
+    idleTimer_.setInterval(look_ms);
     connect(&idleTimer_, &QTimer::timeout, this, [this] {
         const auto all = sessions_.values();
         for (Session *session : all)
             session->checkIdle();
+        saveMemory();
         giveMemoryBack();
     });
     idleTimer_.start();
@@ -85,7 +98,9 @@ Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
 void Server::setLimits(const SessionLimits &session, int clients) {
     limits_ = session;
     clientLimit_ = clients;
-    idleTimer_.setInterval(limits_.idle_s > 0 && limits_.idle_s < 4 ? int(limits_.idle_s * 250) + 1 : 1000);
+    idleTimer_.setInterval(limits_.idle_s > 0 && limits_.idle_s < 1 ? int(limits_.idle_s * 250) + 1
+                                                                    : look_ms);
+    raiseDescriptorLimit(clients);
 }
 
 Result<void> Server::listen(const QString &text, bool insecure) {
@@ -207,11 +222,41 @@ void Server::accept(Interface *peer, const QString &protocol) {
 }
 
 bool Server::mayStay(Session *session) {
-    if (places() < clientLimit_)
+    const int most = mostPlaces();
+    if (places() < most)
         return true;
-    session->restrictTo(
-        QStringLiteral("%1 clients are connected already (limits.clients)").arg(clientLimit_));
+    session->restrictTo(QStringLiteral("%1 clients are connected already (%2)")
+                            .arg(places())
+                            .arg(most < clientLimit_ ? QStringLiteral("there are no more file descriptors")
+                                                     : QStringLiteral("limits.clients")));
     return makeKeptPlace();
+}
+
+// The system may give fewer descriptors than the clients need: those of the kept places are not given away.
+int Server::mostPlaces() const {
+    const int others = sessions_.size() + descriptorsLeft() - spareDescriptors;
+    const int kept = commands_.urgent().isEmpty() ? 0 : std::min(keptPlaces, others / 2);
+    return std::clamp(others - kept, 1, clientLimit_);
+}
+
+// All clients together take an eighth of the memory at most: who takes most of it goes.
+void Server::saveMemory() {
+    const auto held = [](const Session *session) { return session->heldBytes(); };
+    qint64 all = 0;
+    for (const Session *session : qAsConst(sessions_))
+        all += held(session);
+    while (all > memoryOfClients() && !sessions_.isEmpty()) {
+        Session *const largest = *std::max_element(sessions_.begin(), sessions_.end(),
+                                                   [&](auto *a, auto *b) { return held(a) < held(b); });
+        all -= held(largest);
+        largest->expel(
+            QStringLiteral("%1 MiB wait for or from this client, and all clients together may take "
+                           "%2 MiB of this computer's memory")
+                .arg(held(largest) >> 20)
+                .arg(memoryOfClients() >> 20));
+        if (sessions_.contains(largest->id()))
+            return; // it ends with the batch that is being carried out
+    }
 }
 
 // A stop has to find a place however many take one and are silent: whoever was silent for the longest time
@@ -220,7 +265,7 @@ bool Server::makeKeptPlace() {
     if (commands_.urgent().isEmpty())
         return false;
     const QVector<Session *> all = restricted();
-    if (all.size() < keptPlaces)
+    if (all.isEmpty() || (all.size() < keptPlaces && descriptorsLeft() > spareDescriptors))
         return true;
     Session *const longest = *std::min_element(all.begin(), all.end(), [](Session *a, Session *b) {
         return a->lastSignOfLife() < b->lastSignOfLife();
@@ -254,7 +299,7 @@ QVector<Session *> Server::restricted() const {
 // The first who came to a kept place gets one that has become free.
 void Server::givePlaces() {
     for (Session *session : restricted())
-        if (places() < clientLimit_)
+        if (places() < mostPlaces())
             session->restrictTo(QString());
 }
 

@@ -52,6 +52,8 @@ private:
     void accept(Interface *peer, const QString &protocol);
     void giveRole(Session *session) const;
     bool mayStay(Session *session);
+    int mostPlaces() const;
+    void saveMemory();
     bool makeKeptPlace();
     void turnAway(Session *session, const RpcError &reason);
     QVector<Session *> restricted() const;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int largestUrgentBytes = 4 << 10;
 constexpr int mostValuesBesideUrgent = 1000;     // in the parameters of one request
+constexpr int mostValuesOfAFrame = 50000;        // the same, in a batch
 constexpr qint64 largestAtOnceBytes = 128 << 10; // of a reply
 constexpr int largeFrameBytes = 16 << 10;        // takes half a millisecond to read
 // What a client has sent before a gap may lie on its side, or in a tunnel, and come afterwards.
@@ -68,9 +69,11 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     channel_->setParent(this);
     channel_->codec().setFrameLimit(limits_.frameBytes);
     channel_->setLargeFrame(largeFrameBytes);
-    if (!commands_.urgent().isEmpty())
+    if (!commands_.urgent().isEmpty()) {
+        channel_->codec().setValueLimit(mostValuesOfAFrame);
         channel_->setUrgent(
             [this](const QByteArray &frame, const QStringList &had) { return urgentName(frame, had); });
+    }
     // It may have come, and spoken, while the program stood still.
     gaps_.look();
     freshFor_ = gaps_.sinceLast() < settling_s ? 0 : gaps_.count();
@@ -85,6 +88,11 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
 
 QString Session::name() const {
     return channel_->interface().name() + user_;
+}
+
+qint64 Session::heldBytes() const {
+    return channel_->bytesToWrite() + channel_->bytesToRead() + queue_.bytes() +
+           (batch_ ? batch_->bytes() : 0);
 }
 
 void Session::checkIdle() {

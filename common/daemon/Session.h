@@ -46,6 +46,8 @@ public:
     const CodecCounters &codecCounters() const { return channel_->codec().counters(); }
     LinkCounters linkCounters() const { return channel_->linkCounters(); }
     quint64 repeatedRequests() const { return replies_.repeats(); }
+    /// What waits for it and from it.
+    qint64 heldBytes() const;
     /// Closes it when it has been silent for too long.
     void checkIdle();
     /// When bytes came or went last; monotonic.

@@ -80,7 +80,8 @@ void TopicQueue::accept(Subscription &subscription, const TopicMessage &message)
         return;
     }
     // A timer that is a little late does not lower the rate; after a pause the phase begins anew.
-    const double period = 1 / subscription.options.maximumRate_hz;
+    constexpr double longestPeriod_s = 24 * 3600; // that a timer can wait
+    const double period = std::min(1 / subscription.options.maximumRate_hz, longestPeriod_s);
     subscription.nextDue = std::max(subscription.nextDue + period, now + 0.9 * period);
     subscription.held.reset();
     enqueue(subscription, message);

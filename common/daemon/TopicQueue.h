@@ -50,6 +50,8 @@ public:
     bool wants(const QString &topic) const;
     /// False while messages wait for a reader of this topic who asked for a queue longer than one.
     bool hasRoom(const QString &topic) const;
+    /// That wait.
+    qint64 bytes() const { return frameBytes_; }
     bool isEmpty() const { return subscriptions_.empty(); }
     std::size_t size() const { return subscriptions_.size(); } ///< subscriptions
     /// To every subscription of this topic; or to one of them.

@@ -37,6 +37,7 @@ public:
             ::close(number_);
     }
     operator int() const { return number_; }
+    int release() { return std::exchange(number_, -1); }
 
 private:
     int number_;
@@ -244,6 +245,21 @@ Result<void> checkReplaceable(const QString &path) {
     if (::stat(QFile::encodeName(path).constData(), &status) != 0 || S_ISREG(status.st_mode))
         return {};
     return fileError(path, whereLinked(path, realPath(path)) + QStringLiteral("not a regular file"));
+}
+
+Result<void> openOwnFile(QFile &file, const QString &path, bool make) {
+    Descriptor opened(::open(QFile::encodeName(path).constData(),
+                             O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | (make ? O_CREAT : 0),
+                             0644));
+    struct stat status {};
+    if (opened < 0 || ::fstat(opened, &status) != 0)
+        return fileError(path, errno == ELOOP ? QStringLiteral("it is a link")
+                                              : QStringLiteral("cannot be opened: ") + qt_error_string());
+    if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
+        return fileError(path, QStringLiteral("not a regular file, or one with another name"));
+    file.setFileName(path);
+    file.open(opened.release(), QIODevice::ReadWrite, QFileDevice::AutoCloseHandle);
+    return {};
 }
 
 } // namespace hermes

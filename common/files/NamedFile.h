@@ -3,6 +3,7 @@
 #include "common/Result.h"
 
 #include <QByteArray>
+#include <QFile>
 #include <QStringList>
 
 namespace hermes {
@@ -31,5 +32,10 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
 /// Whether a file can be put there as one of its own kind: what is there, if anything, is a regular file,
 /// whatever links lead to. For writers that follow links, and rename over what they lead to.
 Result<void> checkReplaceable(const QString &path);
+
+/// Opens a file that a program keeps for itself, to read and to change it; make: it is made where it is
+/// missing. Refused is what is no regular file, or is reached by a link: it may be somebody else's. Links
+/// among the folders of the path are followed.
+Result<void> openOwnFile(QFile &file, const QString &path, bool make = false);
 
 } // namespace hermes

@@ -1,5 +1,7 @@
 #include "common/interface/Farewell.h"
 
+#include "common/interface/Descriptors.h"
+
 #include <QSocketNotifier>
 #include <QTimer>
 #include <array>
@@ -55,8 +57,10 @@ void sayFarewell(int socket, QObject *parent) {
     if (farewells >= mostFarewells)
         return;
     const int own = ::fcntl(socket, F_DUPFD_CLOEXEC, 0);
-    if (own < 0)
+    if (own < 0 || descriptorsLeftAfter(own) < spareDescriptors) {
+        ::close(own);
         return;
+    }
     ::shutdown(own, SHUT_WR);
     new Farewell(own, parent);
 }

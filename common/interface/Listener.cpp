@@ -2,9 +2,9 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
+#include "common/interface/Descriptors.h"
 
 #include <chrono>
-#include <sys/resource.h>
 
 namespace hermes {
 namespace {
@@ -15,9 +15,8 @@ constexpr double toldAgain_s = 60;
 } // namespace
 
 bool Listener::isScarce(qintptr descriptor) {
-    constexpr rlim_t spareDescriptors = 8;
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || rlim_t(descriptor) + spareDescriptors < limit.rlim_cur)
+    constexpr int last = 8; // a client that comes makes another one in a kept place go before
+    if (descriptorsLeftAfter(descriptor) > last)
         return false;
     logWarning(QStringLiteral("server"),
                QStringLiteral("a client is turned away: nearly no file descriptors are left"));

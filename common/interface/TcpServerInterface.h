@@ -1,28 +1,18 @@
 #pragma once
 
-#include "common/interface/InterfaceUrl.h"
-#include "common/interface/Listener.h"
-
-#include <QTcpServer>
+#include "common/interface/TcpListener.h"
 
 namespace hermes {
 
 /// Listens on a TCP address and yields one TcpInterface a peer.
-class TcpServerInterface : public Listener {
+class TcpServerInterface : public TcpListener {
     Q_OBJECT
 public:
     TcpServerInterface(const InterfaceUrl &address, QObject *parent);
 
-    Result<void> listen() override;
-    void close() override;
-    QString address() const override;
-
-private:
-    void takePeers();
-    void take(QTcpSocket *socket);
-
-    InterfaceUrl url_;
-    QTcpServer server_;
+protected:
+    void take(qintptr descriptor) override;
+    bool isHeard(qintptr descriptor) const override;
 };
 
 } // namespace hermes

@@ -4,36 +4,26 @@
 #include "common/Role.h"
 #include "common/Time.h"
 #include "common/interface/TlsInterface.h"
-#include "common/platform/Sockets.h"
 #include "common/tls/KeyFolder.h"
 
 #include <QDateTime>
 #include <QFileInfo>
+#include <QHash>
 #include <QSslSocket>
 #include <algorithm>
-#include <poll.h>
-#include <sys/socket.h>
 
 namespace hermes {
 namespace {
 
 const QString serverSource = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
-constexpr std::size_t mostHandshakes = 16; // at the same time, then the oldest goes
-constexpr int goneAtOnce = 30;             // a millisecond, as one handshake takes to begin
+constexpr std::size_t mostHandshakes = 256; // at the same time, then one of whoever has most of them goes
 constexpr std::chrono::milliseconds revokedPeriod{300};
-
-/// Whether the peer has closed the connection, also when it said something before.
-bool hasGone(sockets::Socket descriptor) {
-    pollfd connection{int(descriptor), POLLRDHUP, 0};
-    return ::poll(&connection, 1, 0) > 0;
-}
 
 } // namespace
 
 TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
-    : Listener(parent)
-    , url_(address)
+    : TcpListener(address, 1, int(longestHandshake.count()), parent)
     , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual())) {
     revokedTimer_.setInterval(revokedPeriod);
     connect(&revokedTimer_, &QTimer::timeout, this, [this] {
@@ -60,16 +50,9 @@ Result<void> TlsServerInterface::listen() {
     lookAtRevoked();
     if (!revokedProblem_.isEmpty())
         return cannot(revokedProblem_);
-    const QHostAddress host(url_.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1")
-                                                                     : url_.host);
-    if (host.isNull())
-        return cannot(QStringLiteral("\"%1\" is not an IP address").arg(url_.host));
-    if (!server_.listen(host, url_.port))
-        return cannot(server_.errorString());
-    server_.pauseAccepting();                             // Qt would take all who wait
-    ::listen(int(server_.socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
-    arrivals_ = std::make_unique<QSocketNotifier>(server_.socketDescriptor(), QSocketNotifier::Read);
-    connect(arrivals_.get(), &QSocketNotifier::activated, this, &TlsServerInterface::takePeers);
+    const auto listening = TcpListener::listen();
+    if (!listening)
+        return listening;
     revokedTimer_.start();
     constexpr double soon_s = 30.0 * 24 * 3600;
     if (const double left_s = toPeer(keys_.localCertificate()).until - stampNow(); left_s < soon_s)
@@ -82,39 +65,17 @@ Result<void> TlsServerInterface::listen() {
 }
 
 void TlsServerInterface::close() {
-    arrivals_.reset();
-    server_.close();
+    TcpListener::close();
     revokedTimer_.stop();
     for (QSslSocket *socket : std::exchange(handshakes_, {}))
         socket->deleteLater();
 }
 
-QString TlsServerInterface::address() const {
-    InterfaceUrl actual = url_;
-    if (server_.isListening())
-        actual.port = server_.serverPort();
-    return actual.toString();
+void TlsServerInterface::noteGone(const QHostAddress &from) {
+    countRefused(from, QStringLiteral("it had gone before its handshake"));
 }
 
-// One who has come to stay at a time. Those who have gone cost hardly anything: a storm of strangers leaves
-// thousands in the queue, and a true client behind them does not wait for their handshakes.
-void TlsServerInterface::takePeers() {
-    for (int i = 0; i < goneAtOnce; ++i) {
-        QHostAddress from;
-        const auto descriptor = sockets::accept(
-            server_.socketDescriptor(), [&from](const sockaddr *address) { from.setAddress(address); });
-        if (descriptor == sockets::none)
-            return;
-        const bool gone = hasGone(descriptor);
-        if (!gone && !isScarce(descriptor))
-            return begin(descriptor);
-        sockets::close(descriptor);
-        if (gone)
-            countRefused(from, QStringLiteral("it had gone before its handshake"));
-    }
-}
-
-void TlsServerInterface::begin(qintptr descriptor) {
+void TlsServerInterface::take(qintptr descriptor) {
     auto *socket = new QSslSocket(this);
     socket->setSocketDescriptor(descriptor);
     socket->setSslConfiguration(keys_);
@@ -127,9 +88,18 @@ void TlsServerInterface::begin(qintptr descriptor) {
     });
     handshakes_.push_back(socket);
     if (handshakes_.size() > mostHandshakes)
-        refuse(handshakes_.front(),
-               QStringLiteral("%1 others came during its handshake").arg(mostHandshakes));
+        refuse(oldestOfTheMost(), QStringLiteral("%1 others came during its handshake").arg(mostHandshakes));
     socket->startServerEncryption();
+}
+
+QSslSocket *TlsServerInterface::oldestOfTheMost() const {
+    QHash<QHostAddress, int> counts;
+    for (const QSslSocket *socket : handshakes_)
+        ++counts[socket->peerAddress()];
+    const int most = *std::max_element(counts.begin(), counts.end());
+    return *std::find_if(handshakes_.begin(), handshakes_.end(), [&](const QSslSocket *socket) {
+        return counts.value(socket->peerAddress()) == most;
+    });
 }
 
 void TlsServerInterface::finish(QSslSocket *socket) {

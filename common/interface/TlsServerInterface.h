@@ -1,16 +1,11 @@
 #pragma once
 
-#include "common/interface/InterfaceUrl.h"
-#include "common/interface/Listener.h"
+#include "common/interface/TcpListener.h"
 
-#include <QHostAddress>
 #include <QSet>
-#include <QSocketNotifier>
 #include <QSslConfiguration>
-#include <QTcpServer>
 #include <QTimer>
 #include <list>
-#include <memory>
 
 class QSslSocket;
 
@@ -21,7 +16,7 @@ class TlsInterface;
 /// Listens for TLS on a TCP address and yields one TlsInterface a peer whose certificate is of the same
 /// authority, valid and not revoked: tls://0.0.0.0:7411?keys=FOLDER. Others are closed, with the reason in
 /// the log; who is revoked later is closed within a second.
-class TlsServerInterface : public Listener {
+class TlsServerInterface : public TcpListener {
     Q_OBJECT
 public:
     TlsServerInterface(const InterfaceUrl &address, QObject *parent);
@@ -29,21 +24,22 @@ public:
     /// Error also when the keys are not as they must be (KeyFolder).
     Result<void> listen() override;
     void close() override;
-    QString address() const override;
+
+protected:
+    void take(qintptr descriptor) override;
+    bool isHeard(qintptr) const override { return false; }
+    void noteGone(const QHostAddress &from) override;
 
 private:
-    void takePeers();
-    void begin(qintptr descriptor);
     void finish(QSslSocket *socket);
     void refuse(QSslSocket *socket, const QString &why);
+    /// The oldest handshake of the address that has most of them.
+    QSslSocket *oldestOfTheMost() const;
     void countRefused(const QHostAddress &from, const QString &why);
     void lookAtRevoked();
     void closeBad();
 
-    const InterfaceUrl url_;
     const QString folder_;
-    QTcpServer server_; // its peers are taken here
-    std::unique_ptr<QSocketNotifier> arrivals_;
     QSslConfiguration keys_;
     QSet<QByteArray> revoked_;
     QString revokedState_; // of the file, as last read

@@ -1,11 +1,17 @@
 #include "common/interface/UdpInterface.h"
 
-#include <QNetworkDatagram>
+#include "common/Time.h"
 
+#include <QNetworkDatagram>
 #include <linux/sock_diag.h>
 #include <sys/socket.h>
 
 namespace hermes {
+namespace {
+
+constexpr double longest_s = 0.001; // to read at once
+
+} // namespace
 
 UdpInterface::UdpInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
@@ -64,7 +70,10 @@ bool UdpInterface::doWrite(const QByteArray &bytes) {
 }
 
 void UdpInterface::readAll() {
-    while (isOpen() && socket_.hasPendingDatagrams()) {
+    // Who sends without end does not keep the event loop here: it tells again that there are more.
+    const double until = monotonicNow() + longest_s;
+    bool hasTime = true;
+    for (; hasTime && isOpen() && socket_.hasPendingDatagrams(); hasTime = monotonicNow() < until) {
         const QNetworkDatagram datagram = socket_.receiveDatagram();
         if (!datagram.isValid())
             continue; // an ICMP report about something sent earlier

@@ -1,6 +1,7 @@
 #include "common/recording/RecordingSession.h"
 
 #include "common/Time.h"
+#include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/FileSync.h"
 #include "common/recording/Sidecar.h"
@@ -19,6 +20,12 @@ namespace hermes {
 namespace {
 
 constexpr off_t reserveBytes = 256 * 1024; // for the last version of the sidecar, should the disk be full
+
+/// Of this run of the kernel, of which monotonic times tell the age whatever clocks said; empty: not known.
+QString bootIdentity() {
+    QFile file("/proc/sys/kernel/random/boot_id");
+    return file.open(QIODevice::ReadOnly) ? QString::fromLatin1(file.readAll().trimmed()) : QString();
+}
 
 QString toText(RecordingEnd end) {
     switch (end) {
@@ -41,9 +48,9 @@ QString toUtc(double stamp) {
 /// Room that stays taken until the recording ends. Not every file system can; then there is none. Error: the
 /// disk is full.
 Result<void> reserve(const QString &path) {
-    QFile file(path);
-    if (!file.open(QIODevice::ReadWrite))
-        return diskError(path + ": cannot be made: " + file.errorString(), path);
+    QFile file;
+    if (const Result<void> opened = openOwnFile(file, path); !opened)
+        return opened;
     const int error = ::posix_fallocate(file.handle(), 0, reserveBytes);
     if (error != 0)
         file.resize(0);
@@ -91,6 +98,7 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
              {"start", stamp},
              {"start_utc", toUtc(stamp)},
              {"start_mono", monotonicNow()},
+             {"boot", bootIdentity()},
              {"settings", options.settings}};
     const auto refused = [&](const Error &error) {
         abandon();
@@ -148,10 +156,7 @@ Result<void> RecordingSession::refresh() {
 }
 
 Result<void> RecordingSession::look() {
-    QStringList names;
-    for (const QJsonValue &file : writer_.state().files)
-        names.append(file["name"].toString());
-    return watch_.look(plan_.folder, options_.logger, names);
+    return watch_.look(plan_.folder, options_.logger, writer_.state().files);
 }
 
 Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Error> &error) {
@@ -186,7 +191,8 @@ RecordingSession::Completed RecordingSession::completeAll(const Options &options
         completed.failed << taken.error().message;
         return completed;
     }
-    for (const QFileInfo &entry : root.entryInfoList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name)) {
+    for (const QFileInfo &entry :
+         root.entryInfoList(QDir::Dirs | QDir::NoSymLinks | QDir::NoDotAndDotDot, QDir::Name)) {
         const QString folder = entry.absoluteFilePath();
         const QString path = Sidecar::path(folder, options.logger);
         if (!QFile::exists(path))

@@ -56,7 +56,8 @@ Result<QString> enterSessionFolder(const QString &root, const SessionName &sessi
         }
         // From here on the folder is not empty, so that no other logger can remove it.
         const QByteArray path = QFile::encodeName(reservePath(folder, logger));
-        const int file = ::open(path.constData(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+        ::unlink(path.constData()); // of a recording that was cut off, or a link
+        const int file = ::open(path.constData(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
         if (file >= 0) {
             ::close(file);
             return folder;
@@ -75,7 +76,8 @@ Result<void> FolderLock::take(const QString &root, const QString &logger) {
     if (const Result<void> made = makeFolder(root); !made)
         return diskError(made.error().message, root);
     const QString path = QDir(root).absoluteFilePath('.' + logger + ".lock");
-    const int file = ::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    const int file =
+        ::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (file < 0)
         return diskError(path + ": cannot be made: " + qt_error_string(), path);
     if (::flock(file, LOCK_EX | LOCK_NB) != 0) {

@@ -43,13 +43,17 @@ Result<void> Sidecar::write(const QString &path, const QJsonObject &content, boo
                             const QString &room) {
     const QByteArray bytes = QJsonDocument(content).toJson();
     const QString draft = room.isEmpty() ? draftPath(path) : room;
-    QFile file(draft);
+    QFile file;
     const auto failed = [&](const QString &why) {
         QFile::remove(draft);
         return diskError(path + ": cannot be written: " + why, path);
     };
-    if (!file.open(QIODevice::ReadWrite)) // nothing of it is given back before it is written
-        return failed(file.errorString());
+    // Nothing of it is given back before it is written; but what somebody has put in its place goes.
+    Result<void> opened = openOwnFile(file, draft, true);
+    if (!opened && QFile::remove(draft))
+        opened = openOwnFile(file, draft, true);
+    if (!opened)
+        return failed(opened.error().message);
     if (file.write(bytes) != bytes.size() || !file.flush() || !file.resize(bytes.size()) ||
         (durable && ::fsync(file.handle()) != 0))
         return failed(file.errorString());

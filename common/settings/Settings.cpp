@@ -1,12 +1,12 @@
 #include "common/settings/Settings.h"
 
 #include "common/files/NamedFile.h"
+#include "common/files/SavedFile.h"
 #include "common/schema/SchemaKeys.h"
 #include "common/settings/DottedPath.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QJsonDocument>
-#include <QSaveFile>
 
 namespace hermes {
 namespace {
@@ -213,11 +213,8 @@ Result<QString> Settings::save(const QString &name) const {
     const QByteArray text = QJsonDocument(changes()).toJson();
     if (const auto fine = checkSettingsFile(target, text); !fine)
         return fine.error();
-    QSaveFile file(target);
-    // commit() alone does not notice a full disk
-    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
-        !file.commit())
-        return settingsFileError(target, file.errorString());
+    if (const auto saved = saveFile(target, text); !saved)
+        return saved.error();
     return target;
 }
 

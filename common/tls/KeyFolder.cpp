@@ -1,5 +1,6 @@
 #include "common/tls/KeyFolder.h"
 
+#include "common/files/SavedFile.h"
 #include "common/platform/PrivateFiles.h"
 #include "common/tls/Certificates.h"
 #include "common/tls/FolderPlace.h"
@@ -9,7 +10,6 @@
 #include <QFile>
 #include <QFileInfo>
 #include <QJsonObject>
-#include <QSaveFile>
 #include <QSslCertificate>
 #include <QSslKey>
 #include <QStandardPaths>
@@ -125,12 +125,7 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
 
 Result<void> writeKeyFile(const QString &path, const QByteArray &content) {
     const PrivateFiles owners;
-    QSaveFile file(path);
-    const bool written =
-        file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();
-    return written ? Result<void>()
-                   : Error(ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, file.errorString()),
-                           QJsonObject{{QStringLiteral("path"), path}});
+    return saveFile(path, content);
 }
 
 PeerCertificate toPeer(const QSslCertificate &certificate) {

@@ -15,9 +15,10 @@ double secondOfDay(const nmea::UtcTime &time) {
     return time.hour * 3600 + time.minute * 60 + time.second;
 }
 
-/// Some write fewer decimals in one kind of sentence than in another.
+/// Some write fewer decimals in one kind of sentence than in another, rounded or cut.
 bool isSame(const std::optional<nmea::UtcTime> &a, const std::optional<nmea::UtcTime> &b) {
-    return a && b && std::abs(secondOfDay(*a) - secondOfDay(*b)) < 0.005;
+    const bool isRounded = a && b && a->decimals != b->decimals;
+    return a && b && std::abs(secondOfDay(*a) - secondOfDay(*b)) < (isRounded ? 0.0099 : 0.0001);
 }
 
 } // namespace
@@ -33,6 +34,8 @@ void FixTracker::feed(std::string_view bytes, const Arrival &arrival, const Sink
         if (result == nmea::SentenceParser::Result::Done)
             take(parser_.sentence(), sink);
     }
+    if (parser_.endPiece() == nmea::SentenceParser::Result::Done)
+        take(parser_.sentence(), sink);
 }
 
 std::int64_t FixTracker::pause_ns() const {

@@ -113,10 +113,11 @@ std::pair<HealthLevel, QString> LoggedPort::health() {
     quint64 errors = 0;
     for (const quint64 count : state.systemErrors)
         errors += count;
+    // The first may have been begun before; what the checksum says is right may say what it likes.
     const nmea::SentenceParser::Counts &counts = view_.fixes().sentences();
-    const quint64 wrong = counts.badChecksum + counts.noChecksum + counts.tooLong + counts.badByte +
-                          counts.cutShort + view_.fixes().counts().badFields;
-    const quint64 damaged = wrong > 1 ? wrong : 0; // the first may have been begun before
+    const auto butOne = [](quint64 wrong) { return wrong > 1 ? wrong : 0; };
+    const quint64 damaged = butOne(counts.badChecksum + counts.tooLong + counts.badByte + counts.cutShort);
+    const quint64 noChecksum = butOne(counts.noChecksum), unread = butOne(view_.fixes().counts().badFields);
     QString message = "receiving from " + (state.device.isEmpty() ? settings_.url : state.device);
     if (recording_.lost() > 0)
         message += QString("; %1 bytes were lost: the disk was too slow").arg(recording_.lost());
@@ -124,7 +125,13 @@ std::pair<HealthLevel, QString> LoggedPort::health() {
         message += QString("; the system tells of %1 errors on the line").arg(errors);
     if (damaged > 0)
         message += QString("; %1 NMEA sentences were damaged").arg(damaged);
-    return {faults_.level(double(recording_.lost() + errors + damaged)), message};
+    if (noChecksum > 0)
+        message += QString("; %1 had no checksum: checksum=lenient accepts them").arg(noChecksum);
+    if (unread > 0)
+        message += QString("; %1 positions could not be read: %2")
+                       .arg(unread)
+                       .arg(nmeaCounts().lastFault.value_or(QString()));
+    return {faults_.level(double(recording_.lost() + errors + damaged + noChecksum + unread)), message};
 }
 
 } // namespace hermes::seriallogger

@@ -1,12 +1,11 @@
 #include "daemons/seriallogger/SerialExport.h"
 
+#include "common/files/SavedFile.h"
 #include "common/recording/DiskError.h"
 #include "daemons/seriallogger/FixTracker.h"
 #include "daemons/seriallogger/LineSplitter.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialMessages.h"
-
-#include <QSaveFile>
 
 #include <functional>
 
@@ -104,9 +103,9 @@ Result<quint64> SerialExport::run(const std::atomic<bool> &cancel) const {
     SerialLogReader reader;
     if (const Result<void> opened = reader.open(base); !opened)
         return opened.error();
-    QSaveFile file(target);
-    if (!file.open(QIODevice::WriteOnly))
-        return diskError(target + ": cannot be made: " + file.errorString(), target);
+    SavedFile file(target);
+    if (const Result<void> begun = file.begin(); !begun)
+        return begun.error();
     quint64 count = 0;
     RowMaker maker(rows, checksum, [&](const QByteArray &row) {
         file.write(row + '\n');
@@ -126,8 +125,8 @@ Result<quint64> SerialExport::run(const std::atomic<bool> &cancel) const {
             break;
     }
     maker.finish();
-    if (!file.commit())
-        return diskError(target + ": cannot be written: " + file.errorString(), target);
+    if (const Result<void> done = file.commit(); !done)
+        return done.error();
     return count;
 }
 

@@ -1,5 +1,6 @@
 #include "daemons/seriallogger/SerialRepair.h"
 
+#include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "daemons/seriallogger/SerialIndex.h"
 
@@ -36,9 +37,9 @@ Result<Contents> repairPort(const QString &base) {
     Contents contents;
     const qint64 size = QFileInfo(base + ".raw").size();
     contents.bytes = double(size);
-    QFile index(base + ".index");
-    if (!index.open(QIODevice::ReadWrite))
-        return failed(index);
+    QFile index;
+    if (const Result<void> opened = openOwnFile(index, base + ".index"); !opened)
+        return opened.error();
     const QByteArray expected(reinterpret_cast<const char *>(header.data()), int(header.size()));
     if (index.read(headerSize) != expected)
         return diskError(index.fileName() +
@@ -65,11 +66,11 @@ Result<Contents> repairPort(const QString &base) {
 
 /// The number of events and marks that stay.
 Result<QJsonObject> repairEvents(const QString &path) {
-    QFile file(path);
-    if (!file.exists()) // cut off as it was made
+    QFile file;
+    if (!QFile::exists(path)) // cut off as it was made
         return QJsonObject{{"events", 0}, {"marks", 0}};
-    if (!file.open(QIODevice::ReadWrite))
-        return failed(file);
+    if (const Result<void> opened = openOwnFile(file, path); !opened)
+        return opened.error();
     double events = 0, marks = 0;
     qint64 whole = 0;
     for (QByteArray line = file.readLine(); line.endsWith('\n'); line = file.readLine()) {
@@ -90,7 +91,11 @@ Result<void> repairSerialRecording(const RecordingPlan &plan, QJsonObject &sidec
     double bytes = 0, chunks = 0, end = sidecar.value("start").toDouble();
     for (const QJsonValue &entry : sidecar.value("files").toArray()) {
         QJsonObject file = entry.toObject();
-        const Result<Contents> contents = repairPort(base + file.value("port").toString());
+        const QString port = file.value("port").toString();
+        if (port.contains('/'))
+            return diskError(QString("%1: a port \"%2\" cannot be of this recording").arg(plan.folder, port),
+                             plan.folder);
+        const Result<Contents> contents = repairPort(base + port);
         if (!contents)
             return contents.error();
         file.insert("bytes", contents->bytes);

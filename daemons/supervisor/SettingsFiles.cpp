@@ -1,6 +1,7 @@
 #include "daemons/supervisor/SettingsFiles.h"
 
 #include "common/Project.h"
+#include "common/files/SavedFile.h"
 #include "common/recording/FileSync.h"
 #include "common/settings/Settings.h"
 #include "protocol/wire/JsonText.h"
@@ -10,7 +11,6 @@
 #include <QFileInfo>
 #include <QJsonDocument>
 #include <QRegularExpression>
-#include <QSaveFile>
 #include <memory>
 #include <unistd.h>
 #include <vector>
@@ -43,25 +43,24 @@ public:
     Result<void> add(const QString &path, const QByteArray &text) {
         if (const auto fine = checkSettingsFile(path, text); !fine)
             return fine.error();
-        files_.push_back(std::make_unique<QSaveFile>(path));
-        QSaveFile &file = *files_.back();
-        // commit() alone does not notice a full disk
-        if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
-            ::fsync(file.handle()) != 0)
-            return fileError(path, file.error() == QFile::NoError ? qt_error_string() : file.errorString());
-        return {};
+        files_.push_back(std::make_unique<SavedFile>(path));
+        SavedFile &file = *files_.back();
+        if (const auto begun = file.begin(); !begun)
+            return begun;
+        file.write(text);
+        return file.sync();
     }
 
     /// In the order in which they were added.
     Result<void> commit() {
         for (const auto &file : files_)
-            if (!file->commit())
-                return fileError(file->fileName(), file->errorString());
+            if (const auto done = file->commit(); !done)
+                return done;
         return {};
     }
 
 private:
-    std::vector<std::unique_ptr<QSaveFile>> files_;
+    std::vector<std::unique_ptr<SavedFile>> files_;
 };
 
 namespace {

@@ -1,6 +1,7 @@
 #include "daemons/velodynelogger/PcapRepair.h"
 
 #include "common/capture/PcapTail.h"
+#include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "daemons/velodynelogger/PacketAccount.h"
 
@@ -39,6 +40,9 @@ void add(QJsonObject &object, const char *member, double count) {
 
 /// Repairs one file and completes its entry; false when nothing is in it and it has been removed.
 Result<bool> repairFile(const QString &path, QJsonObject &entry, PacketAccount &account) {
+    QFile file;
+    if (const Result<void> opened = openOwnFile(file, path); !opened)
+        return opened.error();
     const double known = entry.value("bytes").toDouble();
     const auto sink = [&account](const Datagram &datagram) { account.add(datagram); };
     const Outcome<PcapTail> read =
@@ -46,10 +50,9 @@ Result<bool> repairFile(const QString &path, QJsonObject &entry, PacketAccount &
     if (!read)
         return diskError(QString::fromStdString(read.error()), path);
     const PcapTail &tail = *read;
-    QFile file(path);
     if (tail.wholeBytes == 0) { // killed as it began the file
-        if (!file.remove())
-            return diskError(path + ": cannot be removed: " + file.errorString(), path);
+        if (!QFile::remove(path))
+            return diskError(path + ": cannot be removed: " + qt_error_string(), path);
         return false;
     }
     if (tail.wholeBytes < tail.fileBytes && !file.resize(qint64(tail.wholeBytes)))

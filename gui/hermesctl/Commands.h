@@ -18,6 +18,9 @@ Result<void> listDaemons(const Arguments &arguments);
 /// Finds what is plugged in, through the supervisor, and writes the settings for it.
 Result<void> setUp(const Arguments &arguments);
 
+Result<void> stopRobots(const Arguments &arguments);
+Result<void> emergencyStopRobots(const Arguments &arguments);
+
 /// All loggers begin one session, or none does and the error tells what was taken back.
 Result<void> recordStart(const Arguments &arguments);
 /// Error: what is missing or does not agree.

@@ -21,7 +21,8 @@ namespace {
 
 constexpr double degree = 0.017453292519943295;
 constexpr std::chrono::milliseconds beat{50};
-constexpr qint64 frozen_ms = 200; ///< between two beats: this program stood still
+constexpr double usualDrive_s = 10; ///< a drive with a velocity has an end
+constexpr qint64 frozen_ms = 200;   ///< between two beats: this program stood still
 
 Result<Pose2D> poseOf(Client &client, const Arguments &arguments) {
     const auto state = ask(client, arguments, QStringLiteral("motor.state"));
@@ -140,7 +141,8 @@ Result<void> drive(Client &client, const Arguments &arguments) {
             show(wish);
         return asJson(wish).toObject();
     });
-    driver.endAfter(arguments.for_s);
+    const double seconds = velocity && arguments.for_s <= 0 ? usualDrive_s : arguments.for_s;
+    driver.endAfter(seconds);
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &client, [&driver] { driver.end(); });
     QTimer look;
@@ -149,7 +151,7 @@ Result<void> drive(Client &client, const Arguments &arguments) {
             driver.end();
     });
     look.start(beat);
-    const auto driven = velocity ? driveOn(driver, arguments.for_s) : driveByKeys(keys, driver);
+    const auto driven = velocity ? driveOn(driver, seconds) : driveByKeys(keys, driver);
     if (!driven)
         return driven;
     return tellWhereItWent(client, arguments, driver);

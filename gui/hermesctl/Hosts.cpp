@@ -1,5 +1,6 @@
 #include "gui/hermesctl/Hosts.h"
 
+#include "common/files/SavedFile.h"
 #include "common/interface/InterfaceUrl.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyFolder.h"
@@ -8,7 +9,6 @@
 #include <QDir>
 #include <QFileInfo>
 #include <QHostAddress>
-#include <QSaveFile>
 #include <QStandardPaths>
 
 namespace hermes::ctl {
@@ -51,10 +51,7 @@ void rememberHost(const QString &address) {
     hosts.prepend(host);
     // It only helps to complete: where it cannot be written, nothing is lost.
     QDir().mkpath(QFileInfo(fileName()).path());
-    QSaveFile file(fileName());
-    if (file.open(QIODevice::WriteOnly) &&
-        file.write(hosts.mid(0, mostHosts).join(QLatin1Char('\n')).toUtf8()) > 0)
-        file.commit();
+    (void)saveFile(fileName(), hosts.mid(0, mostHosts).join(QLatin1Char('\n')).toUtf8());
 }
 
 QStringList knownHosts(std::chrono::milliseconds patience) {

@@ -30,7 +30,7 @@ Loggers are the daemons with the command record.start that answer at their defau
   --count N      watch: end after N messages; log: the last N records (100)
   --csv          watch: CSV, a column for each value
   --speed X      replay: so many times as fast (1)
-  --for S        drive: for so many seconds
+  --for S        drive: for so many seconds (10)
   --loop         replay: begin anew at the end
   --role ROLE    keys issue, pair: observer, operator, engineer, or daemon
   --days N       keys issue, pair: valid for so many days (730)
@@ -47,6 +47,7 @@ Examples:
   hermesctl set velodynelogger limits.clients=20
   hermesctl record start run1
   hermesctl drive motorcontrol vx=0.2 --for 2
+  hermesctl estop
   hermesctl watch scanmatcher pose --rate 5 --csv --out pose.csv
   source <(hermesctl completion bash)
 )";
@@ -75,6 +76,24 @@ const std::vector<Subcommand> &subcommands() {
          "--list --yes --undo --wheels --daemons",
          nullptr,
          setUp},
+        {"stop",
+         0,
+         anyNumber,
+         "stop [D...]",
+         "stops all robots that are there, at once, and tells which stand",
+         {W::Daemon},
+         "",
+         nullptr,
+         stopRobots},
+        {"estop",
+         0,
+         anyNumber,
+         "estop [D...]",
+         "the same, and they stay stopped until motor.reset_estop",
+         {W::Daemon},
+         "",
+         nullptr,
+         emergencyStopRobots},
         {"record start",
          1,
          1,
@@ -224,7 +243,8 @@ const std::vector<Subcommand> &subcommands() {
          1,
          4,
          "drive D [vx=] [vy=] [omega=]",
-         "drives with this velocity (m/s, rad/s) until --for S or Ctrl-C; without one, by keys",
+         "drives with this velocity (m/s, rad/s) for 10 s, for --for S, or until Ctrl-C; without one, by "
+         "keys",
          {W::Daemon, W::Velocity},
          "--for",
          drive,

@@ -105,9 +105,6 @@ int runRobotCommand(const Subcommand &command, const Arguments &arguments) {
 
 QString unknownCommand(const QString &command) {
     const QString first = command.section(QLatin1Char(' '), 0, 0);
-    if (command == QStringLiteral("stop"))
-        return QStringLiteral(
-            "unknown command \"stop\"; the robot stops with: hermesctl call motorcontrol motor.stop");
     if (!hasSecondWord(first))
         return QStringLiteral("unknown command \"%1\"%2")
             .arg(command, didYouMean(command, subcommandNames()));

@@ -11,7 +11,7 @@ constexpr char beginOfArray = '\x9f'; // both of those without a length
 } // namespace
 
 std::optional<WireValue> CborContent::parse(const QByteArray &item, WireError *error) const {
-    return WireValue::parseCbor(item, error);
+    return WireValue::parseCbor(item, error, limits());
 }
 
 QByteArray CborContent::written(const Outgoing &message, std::optional<QString> &path) {

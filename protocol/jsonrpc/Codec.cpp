@@ -52,6 +52,7 @@ void Codec::reset() {
 void Codec::succeed(const Codec &other) {
     counts_ = other.counts_;
     limit_ = other.limit_;
+    inFrame_ = other.inFrame_;
     greeting_ = other.greeting_;
     watches_ = other.watches_;
 }

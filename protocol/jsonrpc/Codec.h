@@ -94,12 +94,15 @@ public:
     /// Largest frame accepted by feed(), in bytes without its delimiter.
     void setFrameLimit(int bytes) { limit_ = bytes; }
     int frameLimit() const { return limit_; }
+    /// The most values in one frame; one with more is malformed.
+    void setValueLimit(int values) { inFrame_.values = values; }
     const CodecCounters &counters() const { return counts_; }
 
 protected:
     explicit Codec(int frameLimitBytes)
         : limit_(frameLimitBytes) {}
 
+    const WireLimits &limits() const { return inFrame_; }
     static CodecItem itemOf(const WireValue &value);
     virtual std::vector<CodecFrame> splitFrames(const QByteArray &bytes) = 0;
     /// Nothing: error says why.
@@ -113,6 +116,7 @@ protected:
 
 private:
     int limit_;
+    WireLimits inFrame_;
     Greeting greeting_;
     bool watches_ = false;
 };

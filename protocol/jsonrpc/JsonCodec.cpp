@@ -54,7 +54,7 @@ void JsonCodec::finishLine(std::vector<CodecFrame> &frames) {
 }
 
 std::optional<WireValue> JsonCodec::parse(const QByteArray &bytes, WireError *error) const {
-    return WireValue::parse(bytes, error);
+    return WireValue::parse(bytes, error, limits());
 }
 
 void JsonCodec::forgetFrame() {

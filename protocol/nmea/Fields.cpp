@@ -16,9 +16,11 @@ bool isDigits(std::string_view text) {
 }
 
 /// Digits with at most one point, and a sign; nothing else is a number here.
-std::optional<double> parseDecimal(std::string_view text, bool mayBeNegative = true) {
+std::optional<double> parseDecimal(std::string_view text, bool mayHaveSign = true) {
+    if (mayHaveSign && text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
     std::string_view digits = text;
-    if (mayBeNegative && !digits.empty() && digits[0] == '-')
+    if (mayHaveSign && !digits.empty() && digits[0] == '-')
         digits.remove_prefix(1);
     const std::size_t point = digits.find('.');
     const std::string_view whole = digits.substr(0, point);
@@ -40,6 +42,12 @@ bool isCapital(char character) {
 
 int twoDigits(std::string_view text) {
     return (text[0] - '0') * 10 + text[1] - '0';
+}
+
+/// Digits before the point; a text that has others gives none.
+std::size_t wholeDigits(std::string_view text) {
+    const std::size_t whole = std::min(text.find('.'), text.size());
+    return isDigits(text.substr(0, whole)) ? whole : 0;
 }
 
 } // namespace
@@ -83,9 +91,14 @@ std::optional<UtcTime> FieldReader::time(int field) {
     const std::string_view text = sentence_.field(field);
     if (text.empty())
         return std::nullopt;
-    if (text.size() >= 6 && isDigits(text.substr(0, 6)) && (text.size() == 6 || text[6] == '.')) {
-        if (const std::optional<double> second = parseDecimal(text.substr(4), false)) {
-            const UtcTime time{twoDigits(text), twoDigits(text.substr(2)), *second};
+    const std::size_t whole = wholeDigits(text);
+    if (whole >= 1 && whole <= 6) {
+        const std::size_t begin = whole - std::min<std::size_t>(whole, 2);
+        char digits[] = "000000"; // some leave out zeros at the beginning
+        text.copy(digits + 6 - whole, whole);
+        if (const std::optional<double> second = parseDecimal(text.substr(begin), false)) {
+            const int decimals = int(text.size() - std::min(whole + 1, text.size()));
+            const UtcTime time{twoDigits(digits), twoDigits(digits + 2), *second, decimals};
             if (isValid(time))
                 return time;
         }
@@ -126,10 +139,11 @@ std::optional<double> FieldReader::angle(int field, int degreeDigits, double mos
                                          const char *expected) {
     const std::string_view text = sentence_.field(field);
     const std::optional<char> sign = letter(field + 1, signs, expected);
-    const std::size_t whole = std::min(text.find('.'), text.size());
-    if (sign && whole == std::size_t(degreeDigits) + 2 && isDigits(text.substr(0, whole))) {
-        const auto degrees = parseDecimal(text.substr(0, std::size_t(degreeDigits)), false);
-        const auto minutes = parseDecimal(text.substr(std::size_t(degreeDigits)), false);
+    const std::size_t whole = wholeDigits(text);
+    if (sign && whole >= 1 && whole <= std::size_t(degreeDigits) + 2) {
+        const std::size_t split = whole - std::min<std::size_t>(whole, 2); // zeros before it may be missing
+        const auto degrees = split > 0 ? parseDecimal(text.substr(0, split), false) : 0.0;
+        const auto minutes = parseDecimal(text.substr(split), false);
         if (degrees && minutes && *minutes < 60 && *degrees + *minutes / 60 <= most)
             return (*degrees + *minutes / 60) * (*sign == signs[0] ? 1 : -1);
     }

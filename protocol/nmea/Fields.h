@@ -43,18 +43,18 @@ public:
     const FieldFault &fault() const { return fault_; }
     void fail(int field, const char *expected);
 
-    /// A decimal number within the limits. Exponents, infinity and NaN are no such numbers.
+    /// A decimal number within the limits, also with a sign. Exponents, infinity and NaN are no such numbers.
     std::optional<double> number(int field, double least, double most, const char *expected);
     /// One without decimals.
     std::optional<int> whole(int field, int least, int most, const char *expected);
     /// One of the characters of choices.
     std::optional<char> letter(int field, std::string_view choices, const char *expected);
-    /// hhmmss with any decimals.
+    /// hhmmss with any decimals; zeros at its beginning may be missing.
     std::optional<UtcTime> time(int field);
     /// ddmmyy; years from 80 on are of the 20th century.
     std::optional<Date> date(int field);
     /// Four fields: ddmm.mmmm, N or S, dddmm.mmmm, E or W. All of them, or none; receivers without a fix
-    /// leave the letters.
+    /// leave the letters. The two digits before a point are minutes: zeros at the beginning may be missing.
     std::optional<Position> position(int field);
 
 private:

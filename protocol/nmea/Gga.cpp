@@ -17,15 +17,15 @@ FieldFault decode(const Sentence &sentence, Gga &gga) {
     gga = Gga();
     gga.time = read.time(1);
     gga.position = read.position(2);
-    gga.quality = read.whole(6, 0, 9, "the quality, 0 to 9").value_or(0);
-    gga.satellites = read.whole(7, 0, mostSatellites, "a number of satellites");
-    gga.hdop = read.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
-    gga.altitude = read.number(9, -mostMetres, mostMetres, "an altitude in metres");
-    FieldReader aside(sentence); // the fix does not depend on these
+    FieldReader aside(sentence); // the position does not depend on these
+    gga.quality = aside.whole(6, 0, 9, "the quality, 0 to 9").value_or(0);
+    gga.satellites = aside.whole(7, 0, mostSatellites, "a number of satellites");
+    gga.hdop = aside.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
+    gga.altitude = aside.number(9, -mostMetres, mostMetres, "an altitude in metres");
     gga.separation = aside.number(11, -mostMetres, mostMetres, "a geoid separation in metres");
     gga.age_s = aside.number(13, 0, mostAge_s, "an age in seconds");
     gga.station = aside.whole(14, 0, mostStation, "a station, 0 to 9999");
-    return read.fault();
+    return gga.quality == 0 ? FieldFault() : read.fault(); // without a fix fields are filled with anything
 }
 
 std::optional<SentenceText> encode(const Gga &gga, std::string_view talker, const Decimals &decimals) {

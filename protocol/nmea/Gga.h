@@ -17,7 +17,8 @@ struct Gga {
     std::optional<int> station;       ///< that sent the differential data
 };
 
-/// Reads a sentence of type GGA of any talker. What is wrong behind the altitude reads as unknown.
+/// Reads a sentence of type GGA of any talker. What is wrong reads as unknown, also the quality (0); a fault
+/// are only a time and position with a quality.
 FieldFault decode(const Sentence &sentence, Gga &gga);
 
 /// The whole sentence with CR LF. talker: two capital letters. Nothing when a value is no number or does not

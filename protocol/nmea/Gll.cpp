@@ -19,7 +19,7 @@ FieldFault decode(const Sentence &sentence, Gll &gll) {
     if (!status)
         read.fail(6, "the status, A or V");
     gll.valid = status == 'A';
-    return read.fault();
+    return status == 'V' ? FieldFault() : read.fault();
 }
 
 } // namespace hermes::nmea

@@ -41,10 +41,11 @@ FieldFault decode(const Sentence &sentence, Gns &gns) {
     gns.quality = qualityOf(read, sentence.field(modeField));
     if (gns.position && !gns.quality)
         read.fail(modeField, modeExpected);
-    gns.satellites = read.whole(7, 0, mostSatellites, "a number of satellites");
-    gns.hdop = read.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
-    gns.altitude = read.number(9, -mostMetres, mostMetres, "an altitude in metres");
-    return read.fault();
+    FieldReader aside(sentence); // the position does not depend on these
+    gns.satellites = aside.whole(7, 0, mostSatellites, "a number of satellites");
+    gns.hdop = aside.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
+    gns.altitude = aside.number(9, -mostMetres, mostMetres, "an altitude in metres");
+    return gns.quality == 0 ? FieldFault() : read.fault();
 }
 
 } // namespace hermes::nmea

@@ -21,17 +21,18 @@ FieldFault decode(const Sentence &sentence, Rmc &rmc) {
         read.fail(2, "the status, A or V");
     rmc.valid = status == 'A';
     rmc.position = read.position(3);
-    rmc.speed = read.number(7, 0, mostKnots, "a speed from 0 to 9999 knots");
+    FieldReader aside(sentence); // the position does not depend on these
+    rmc.speed = aside.number(7, 0, mostKnots, "a speed from 0 to 9999 knots");
     if (rmc.speed)
         rmc.speed = *rmc.speed * knot;
-    rmc.course_deg = read.number(8, 0, 360, "a course from 0 to 360 degrees");
-    rmc.date = read.date(9);
-    FieldReader aside(sentence); // the fix does not depend on these
+    rmc.course_deg = aside.number(8, 0, 360, "a course from 0 to 360 degrees");
+    rmc.date = aside.date(9);
     const auto variation = aside.number(10, 0, 180, "a magnetic variation from 0 to 180 degrees");
     if (const auto side = aside.letter(11, "EW", "E or W"); variation && side)
         rmc.variation_deg = side == 'W' ? -*variation : *variation;
     rmc.mode = aside.letter(12, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", "the mode, a letter");
-    return read.fault();
+    return status == 'V' ? FieldFault()
+                         : read.fault(); // receivers without a fix fill their fields with anything
 }
 
 std::optional<SentenceText> encode(const Rmc &rmc, std::string_view talker, const Decimals &decimals) {

@@ -16,8 +16,8 @@ struct Rmc {
     std::optional<char> mode;            ///< since NMEA 2.3: A autonomous, D differential, N not valid, ...
 };
 
-/// Reads a sentence of type RMC of any talker. What is wrong behind the date (receivers write 999.9 for no
-/// variation, or leave out E and W) reads as unknown.
+/// Reads a sentence of type RMC of any talker. What is wrong reads as unknown (receivers write 999.9 for no
+/// variation, or leave out E and W); a fault are only a wrong status, and a time and position with status A.
 FieldFault decode(const Sentence &sentence, Rmc &rmc);
 
 /// The whole sentence with CR LF, as in `$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,

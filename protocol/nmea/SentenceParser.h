@@ -11,7 +11,9 @@ enum class ChecksumRule {
 };
 
 /// Finds the sentences in a stream of bytes, byte for byte, and is in step again at the next `$` whatever
-/// came before. Never allocates.
+/// came before. A checksum ends a sentence, when no more of a text follows; without one a line end does. What
+/// does not begin with an address, as binary messages between sentences, is skipped, not refused. Never
+/// allocates.
 class SentenceParser {
 public:
     enum class Result {
@@ -32,13 +34,15 @@ public:
         std::uint64_t tooLong = 0;
         std::uint64_t badByte = 0;
         std::uint64_t cutShort = 0;
-        std::uint64_t skippedBytes = 0; ///< outside of sentences, without CR and LF
+        std::uint64_t skippedBytes = 0; ///< outside of sentences, without CR, LF and blanks
     };
 
     explicit SentenceParser(ChecksumRule rule = ChecksumRule::Strict)
         : rule_(rule) {}
 
     Result feed(char byte);
+    /// What was fed came at once, as a datagram: a right checksum at its end ends the sentence.
+    Result endPiece();
     /// Forgets the sentence begun, as after a line was opened anew.
     void reset() { size_ = 0; }
 
@@ -53,7 +57,9 @@ public:
 private:
     Result begin(char byte);
     Result finish();
-    Result drop(Result why, std::uint64_t &count);
+    bool hasAddress() const;
+    bool hasChecksum() const;
+    Result drop(Result why, std::uint64_t &count, bool isSentence);
 
     ChecksumRule rule_;
     std::array<char, maxSentence> text_{};

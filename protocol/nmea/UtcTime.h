@@ -9,6 +9,7 @@ struct UtcTime {
     int hour = 0;
     int minute = 0;
     double second = 0;
+    int decimals = 0; ///< of the second, as it was written
 };
 
 struct Date {

@@ -7,13 +7,11 @@ namespace {
 constexpr int leastFields = 8;  // up to the unit of the second speed
 constexpr double kmh = 1 / 3.6; // m/s
 
-/// A number and the letter of its unit; the letter alone is nothing.
-std::optional<double> withUnit(FieldReader &read, int field, double most, std::string_view unit,
-                               const char *expected) {
-    const std::optional<double> value = read.number(field, 0, most, expected);
-    if (value && !read.letter(field + 1, unit, expected))
-        read.fail(field + 1, expected);
-    return value;
+/// A number with the letter of its unit; anything else is nothing.
+std::optional<double> withUnit(const Sentence &sentence, int field, double most, std::string_view unit) {
+    FieldReader read(sentence);
+    const std::optional<double> value = read.number(field, 0, most, "");
+    return sentence.field(field + 1) == unit ? value : std::nullopt;
 }
 
 } // namespace
@@ -21,14 +19,13 @@ std::optional<double> withUnit(FieldReader &read, int field, double most, std::s
 FieldFault decode(const Sentence &sentence, Vtg &vtg) {
     if (sentence.type() != "VTG" || sentence.fieldCount() < leastFields)
         return {0, "VTG with 8 fields or more"};
-    FieldReader read(sentence);
     vtg = Vtg();
-    vtg.course_deg = withUnit(read, 1, 360, "T", "a course from 0 to 360 degrees, and T");
-    if (const auto knots = withUnit(read, 5, mostKnots, "N", "a speed from 0 to 9999 knots, and N"))
+    vtg.course_deg = withUnit(sentence, 1, 360, "T");
+    if (const auto knots = withUnit(sentence, 5, mostKnots, "N"))
         vtg.speed = *knots * knot;
-    else if (const auto other = withUnit(read, 7, mostKnots * 2, "K", "a speed in km/h, and K"))
+    else if (const auto other = withUnit(sentence, 7, mostKnots * 2, "K"))
         vtg.speed = *other * kmh;
-    return read.fault();
+    return {};
 }
 
 } // namespace hermes::nmea

@@ -15,13 +15,12 @@ FieldFault decode(const Sentence &sentence, Zda &zda) {
     FieldReader read(sentence);
     zda = Zda();
     zda.time = read.time(1);
-    const std::optional<int> day = read.whole(2, 1, 31, dateExpected);
-    const std::optional<int> month = read.whole(3, 1, 12, dateExpected);
-    const std::optional<int> year = read.whole(4, 1970, 9999, dateExpected);
+    FieldReader aside(sentence); // a time without a date is one, too
+    const std::optional<int> day = aside.whole(2, 1, 31, dateExpected);
+    const std::optional<int> month = aside.whole(3, 1, 12, dateExpected);
+    const std::optional<int> year = aside.whole(4, 1970, 9999, dateExpected);
     if (day && month && year && isValid(Date{*year, *month, *day}))
         zda.date = Date{*year, *month, *day};
-    else if (day || month || year)
-        read.fail(2, dateExpected);
     return read.fault();
 }
 

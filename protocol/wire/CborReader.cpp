@@ -196,10 +196,11 @@ private:
 
 } // namespace
 
-std::optional<WireValue> WireValue::parseCbor(const QByteArray &cbor, WireError *error, int maximumDepth) {
+std::optional<WireValue> WireValue::parseCbor(const QByteArray &cbor, WireError *error,
+                                              const WireLimits &limits) {
     const auto made = std::make_shared<Tree>();
     made->text.reserve(cbor.size());
-    TreeBuilder tree(made->document, maximumDepth);
+    TreeBuilder tree(made->document, limits);
     QCborStreamReader in(cbor);
     bool isRead = false;
     const auto generate = [&](rapidjson::Document &) {

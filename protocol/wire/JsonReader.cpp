@@ -76,12 +76,13 @@ QString parserMessage(rapidjson::ParseErrorCode code) {
 
 } // namespace
 
-std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *error, int maximumDepth) {
+std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *error,
+                                          const WireLimits &limits) {
     const auto made = std::make_shared<Tree>();
     made->text = json + QByteArray(4, '\0'); // a character that is cut off makes the parser read on
     const void *const zero =
         std::memchr(json.constData(), 0, std::size_t(json.size())); // to the parser the end
-    JsonBuilder builder(made->document, maximumDepth);
+    JsonBuilder builder(made->document, limits);
     rapidjson::ParseResult result;
     const auto generate = [&](rapidjson::Document &) {
         rapidjson::InsituStringStream bytes(made->text.data());

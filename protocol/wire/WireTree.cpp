@@ -150,9 +150,8 @@ bool TreeBuilder::isWhole(const char *text, unsigned length) {
 
 // Once each: arrays and objects, too.
 bool TreeBuilder::count() {
-    constexpr int mostValues = 2000000; // a map of 100,000 edges has some 1,300,000
-    if (++values_ > mostValues)
-        complaint = QStringLiteral("more than %1 values").arg(mostValues);
+    if (++values_ > limits_.values)
+        complaint = QStringLiteral("more than %1 values").arg(limits_.values);
     return complaint.isEmpty();
 }
 
@@ -160,8 +159,8 @@ bool TreeBuilder::enter() {
     if (!count())
         return false;
     keys_.emplace_back();
-    if (int(keys_.size()) > maximumDepth_)
-        complaint = QStringLiteral("nested deeper than %1 levels").arg(maximumDepth_);
+    if (int(keys_.size()) > limits_.depth)
+        complaint = QStringLiteral("nested deeper than %1 levels").arg(limits_.depth);
     return complaint.isEmpty();
 }
 

@@ -39,9 +39,9 @@ struct PackedNumbers {
 /// or there are too many values: each takes far more memory than it has bytes.
 class TreeBuilder {
 public:
-    TreeBuilder(rapidjson::Document &target, int depthLimit)
+    TreeBuilder(rapidjson::Document &target, const WireLimits &limits)
         : document_(target)
-        , maximumDepth_(depthLimit) {}
+        , limits_(limits) {}
 
     /// What is wrong; empty: nothing.
     QString complaint;
@@ -68,7 +68,7 @@ private:
     bool enter();
     bool leave();
 
-    const int maximumDepth_;
+    const WireLimits limits_;
     int values_ = 0;
     std::vector<std::vector<std::string>> keys_; // of each object (or array: none) still open
 };

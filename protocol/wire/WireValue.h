@@ -56,6 +56,12 @@ struct WireError {
     int line = 1;   ///< from 1
 };
 
+/// What a text may hold: each value takes far more memory than it has bytes.
+struct WireLimits {
+    int depth = 100;
+    int values = 2000000; ///< a map of 100,000 edges has some 1,300,000
+};
+
 /// A value that keeps its tree alive. Cheap to copy.
 class WireValue : public WireView {
 public:
@@ -68,12 +74,13 @@ public:
 
     /// Strict JSON: any value may stand at the top, bytes must be UTF-8, a key may occur once in an object,
     /// nesting is limited. Nothing: error says why.
-    static std::optional<WireValue> parse(const QByteArray &json, WireError *error, int maximumDepth = 100);
+    static std::optional<WireValue> parse(const QByteArray &json, WireError *error,
+                                          const WireLimits &limits = {});
 
     /// One item of CBOR (RFC 8949) that JSON could hold, too; arrays of numbers may be typed arrays (RFC
     /// 8746) of integers, floats and doubles in either byte order. Limits and errors as of parse().
     static std::optional<WireValue> parseCbor(const QByteArray &cbor, WireError *error,
-                                              int maximumDepth = 100);
+                                              const WireLimits &limits = {});
 
 private:
     struct Tree;

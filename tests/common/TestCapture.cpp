@@ -158,38 +158,34 @@ void TestCapture::tagsAreSteppedOver() {
 }
 
 void TestCapture::otherFramesAreTold_data() {
-    QTest::addColumn<QByteArray>("frame");
-    QTest::addColumn<int>("fault");
+    const Rows<QByteArray, int> row("frame", "fault");
     const QByteArray good = frameOf(datagram("payload"));
     const auto with = [&](int offset, int value) {
         return QByteArray(good).replace(offset, 1, QByteArray(1, char(value)));
     };
-    QTest::newRow("empty") << QByteArray() << int(FrameFault::Short);
-    QTest::newRow("link header only") << good.left(14) << int(FrameFault::Short);
-    QTest::newRow("cut in IPv4") << good.left(30) << int(FrameFault::Short);
-    QTest::newRow("cut in UDP") << good.left(40) << int(FrameFault::Short);
-    QTest::newRow("cut in payload") << good.left(45) << int(FrameFault::Short);
-    QTest::newRow("UDP length 7") << with(39, 7) << int(FrameFault::Short);
-    QTest::newRow("header length 16") << with(14, 0x44) << int(FrameFault::Short);
-    QTest::newRow("header length 60") << with(14, 0x4F) << int(FrameFault::Short);
-    QTest::newRow("ARP") << with(13, 6) << int(FrameFault::NotUdp);
-    QTest::newRow("version 6") << with(14, 0x65) << int(FrameFault::NotUdp);
-    QTest::newRow("TCP") << with(23, 6) << int(FrameFault::NotUdp);
-    QTest::newRow("first fragment") << with(20, 0x20) << int(FrameFault::Fragment);
-    QTest::newRow("later fragment") << with(21, 0x10) << int(FrameFault::Fragment);
+    row("empty", QByteArray(), int(FrameFault::Short));
+    row("link header only", good.left(14), int(FrameFault::Short));
+    row("cut in IPv4", good.left(30), int(FrameFault::Short));
+    row("cut in UDP", good.left(40), int(FrameFault::Short));
+    row("cut in payload", good.left(45), int(FrameFault::Short));
+    row("UDP length 7", with(39, 7), int(FrameFault::Short));
+    row("header length 16", with(14, 0x44), int(FrameFault::Short));
+    row("header length 60", with(14, 0x4F), int(FrameFault::Short));
+    row("ARP", with(13, 6), int(FrameFault::NotUdp));
+    row("version 6", with(14, 0x65), int(FrameFault::NotUdp));
+    row("TCP", with(23, 6), int(FrameFault::NotUdp));
+    row("first fragment", with(20, 0x20), int(FrameFault::Fragment));
+    row("later fragment", with(21, 0x10), int(FrameFault::Fragment));
 }
 
 void TestCapture::otherFramesAreTold() {
-    QFETCH(QByteArray, frame);
-    QFETCH(int, fault);
+    FETCH(QByteArray, frame, int, fault);
     Datagram d;
     QCOMPARE(int(parse(frame, d)), fault);
 }
 
 void TestCapture::randomFramesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     const QByteArray good = frameOf(datagram(QByteArray(60, 'x')));
     for (int round = 0; round < 20000; ++round) {
         QByteArray frame = good.left(int(random() % unsigned(good.size() + 1)));
@@ -231,11 +227,11 @@ void TestCapture::fullDiskIsReported() {
 }
 
 void TestCapture::cutFilesNameRecordAndByte_data() {
-    QTest::addColumn<int>("keep"); ///< bytes of the third record, which has 16 + 142
-    QTest::newRow("in the record's header") << 7;
-    QTest::newRow("behind the header") << 16;
-    QTest::newRow("in the frame") << 100;
-    QTest::newRow("one byte short") << 157;
+    const Rows<int> row("keep"); // bytes of the third record, which has 16 + 142
+    row("in the record's header", 7);
+    row("behind the header", 16);
+    row("in the frame", 100);
+    row("one byte short", 157);
 }
 
 void TestCapture::cutFilesNameRecordAndByte() {
@@ -257,23 +253,20 @@ void TestCapture::cutFilesNameRecordAndByte() {
 }
 
 void TestCapture::filesThatAreNoCapture_data() {
-    QTest::addColumn<QByteArray>("content");
-    QTest::newRow("empty") << QByteArray();
-    QTest::newRow("cut in the file header") << QByteArray::fromHex("4d3cb2a10200");
-    QTest::newRow("text") << QByteArray("1.0,2.0\n1.1,2.1\n1.2,2.2\n");
+    const Rows<QByteArray> row("content");
+    row("empty", QByteArray());
+    row("cut in the file header", QByteArray::fromHex("4d3cb2a10200"));
+    row("text", "1.0,2.0\n1.1,2.1\n1.2,2.2\n");
 }
 
 void TestCapture::filesThatAreNoCapture() {
     QFETCH(QByteArray, content);
     QTemporaryDir folder;
-    QFile file(folder.filePath(QStringLiteral("c.pcap")));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(content);
-    file.close();
+    const QString file = folder.filePath(QStringLiteral("c.pcap"));
+    put(file, content);
     PcapReader reader;
-    QVERIFY(!reader.open(file.fileName().toStdString()));
-    QVERIFY2(reader.error().find(file.fileName().toStdString() + ": not a capture") == 0,
-             reader.error().c_str());
+    QVERIFY(!reader.open(file.toStdString()));
+    QVERIFY2(reader.error().find(file.toStdString() + ": not a capture") == 0, reader.error().c_str());
     QVERIFY(!reader.open("/nonexistent/c.pcap"));
     QCOMPARE(QByteArray::fromStdString(reader.error()),
              QByteArray("/nonexistent/c.pcap: cannot be opened: No such file or directory"));
@@ -294,14 +287,12 @@ void TestCapture::stampsBeyondNanosecondsAreRefused() {
         return words({6, 76, 0, high, low, 44, 44}) + frame + words({76});
     };
     QTemporaryDir folder;
-    QFile file(folder.filePath("future.pcapng"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}));
-    file.write(words({1, 32, 1, 0, 0x00010009, 0, 0, 32})); // option 9: a tick is 10^-0 s
-    file.write(record(0, 1700000000) + record(0x7FFFFFFF, 0));
-    file.close();
+    const QString file = folder.filePath("future.pcapng");
+    put(file, words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}) +
+                  words({1, 32, 1, 0, 0x00010009, 0, 0, 32}) + // option 9: a tick is 10^-0 s
+                  record(0, 1700000000) + record(0x7FFFFFFF, 0));
     PcapReader reader;
-    QVERIFY2(reader.open(file.fileName().toStdString()), reader.error().c_str());
+    QVERIFY2(reader.open(file.toStdString()), reader.error().c_str());
     Datagram d;
     QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
     QCOMPARE(qint64(d.stamp_ns), qint64(1700000000) * 1000000000);
@@ -330,9 +321,7 @@ void TestCapture::tsharkReadsIt() {
 }
 
 void TestCapture::realRecording() {
-    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "hdl32e-outdoor.pcap");
     PcapReader reader;
     QVERIFY2(reader.open(path.toStdString()), reader.error().c_str());
     std::vector<bool> partial;
@@ -354,9 +343,7 @@ void TestCapture::realRecording() {
 }
 
 void TestCapture::realPositionPacketHasAWrongLength() {
-    const QString path = realData(QStringLiteral("velodyne-position-packet.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "velodyne-position-packet.pcap");
     PcapReader reader;
     QVERIFY2(reader.open(path.toStdString()), reader.error().c_str());
     Datagram d;

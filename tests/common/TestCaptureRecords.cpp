@@ -14,10 +14,7 @@ namespace {
 
 Reading theirs(const QByteArray &content, const QString &path) {
     const bool isPcapng = content.startsWith(QByteArray::fromHex("0a0d0d0a"));
-    QFile file(path);
-    if (!file.open(QIODevice::WriteOnly) || file.write(content) != content.size())
-        qFatal("%s", qPrintable(file.errorString()));
-    file.close();
+    put(path, content);
     char why[PCAP_ERRBUF_SIZE] = "";
     pcap_t *const pcap = pcap_open_offline_with_tstamp_precision(path.toLocal8Bit().constData(),
                                                                  PCAP_TSTAMP_PRECISION_NANO, why);

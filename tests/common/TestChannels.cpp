@@ -69,9 +69,7 @@ void TestChannels::sayTheSame_data() {
 }
 
 void TestChannels::sayTheSame() {
-    QFETCH(QString, protocol);
-    QFETCH(int, carrier);
-    QFETCH(bool, faulty);
+    FETCH(QString, protocol, int, carrier, bool, faulty);
     const Carrier &kind = carriers[carrier];
     if (faulty && QString(kind.name) == "udp")
         return; // a datagram comes whole or not at all

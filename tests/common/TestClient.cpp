@@ -3,6 +3,7 @@
 #include "common/daemon/Daemon.h"
 #include "common/interface/TcpInterface.h"
 #include "tests/support/FaultyInterface.h"
+#include "tests/support/PatientClient.h"
 
 #include <QTcpServer>
 #include <QtTest>
@@ -66,9 +67,7 @@ void TestClient::start(const QString &listen) {
 }
 
 void TestClient::callsAndFails() {
-    Client client;
-    QVERIFY(client.connectTo(address));
-    QVERIFY(client.waitConnected());
+    ConnectedClient client(address);
     const auto result = client.callAndWait("echo", QJsonObject{{"value", QJsonArray{1, "a"}}});
     QVERIFY(result);
     QCOMPARE(*result, QJsonValue(QJsonArray{1, "a"}));
@@ -79,9 +78,7 @@ void TestClient::callsAndFails() {
 }
 
 void TestClient::timesOut() {
-    Client client;
-    client.connectTo(address);
-    QVERIFY(client.waitConnected());
+    ConnectedClient client(address);
     const auto result = client.callAndWait("hang", QJsonObject(), std::chrono::milliseconds(50));
     QVERIFY(result.error().is(ErrorCode::TimedOut));
     daemon->kept[0].result("too late");
@@ -99,9 +96,7 @@ void TestClient::failsWhenNotConnected() {
 }
 
 void TestClient::pendingCallFailsWithTheConnection() {
-    Client client;
-    client.connectTo(address);
-    QVERIFY(client.waitConnected());
+    ConnectedClient client(address);
     QTimer::singleShot(20, [this] { daemon.reset(); });
     QVERIFY(client.callAndWait("hang").error().is(ErrorCode::Disconnected));
 }
@@ -180,9 +175,7 @@ void TestClient::malformedEnvelopesAreRefused() {
 }
 
 void TestClient::closesFromInsideACallback() {
-    Client client;
-    client.connectTo(address);
-    QVERIFY(client.waitConnected());
+    ConnectedClient client(address);
     bool done = false;
     client.call("echo", QJsonArray{1}, [&](const Result<QJsonValue> &) {
         client.close();
@@ -193,19 +186,15 @@ void TestClient::closesFromInsideACallback() {
 }
 
 void TestClient::everyRequestEndsOverABadLine_data() {
-    QTest::addColumn<double>("drop");
-    QTest::addColumn<double>("flip");
-    QTest::addColumn<double>("split");
-    QTest::newRow("splits") << 0.0 << 0.0 << 1.0;
-    QTest::newRow("drops") << 0.2 << 0.0 << 0.2;
-    QTest::newRow("flips") << 0.0 << 0.2 << 0.2;
-    QTest::newRow("all") << 0.1 << 0.1 << 0.5;
+    const Rows<double, double, double> row("drop", "flip", "split");
+    row("splits", 0.0, 0.0, 1.0);
+    row("drops", 0.2, 0.0, 0.2);
+    row("flips", 0.0, 0.2, 0.2);
+    row("all", 0.1, 0.1, 0.5);
 }
 
 void TestClient::everyRequestEndsOverABadLine() {
-    QFETCH(double, drop);
-    QFETCH(double, flip);
-    QFETCH(double, split);
+    FETCH(double, drop, double, flip, double, split);
     const unsigned int seed = 42;
     auto *faulty = new FaultyInterface(new TcpInterface(*InterfaceUrl::parse(address), nullptr),
                                        {drop, flip, split, 2, seed}, nullptr);

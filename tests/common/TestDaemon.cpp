@@ -19,25 +19,24 @@ private Q_SLOTS:
     void healthDegradesAndGoesStale();
     void whatIsPastIsNoWarning();
     void logIsATopic();
+    void theLogIsGivenUpToAMebibyte();
     void degreesForRadiansAreTold();
 };
 
 void TestDaemon::commonCommands_data() {
-    QTest::addColumn<QJsonValue>("params");
-    QTest::addColumn<QString>("member"); // of the result
-    QTest::newRow("rpc.discover") << QJsonValue(QJsonObject()) << "openrpc";
-    QTest::newRow("daemon.info") << QJsonValue(QJsonObject()) << "description_hash";
-    QTest::newRow("daemon.status") << QJsonValue(QJsonObject()) << "health";
-    QTest::newRow("settings.schema") << QJsonValue(QJsonObject()) << "properties";
-    QTest::newRow("settings.get") << QJsonValue(QJsonArray{"limits"}) << "clients";
-    QTest::newRow("settings.reset") << QJsonValue(QJsonObject()) << "changed";
-    QTest::newRow("topics.list") << QJsonValue(QJsonObject()) << "";
-    QTest::newRow("log.tail") << QJsonValue(QJsonArray{10}) << "";
+    const Rows<QJsonValue, QString> row("params", "member"); // member: of the result
+    row("rpc.discover", QJsonValue(QJsonObject()), "openrpc");
+    row("daemon.info", QJsonValue(QJsonObject()), "description_hash");
+    row("daemon.status", QJsonValue(QJsonObject()), "health");
+    row("settings.schema", QJsonValue(QJsonObject()), "properties");
+    row("settings.get", QJsonValue(QJsonArray{"limits"}), "clients");
+    row("settings.reset", QJsonValue(QJsonObject()), "changed");
+    row("topics.list", QJsonValue(QJsonObject()), "");
+    row("log.tail", QJsonValue(QJsonArray{10}), "");
 }
 
 void TestDaemon::commonCommands() {
-    QFETCH(QJsonValue, params);
-    QFETCH(QString, member);
+    FETCH(QJsonValue, params, QString, member);
     RawClient client(address());
     const QJsonObject reply = client.ask(QTest::currentDataTag(), params);
     QVERIFY2(reply.contains("result"), compactJson(reply));
@@ -80,26 +79,21 @@ void TestDaemon::settingsOverTheWire() {
 }
 
 void TestDaemon::wrongFileIsNoWrongCommandLine_data() {
-    QTest::addColumn<QStringList>("options");
-    QTest::addColumn<bool>("withFile");
-    QTest::addColumn<int>("status");
+    const Rows<QStringList, bool, int> row("options", "withFile", "status");
     const QStringList clash{"--set", "offset=4"}, type{"--set", "offset=many"}, unknown{"--set", "ofset=1"};
-    QTest::newRow("clash with the file") << clash << true << 1;
-    QTest::newRow("clash with a default") << clash << false << 2;
-    QTest::newRow("type") << type << true << 2;
-    QTest::newRow("unknown") << unknown << true << 2;
-    QTest::newRow("address") << QStringList{"--listen", "no://where"} << true << 2;
-    QTest::newRow("goes together") << QStringList{"--set", "offset=2"} << true << 0;
+    row("clash with the file", clash, true, 1);
+    row("clash with a default", clash, false, 2);
+    row("type", type, true, 2);
+    row("unknown", unknown, true, 2);
+    row("address", {"--listen", "no://where"}, true, 2);
+    row("goes together", {"--set", "offset=2"}, true, 0);
 }
 
 /// What may be mended in the file is tried again by the supervisor, a wrong command line not.
 void TestDaemon::wrongFileIsNoWrongCommandLine() {
-    QFETCH(QStringList, options);
-    QFETCH(bool, withFile);
-    QFETCH(int, status);
+    FETCH(QStringList, options, bool, withFile, int, status);
     const QTemporaryDir folder;
-    QFile file(folder.filePath("tested.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("{\"gain\": 3}") > 0 && file.flush());
+    put(folder.filePath("tested.json"), "{\"gain\": 3}");
     TestedDaemon tested;
     tested.settings().declare(Field::number("offset", "At most the gain").byDefault(0));
     tested.settings().addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
@@ -109,7 +103,7 @@ void TestDaemon::wrongFileIsNoWrongCommandLine() {
     });
     QStringList line{"tested", "--check"};
     if (withFile)
-        line << "--config" << file.fileName();
+        line << "--config" << folder.filePath("tested.json");
     QCOMPARE(tested.prepare(line + options).value_or(-1), status);
 }
 
@@ -162,6 +156,15 @@ void TestDaemon::logIsATopic() {
     const QJsonObject record = client.message()["params"].toObject()["data"].toObject();
     QCOMPARE(record["text"].toString(), QString("from a thread"));
     QCOMPARE(record["level"].toString(), QString("warning"));
+}
+
+void TestDaemon::theLogIsGivenUpToAMebibyte() {
+    for (int i = 0; i < 40; ++i)
+        logInfo("test", QString("%1 ").arg(i) + QString(60000, 'x'));
+    const QJsonArray records = RawClient(address()).ask("log.tail", QJsonArray{1000})["result"].toArray();
+    QVERIFY(compactJson(records).size() <= Log::mostTailBytes + 61000);
+    QVERIFY(records.size() > 10);
+    QVERIFY(records.last()["text"].toString().startsWith("39 "));
 }
 
 void TestDaemon::degreesForRadiansAreTold() {

@@ -90,18 +90,14 @@ void TestDaemonClients::oversizedRequest() {
 }
 
 void TestDaemonClients::whoSpeaksAnotherProtocolIsTurnedAway_data() {
-    QTest::addColumn<QByteArray>("beginning");
-    QTest::addColumn<QString>("name");
-    QTest::newRow("HTTP") << QByteArray(
-                                 "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: text/plain\r\n\r\n")
-                          << "HTTP";
-    QTest::newRow("TLS") << QByteArray("\x16\x03\x01\x00\x05\x01\x00\x00\n", 9) << "TLS";
+    const Rows<QByteArray, QString> row("beginning", "name");
+    row("HTTP", "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: text/plain\r\n\r\n", "HTTP");
+    row("TLS", QByteArray("\x16\x03\x01\x00\x05\x01\x00\x00\n", 9), "TLS");
 }
 
 // Sent whole, in pieces, and with a method longer than a frame may be: no command of its body is run.
 void TestDaemonClients::whoSpeaksAnotherProtocolIsTurnedAway() {
-    QFETCH(QByteArray, beginning);
-    QFETCH(QString, name);
+    FETCH(QByteArray, beginning, QString, name);
     RawClient good(address());
     good.ask("daemon.info");
     const QByteArray commands =

@@ -23,11 +23,8 @@ private Q_SLOTS:
 };
 
 void TestDaemonRequests::specificationExamples_data() {
-    QTest::addColumn<QByteArray>("request");
-    QTest::addColumn<QByteArray>("response"); // "" for none; error messages are ours and not compared
-    const auto row = [](const char *name, const char *request, const char *response) {
-        QTest::newRow(name) << QByteArray(request) << QByteArray(response);
-    };
+    const Rows<QByteArray, QByteArray> row(
+        "request", "response"); // response: "" for none; error messages are ours and not compared
     row("positional", R"({"jsonrpc":"2.0","method":"subtract","params":[42,23],"id":1})",
         R"({"jsonrpc":"2.0","result":19,"id":1})");
     row("positional swapped", R"({"jsonrpc":"2.0","method":"subtract","params":[23,42],"id":2})",
@@ -74,8 +71,7 @@ static QJsonValue withoutTexts(const QJsonValue &value) {
 }
 
 void TestDaemonRequests::specificationExamples() {
-    QFETCH(QByteArray, request);
-    QFETCH(QByteArray, response);
+    FETCH(QByteArray, request, QByteArray, response);
     RawClient client(address());
     client.send(request);
     client.send(R"({"jsonrpc":"2.0","method":"subtract","params":[9,4],"id":"end"})");
@@ -85,18 +81,16 @@ void TestDaemonRequests::specificationExamples() {
 }
 
 void TestDaemonRequests::handlerErrorsEndThatRequestOnly_data() {
-    QTest::addColumn<int>("code");
-    QTest::addColumn<QString>("says");
-    QTest::newRow("throw") << -32603 << "on purpose";
-    QTest::newRow("nan") << -32603 << "result: not a finite number";
-    QTest::newRow("nanStruct") << -32603 << "a number of the result is not finite";
-    QTest::newRow("silent") << -32603 << "no answer";
-    QTest::newRow("fault") << -32004 << "unplugged";
+    const Rows<int, QString> row("code", "says");
+    row("throw", -32603, "on purpose");
+    row("nan", -32603, "result: not a finite number");
+    row("nanStruct", -32603, "a number of the result is not finite");
+    row("silent", -32603, "no answer");
+    row("fault", -32004, "unplugged");
 }
 
 void TestDaemonRequests::handlerErrorsEndThatRequestOnly() {
-    QFETCH(int, code);
-    QFETCH(QString, says);
+    FETCH(int, code, QString, says);
     RawClient client(address());
     const QJsonObject error = client.ask(QTest::currentDataTag())["error"].toObject();
     QCOMPARE(error["code"].toInt(), code);
@@ -120,20 +114,17 @@ void TestDaemonRequests::invalidParamsNameEachOffender() {
 }
 
 void TestDaemonRequests::valuesOfARequestAreBounded_data() {
-    QTest::addColumn<QString>("method");
-    QTest::addColumn<int>("values");
-    QTest::addColumn<int>("code"); // 0: none
+    const Rows<QString, int, int> row("method", "values", "code"); // code: 0: none
     const int overLimit = int(ErrorCode::OverLimit), invalid = int(ErrorCode::InvalidParams);
     // The object and the list are values, too.
-    QTest::newRow("at most, of any command") << "subtract" << 2998 << invalid;
-    QTest::newRow("one more") << "subtract" << 2999 << overLimit;
-    QTest::newRow("at most, of a command that takes many") << "many" << 19998 << 0;
-    QTest::newRow("one more than many") << "many" << 19999 << overLimit;
+    row("at most, of any command", "subtract", 2998, invalid);
+    row("one more", "subtract", 2999, overLimit);
+    row("at most, of a command that takes many", "many", 19998, 0);
+    row("one more than many", "many", 19999, overLimit);
 }
 
 void TestDaemonRequests::valuesOfARequestAreBounded() {
-    QFETCH(QString, method);
-    QFETCH(int, values);
+    FETCH(QString, method, int, values);
     QJsonArray items;
     for (int i = 0; i < values; ++i)
         items.append(i);

@@ -9,6 +9,7 @@ private Q_SLOTS:
     void cleanup() { tearDown(); }
     void subscribeWithSnapshotAndUnsubscribe();
     void rateIsLimitedAndNewestArrives();
+    void aTinyRateIsNeverDue();
     void slowReaderLosesTopicsButNoReplies();
 };
 
@@ -52,6 +53,22 @@ void TestDaemonTopics::rateIsLimitedAndNewestArrives() {
     QCOMPARE(last["dropped"].toInt(), 0); // thinned on request, not lost
     QVERIFY(clock.elapsed() >= 40);
     QVERIFY(messages <= 1 + clock.elapsed() / 50);
+}
+
+// Not at once, as a period that no timer can hold would be, over and over.
+void TestDaemonTopics::aTinyRateIsNeverDue() {
+    static int warnings = 0;
+    const auto handler =
+        qInstallMessageHandler([](QtMsgType, const QMessageLogContext &, const QString &) { ++warnings; });
+    RawClient client(address());
+    for (const double rate_hz : {1e-300, 5e-324, 1e-7})
+        QVERIFY(client.ask("topics.subscribe", QJsonArray{"numbers", rate_hz}).contains("result"));
+    for (int i = 0; i < 3; ++i) {
+        daemon->publish("numbers", i);
+        QTest::qWait(5); // in which a timer that is due at once would come
+    }
+    qInstallMessageHandler(handler);
+    QCOMPARE(warnings, 0);
 }
 
 void TestDaemonTopics::slowReaderLosesTopicsButNoReplies() {

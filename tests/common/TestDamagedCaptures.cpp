@@ -65,9 +65,7 @@ private Q_SLOTS:
 
 /// Cut or with other bytes in it: records before the damage are those of the whole file.
 void TestDamagedCaptures::damagedFilesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    Generator generator(seed);
+    Generator generator(newSeed());
     for (int round = 0; round < 5000; ++round) {
         const QByteArray content = round % 2 ? generator.pcapng() : generator.classic();
         const Reading whole = ours(content),
@@ -82,33 +80,29 @@ void TestDamagedCaptures::damagedFilesDoNoHarm() {
 }
 
 void TestDamagedCaptures::limits_data() {
-    QTest::addColumn<QByteArray>("content");
-    QTest::addColumn<int>("length"); // of the frame that is read; -1: none
+    const Rows<QByteArray, int> row("content", "length"); // length: of the frame that is read; -1: none
     const auto frame = [](int size) { return QByteArray(size, 'x'); };
-    QTest::newRow("classic, cut at the limit") << classic(45, 52) << 45;
-    QTest::newRow("classic, no limit") << classic(0, 52) << 52;
-    QTest::newRow("classic, longest frame") << classic(400000, 262144) << 262144;
-    QTest::newRow("classic, longer") << classic(400000, 262145) << -1;
-    QTest::newRow("classic, version 2.5") << classic(400000, 52, 5) << -1;
-    QTest::newRow("longest frame") << pcapng({1}) + packet(0, frame(262144)) << 262144;
-    QTest::newRow("longer") << pcapng({1}) + packet(0, frame(262148)) << -1;
-    QTest::newRow("longest of the interface") << pcapng({1}, 300000) + packet(0, frame(300000)) << 300000;
-    QTest::newRow("longer than the interface's") << pcapng({1}, 300000) + packet(0, frame(300004)) << -1;
-    QTest::newRow("simple, cut at the interface's")
-        << pcapng({1}, 20) + block(3, Writer(false).word(52).content + frame(52)) << 20;
-    QTest::newRow("longest block") << pcapng({1}) + block(77, frame((16 << 20) - 12)) + packet(0, frame(9))
-                                   << 9;
-    QTest::newRow("longer block") << pcapng({1}) + block(77, frame((16 << 20) - 8)) + packet(0, frame(9))
-                                  << -1;
-    QTest::newRow("ticks of 10^-19 s") << pcapng({1}, 0, resolution(19)) + packet(0, frame(9)) << 9;
-    QTest::newRow("ticks of 10^-20 s") << pcapng({1}, 0, resolution(20)) + packet(0, frame(9)) << -1;
-    QTest::newRow("ticks of 2^-63 s") << pcapng({1}, 0, resolution(0x80 | 63)) + packet(0, frame(9)) << 9;
-    QTest::newRow("ticks of 2^-64 s") << pcapng({1}, 0, resolution(0x80 | 64)) + packet(0, frame(9)) << -1;
+    row("classic, cut at the limit", classic(45, 52), 45);
+    row("classic, no limit", classic(0, 52), 52);
+    row("classic, longest frame", classic(400000, 262144), 262144);
+    row("classic, longer", classic(400000, 262145), -1);
+    row("classic, version 2.5", classic(400000, 52, 5), -1);
+    row("longest frame", pcapng({1}) + packet(0, frame(262144)), 262144);
+    row("longer", pcapng({1}) + packet(0, frame(262148)), -1);
+    row("longest of the interface", pcapng({1}, 300000) + packet(0, frame(300000)), 300000);
+    row("longer than the interface's", pcapng({1}, 300000) + packet(0, frame(300004)), -1);
+    row("simple, cut at the interface's",
+        pcapng({1}, 20) + block(3, Writer(false).word(52).content + frame(52)), 20);
+    row("longest block", pcapng({1}) + block(77, frame((16 << 20) - 12)) + packet(0, frame(9)), 9);
+    row("longer block", pcapng({1}) + block(77, frame((16 << 20) - 8)) + packet(0, frame(9)), -1);
+    row("ticks of 10^-19 s", pcapng({1}, 0, resolution(19)) + packet(0, frame(9)), 9);
+    row("ticks of 10^-20 s", pcapng({1}, 0, resolution(20)) + packet(0, frame(9)), -1);
+    row("ticks of 2^-63 s", pcapng({1}, 0, resolution(0x80 | 63)) + packet(0, frame(9)), 9);
+    row("ticks of 2^-64 s", pcapng({1}, 0, resolution(0x80 | 64)) + packet(0, frame(9)), -1);
 }
 
 void TestDamagedCaptures::limits() {
-    QFETCH(QByteArray, content);
-    QFETCH(int, length);
+    FETCH(QByteArray, content, int, length);
     const Reading reading = ours(content);
     QCOMPARE(reading.isOpened && !reading.failed, length >= 0);
     QCOMPARE(int(reading.records.size()), length >= 0 ? 1 : 0);

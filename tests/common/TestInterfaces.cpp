@@ -44,38 +44,19 @@ private Q_SLOTS:
 };
 
 void TestInterfaces::parsesUrls_data() {
-    QTest::addColumn<QString>("text");
-    QTest::addColumn<QString>("parsed"); // "" means refused
-    QTest::addColumn<QString>("protocol");
-    QTest::newRow("full") << "tcp://127.0.0.1:7410?protocol=cbor"
-                          << "tcp://127.0.0.1:7410"
-                          << "cbor";
-    QTest::newRow("bare") << "robot:7410"
-                          << "tcp://robot:7410"
-                          << "json";
-    QTest::newRow("IPv6") << "[::1]:7410"
-                          << "tcp://[::1]:7410"
-                          << "json";
-    QTest::newRow("device") << "serial:///dev/ttyS1?baud=9600"
-                            << "serial:///dev/ttyS1"
-                            << "json";
-    QTest::newRow("port too large") << "tcp://1.2.3.4:99999"
-                                    << ""
-                                    << "";
-    QTest::newRow("port alone") << "7490"
-                                << ""
-                                << "";
-    QTest::newRow("port alone, in a URL") << "tcp://7490?protocol=json"
-                                          << ""
-                                          << "";
-    QTest::newRow("space") << "tcp://a b:1"
-                           << ""
-                           << "";
+    const Rows<QString, QString, QString> row("text", "parsed", "protocol"); // parsed: "" means refused
+    row("full", "tcp://127.0.0.1:7410?protocol=cbor", "tcp://127.0.0.1:7410", "cbor");
+    row("bare", "robot:7410", "tcp://robot:7410", "json");
+    row("IPv6", "[::1]:7410", "tcp://[::1]:7410", "json");
+    row("device", "serial:///dev/ttyS1?baud=9600", "serial:///dev/ttyS1", "json");
+    row("port too large", "tcp://1.2.3.4:99999", "", "");
+    row("port alone", "7490", "", "");
+    row("port alone, in a URL", "tcp://7490?protocol=json", "", "");
+    row("space", "tcp://a b:1", "", "");
 }
 
 void TestInterfaces::parsesUrls() {
-    QFETCH(QString, text);
-    QFETCH(QString, parsed);
+    FETCH(QString, text, QString, parsed);
     const auto url = InterfaceUrl::parse(text);
     QCOMPARE(url.ok(), !parsed.isEmpty());
     if (!url) {
@@ -87,16 +68,15 @@ void TestInterfaces::parsesUrls() {
 }
 
 void TestInterfaces::knowsWhatIsLocal_data() {
-    QTest::addColumn<QString>("text");
-    QTest::addColumn<bool>("local");
-    QTest::newRow("loopback") << "tcp://127.0.0.1:1" << true;
-    QTest::newRow("other loopback") << "tcp://127.0.0.9:1" << true;
-    QTest::newRow("IPv6 loopback") << "tcp://[::1]:1" << true;
-    QTest::newRow("localhost") << "tcp://localhost:1" << true;
-    QTest::newRow("any") << "tcp://0.0.0.0:1" << false;
-    QTest::newRow("any IPv6") << "tcp://[::]:1" << false;
-    QTest::newRow("address") << "udp://192.168.1.5:1" << false;
-    QTest::newRow("nothing") << "tcp://:1" << false;
+    const Rows<QString, bool> row("text", "local");
+    row("loopback", "tcp://127.0.0.1:1", true);
+    row("other loopback", "tcp://127.0.0.9:1", true);
+    row("IPv6 loopback", "tcp://[::1]:1", true);
+    row("localhost", "tcp://localhost:1", true);
+    row("any", "tcp://0.0.0.0:1", false);
+    row("any IPv6", "tcp://[::]:1", false);
+    row("address", "udp://192.168.1.5:1", false);
+    row("nothing", "tcp://:1", false);
 }
 
 void TestInterfaces::knowsWhatIsLocal() {
@@ -266,12 +246,9 @@ void TestInterfaces::localSocketsReplaceOnlyWhatIsDead() {
 }
 
 void TestInterfaces::socketsHaveAnOwner_data() {
-    QTest::addColumn<QString>("host");
-    QTest::addColumn<QString>("table");
-    QTest::newRow("IPv4") << "127.0.0.1"
-                          << "/proc/net/tcp";
-    QTest::newRow("IPv6") << "::1"
-                          << "/proc/net/tcp6";
+    const Rows<QString, QString> row("host", "table");
+    row("IPv4", "127.0.0.1", "/proc/net/tcp");
+    row("IPv6", "::1", "/proc/net/tcp6");
 }
 
 void TestInterfaces::socketsHaveAnOwner() {
@@ -288,9 +265,7 @@ void TestInterfaces::socketsHaveAnOwner() {
     const std::optional<unsigned> mine(::geteuid());
     QVERIFY(ownerOfSocket(from, to) == mine);
     QVERIFY(!ownerOfSocket(from, {address, quint16(to.port ^ 1)}));
-    QFile file(table);
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    const QByteArray text = file.readAll();
+    const QByteArray text = contentOf(table);
     QVERIFY2(ownerInSocketTable(text, from, to) == mine, text.constData());
     QVERIFY(!ownerInSocketTable(text, from, {address, quint16(to.port ^ 1)}));
 }

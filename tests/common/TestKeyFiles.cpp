@@ -3,46 +3,22 @@
 #include "common/tls/Authority.h"
 #include "common/tls/FolderPlace.h"
 #include "common/tls/KeyFolder.h"
+#include "tests/support/FileSizeLimit.h"
 
 #include <QDir>
 #include <QFile>
 #include <QTemporaryDir>
 #include <QtTest>
 #include <climits>
-#include <csignal>
-#include <sys/resource.h>
 
 using namespace hermes;
-
-namespace {
-
-QByteArray contents(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
-/// Files of this program cannot be longer: what is beyond is not written, as on a full disk.
-class LongestFile {
-public:
-    explicit LongestFile(qint64 bytes) {
-        ::getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limit{rlim_t(bytes), before_.rlim_max};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~LongestFile() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-
-private:
-    rlimit before_{};
-};
-
-} // namespace
 
 class TestKeyFiles : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void initTestCase() { std::signal(SIGXFSZ, SIG_IGN); }
     void aFullDiskLeavesNoHalfLine();
+    void aFullDiskTakesNoKey();
     void onlyAnAbsentListIsNone();
     void aFolderTakesThePlaceOfAnEmptyOne();
     void anEmptyFolderStaysWhereNothingTakesItsPlace();
@@ -54,19 +30,30 @@ void TestKeyFiles::aFullDiskLeavesNoHalfLine() {
     QVERIFY(authority.init("owner", 10, 10));
     const auto made = authority.issue({"anna", "observer"}, 10);
     QVERIFY2(made, made ? "" : qPrintable(made.error().message));
-    QFile list(folder.filePath("keys/revoked"));
-    QVERIFY(list.open(QIODevice::WriteOnly) && list.write("# " + QByteArray(998, 'x') + '\n') == 1001);
-    list.close();
-    const QByteArray before = contents(list.fileName());
+    const QString list = folder.filePath("keys/revoked");
+    put(list, "# " + QByteArray(998, 'x') + '\n');
+    const QByteArray before = contentOf(list);
     {
-        const LongestFile limit(before.size() + 10);
+        const FileSizeLimit limit(rlim_t(before.size() + 10));
         const auto revoked = authority.revoke("anna");
         QVERIFY(!revoked);
         QVERIFY2(revoked.error().message.contains("File too large"), qPrintable(revoked.error().message));
     }
-    QCOMPARE(contents(list.fileName()), before);
+    QCOMPARE(contentOf(list), before);
     QVERIFY(authority.revoke("anna"));
     QCOMPARE(KeyFolder::revoked(folder.filePath("keys"))->size(), 1);
+}
+
+void TestKeyFiles::aFullDiskTakesNoKey() {
+    QTemporaryDir folder;
+    const Authority authority(folder.filePath("keys"));
+    QVERIFY(authority.init("owner", 10, 10));
+    const QByteArray before = contents(folder.filePath("keys/own.key"));
+    {
+        const LongestFile limit(100);
+        QVERIFY(!writeKeyFile(folder.filePath("keys/own.key"), QByteArray(200, 'k')));
+    }
+    QCOMPARE(contents(folder.filePath("keys/own.key")), before);
 }
 
 void TestKeyFiles::onlyAnAbsentListIsNone() {

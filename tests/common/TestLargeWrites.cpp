@@ -34,14 +34,10 @@ private:
 };
 
 void TestLargeWrites::carriers() {
-    QTest::addColumn<QString>("listen");
-    QTest::addColumn<QString>("connect");
-    QTest::newRow("tcp") << "tcp://127.0.0.1:0"
-                         << "ADDRESS";
-    QTest::newRow("tls") << "tls://127.0.0.1:0?keys=FOLDER/keys/issued-for/robot"
-                         << "ADDRESS";
-    QTest::newRow("local") << "local://FOLDER/socket"
-                           << "local://FOLDER/socket";
+    const Rows<QString, QString> row("listen", "connect");
+    row("tcp", "tcp://127.0.0.1:0", "ADDRESS");
+    row("tls", "tls://127.0.0.1:0?keys=FOLDER/keys/issued-for/robot", "ADDRESS");
+    row("local", "local://FOLDER/socket", "local://FOLDER/socket");
 }
 
 void TestLargeWrites::initTestCase() {
@@ -50,8 +46,7 @@ void TestLargeWrites::initTestCase() {
 }
 
 void TestLargeWrites::init() {
-    QFETCH(QString, listen);
-    QFETCH(QString, connect);
+    FETCH(QString, listen, QString, connect);
     writer_.reset();
     reader_.reset();
     read_.clear();

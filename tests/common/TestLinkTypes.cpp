@@ -55,10 +55,8 @@ QByteArray pcapngFile(int link, const QByteArray &frame) {
 }
 
 std::string write(const QTemporaryDir &folder, const QByteArray &content) {
-    QFile file(folder.filePath("c.pcap"));
-    if (!file.open(QIODevice::WriteOnly) || file.write(content) != content.size())
-        qFatal("%s", qPrintable(file.errorString()));
-    return file.fileName().toStdString();
+    put(folder.filePath("c.pcap"), content);
+    return folder.filePath("c.pcap").toStdString();
 }
 
 } // namespace

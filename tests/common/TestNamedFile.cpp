@@ -29,14 +29,8 @@ private Q_SLOTS:
 private:
     QString at(const QString &name) const { return root_->filePath(name); }
     QStringList folders() const { return {at("allowed")}; }
-    void put(const QString &name, const QByteArray &bytes) const {
-        QFile file(at(name));
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size());
-    }
-    QByteArray content(const QString &name) const {
-        QFile file(at(name));
-        return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-    }
+    void put(const QString &name, const QByteArray &bytes) const { ::put(at(name), bytes); }
+    QByteArray content(const QString &name) const { return contentOf(at(name)); }
     void link(const QByteArray &target, const QString &name) const {
         QCOMPARE(::symlink(target.constData(), QFile::encodeName(at(name)).constData()), 0);
     }
@@ -83,17 +77,15 @@ QByteArray TestNamedFile::outside() const {
 }
 
 void TestNamedFile::reads_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::newRow("file") << "allowed/map" << QByteArray("a map");
-    QTest::newRow("link within") << "allowed/inside" << QByteArray("a map");
-    QTest::newRow("linked folder within") << "allowed/to-sub/map" << QByteArray("another map");
-    QTest::newRow("there and back") << "allowed/../other/../allowed//./map" << QByteArray("a map");
+    const Rows<QString, QByteArray> row("name", "bytes");
+    row("file", "allowed/map", "a map");
+    row("link within", "allowed/inside", "a map");
+    row("linked folder within", "allowed/to-sub/map", "another map");
+    row("there and back", "allowed/../other/../allowed//./map", "a map");
 }
 
 void TestNamedFile::reads() {
-    QFETCH(QString, name);
-    QFETCH(QByteArray, bytes);
+    FETCH(QString, name, QByteArray, bytes);
     const auto read = readNamedFile(at(name), folders(), 100);
     QVERIFY2(read, read ? "" : qPrintable(read.error().message));
     QCOMPARE(*read, bytes);
@@ -103,11 +95,7 @@ void TestNamedFile::reads() {
 }
 
 void TestNamedFile::refusesToRead_data() {
-    QTest::addColumn<QString>("path");
-    QTest::addColumn<QString>("why");
-    const auto row = [this](const char *name, const QString &path, const char *why) {
-        QTest::newRow(name) << path << why;
-    };
+    const Rows<QString, QString> row("path", "why");
     row("beside", "other/secret", "not below");
     row("above", "allowed/../other/secret", "not below");
     row("link out", "allowed/outside", "secret, not below");
@@ -129,8 +117,7 @@ void TestNamedFile::refusesToRead_data() {
 }
 
 void TestNamedFile::refusesToRead() {
-    QFETCH(QString, path);
-    QFETCH(QString, why);
+    FETCH(QString, path, QString, why);
     const QString full = path.startsWith('/') ? path : at(path);
     QElapsedTimer time;
     time.start();
@@ -148,7 +135,7 @@ void TestNamedFile::refusesToRead() {
 }
 
 void TestNamedFile::refusesToWrite_data() {
-    QTest::addColumn<QString>("path");
+    const Rows<QString> row("path");
     for (const char *path : {"other/new",
                              "allowed/../other/new",
                              "allowed/way-out/new",
@@ -171,9 +158,9 @@ void TestNamedFile::refusesToWrite_data() {
                              "allowed/map/new",
                              "allowed/new\n",
                              ""})
-        QTest::newRow(path) << QString(path);
-    QTest::newRow("NUL") << QString("allowed/new") + QChar(0) + "x";
-    QTest::newRow("long name") << "allowed/" + QString(300, 'x');
+        row(path, QString(path));
+    row("NUL", QString("allowed/new") + QChar(0) + "x");
+    row("long name", "allowed/" + QString(300, 'x'));
 }
 
 void TestNamedFile::refusesToWrite() {
@@ -214,9 +201,7 @@ void TestNamedFile::whateverIsNamed() {
     const std::vector<QString> steps{"allowed", "other", "sub",   "map",    "secret", "outside",  "way-out",
                                      "..",      ".",     "",      "to-sub", "inside", "dangling", "pipe",
                                      "zero",    "new",   "empty", "~",      "a\\b",   "\u00e4"};
-    const unsigned seed = std::random_device{}();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     const QByteArray before = outside();
     for (int i = 0; i < 3000; ++i) {
         QString name = "allowed";

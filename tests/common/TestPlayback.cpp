@@ -20,9 +20,9 @@ private Q_SLOTS:
 };
 
 void TestPlayback::beginsWhenItGoesOn_data() {
-    QTest::addColumn<bool>("seek");
-    QTest::newRow("released") << false;
-    QTest::newRow("sought") << true;
+    const Rows<bool> row("seek");
+    row("released", false);
+    row("sought", true);
 }
 
 void TestPlayback::beginsWhenItGoesOn() {

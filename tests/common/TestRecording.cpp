@@ -49,27 +49,26 @@ void TestRecording::recordsAndDescribes() {
 }
 
 void TestRecording::namesAreChecked_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<bool>("fine");
-    QTest::newRow("plain") << "run1" << true;
-    QTest::newRow("umlaut") << QString::fromUtf8("Gew\xc3\xa4"
-                                                 "chshaus 7")
-                            << true;
-    QTest::newRow("longest") << QString(100, 'a') << true;
-    QTest::newRow("too long") << QString(101, 'a') << false;
-    QTest::newRow("too long in UTF-8") << QString(51, QChar(0xE4)) << false;
-    QTest::newRow("empty") << "" << false;
-    QTest::newRow("up") << ".." << false;
-    QTest::newRow("hidden") << ".a" << false;
-    QTest::newRow("path") << "a/b" << false;
-    QTest::newRow("absolute") << "/a" << false;
-    QTest::newRow("line") << "a\nb" << false;
-    QTest::newRow("NUL") << QString::fromLatin1("a\0b", 3) << false;
+    const Rows<QString, bool> row("name", "fine");
+    row("plain", "run1", true);
+    row("umlaut",
+        "Gew\xc3\xa4"
+        "chshaus 7",
+        true);
+    row("longest", QString(100, 'a'), true);
+    row("too long", QString(101, 'a'), false);
+    row("too long in UTF-8", QString(51, QChar(0xE4)), false);
+    row("empty", "", false);
+    row("up", "..", false);
+    row("hidden", ".a", false);
+    row("path", "a/b", false);
+    row("absolute", "/a", false);
+    row("line", "a\nb", false);
+    row("NUL", QString::fromLatin1("a\0b", 3), false);
 }
 
 void TestRecording::namesAreChecked() {
-    QFETCH(QString, name);
-    QFETCH(bool, fine);
+    FETCH(QString, name, bool, fine);
     QTemporaryDir root;
     Logger logger(root.path() + "/recordings");
     for (const QJsonObject &params :

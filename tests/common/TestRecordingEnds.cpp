@@ -22,10 +22,13 @@ private Q_SLOTS:
     void refusalsLeaveNothingBehind();
     void lowSpaceIsToldAndEndsTheRecording();
     void aFailedWriterEndsTheRecording();
-    void aFolderThatIsRemovedEndsTheRecording();
     void aFileThatIsRemovedEndsTheRecording_data();
     void aFileThatIsRemovedEndsTheRecording();
     void aFileThatIsRemovedJustBeforeTheStopIsMissed();
+    void aFileThatIsCutIsMissed_data();
+    void aFileThatIsCutIsMissed();
+    void whatLinksLeadToStays_data();
+    void whatLinksLeadToStays();
     void aStopWhileItBeginsEndsIt_data();
     void aStopWhileItBeginsEndsIt();
     void aStopOfAnotherSessionEndsNothing();
@@ -85,36 +88,22 @@ void TestRecordingEnds::aFailedWriterEndsTheRecording() {
     QCOMPARE(logger.level("recording"), "ok");
 }
 
-void TestRecordingEnds::aFolderThatIsRemovedEndsTheRecording() {
-    QTemporaryDir root;
-    Logger logger(root.path());
-    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
-    QVERIFY(QFile::rename(root.path() + "/a", root.path() + "/moved"));
-    QTRY_VERIFY(!logger.recording.isActive());
-    const Result<QJsonValue> stopped = logger.call("record.stop");
-    QCOMPARE(stopped.error().code, int(ErrorCode::InputOutput));
-    QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a");
-    QCOMPARE(logger.level("recording"), "error");
-    QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
-}
-
 void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording_data() {
-    QTest::addColumn<bool>("isReplaced");
-    QTest::addColumn<bool>("isFolderToo");
-    QTest::newRow("removed") << false << false;
-    QTest::newRow("replaced") << true << false;
-    QTest::newRow("moved away with its folder, which has a successor") << false << true;
+    const Rows<bool, bool, bool> row("isReplaced", "isFolderToo", "hasSuccessor");
+    row("removed", false, false, false);
+    row("replaced", true, false, false);
+    row("moved away with its folder", false, true, false);
+    row("moved away with its folder, which has a successor", false, true, true);
 }
 
 void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording() {
-    QFETCH(bool, isReplaced);
-    QFETCH(bool, isFolderToo);
+    FETCH(bool, isReplaced, bool, isFolderToo, bool, hasSuccessor);
     QTemporaryDir root;
     Logger logger(root.path());
     const QString folder = root.path() + "/a", path = folder + "/logger-0001.txt";
     QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
     if (isFolderToo)
-        QVERIFY(QDir().rename(folder, root.path() + "/moved") && QDir().mkpath(folder));
+        QVERIFY(QDir().rename(folder, root.path() + "/moved") && (!hasSuccessor || QDir().mkpath(folder)));
     else
         QVERIFY(QFile::rename(path, root.path() + "/kept")); // so that its inode is not given again
     if (isReplaced)
@@ -123,13 +112,15 @@ void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording() {
     const Result<QJsonValue> stopped = logger.call("record.stop");
     QCOMPARE(stopped.error().code, int(ErrorCode::InputOutput));
     const QString named = stopped.error().data.toObject().value("path").toString();
-    QVERIFY2(named == path || (isFolderToo && named == folder),
-             qPrintable(named)); // between rename and mkpath
+    const bool isFile = named == path && (!isFolderToo || hasSuccessor);
+    QVERIFY2(isFile || (isFolderToo && named == folder), qPrintable(named)); // between rename and mkpath
     QVERIFY(stopped.error().message.contains(isReplaced ? "another file" : "removed or moved away"));
     QCOMPARE(logger.level("recording"), "error");
     QCOMPARE(logger.item("recording").message, stopped.error().message);
-    QCOMPARE(sidecarOf(folder).value("ended").toString(), "failed");
-    QVERIFY(!sidecarOf(folder).value("complete").toBool());
+    if (!isFolderToo || hasSuccessor) {
+        QCOMPARE(sidecarOf(folder).value("ended").toString(), "failed");
+        QVERIFY(!sidecarOf(folder).value("complete").toBool());
+    }
     QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
     QCOMPARE(logger.level("recording"), "ok");
 }
@@ -145,10 +136,71 @@ void TestRecordingEnds::aFileThatIsRemovedJustBeforeTheStopIsMissed() {
     QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
 }
 
+void TestRecordingEnds::aFileThatIsCutIsMissed_data() {
+    QTest::addColumn<int>("told"); // bytes that the writer says it wrote
+    QTest::newRow("shorter than it was") << 0;
+    QTest::newRow("shorter than what was written") << 11;
+}
+
+void TestRecordingEnds::aFileThatIsCutIsMissed() {
+    QFETCH(int, told);
+    QTemporaryDir root;
+    Logger logger(root.path());
+    const QString path = root.path() + "/a/logger-0001.txt";
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    RecordingState state;
+    state.files.append(QJsonObject{{"name", "logger-0001.txt"}, {"bytes", told}});
+    logger.writer.setState(state);
+    QVERIFY(QFile::resize(path, 5));
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QVERIFY(!stopped);
+    QVERIFY2(stopped.error().message.contains("was cut"), qPrintable(stopped.error().message));
+    QCOMPARE(stopped.error().data.toObject().value("path").toString(), path);
+    QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
+}
+
+void TestRecordingEnds::whatLinksLeadToStays_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<QString>("target");
+    QTest::newRow("draft of the sidecar") << "cut/.logger.json.new"
+                                          << "victim";
+    QTest::newRow("room for the sidecar") << "cut/.logger.reserve"
+                                          << "victim";
+    QTest::newRow("lock") << ".logger.lock"
+                          << "none";
+    QTest::newRow("a recording elsewhere") << "linked"
+                                           << "cut";
+}
+
+/// Beside recordings that are completed, and in the folder of one that begins.
+void TestRecordingEnds::whatLinksLeadToStays() {
+    QFETCH(QString, name);
+    QFETCH(QString, target);
+    QTemporaryDir root, other, recorded;
+    put(other.filePath("victim"), "precious");
+    Logger killed(recorded.path());
+    const QString folder = folderOf(killed.call("record.start", {{"name", "a"}}));
+    const bool isElsewhere = target == "cut";
+    copyUnfinished(folder, isElsewhere ? other.path() : root.path());
+    QFile::remove(root.filePath(name));
+    QVERIFY(QFile::link(other.filePath(target), root.filePath(name)));
+    Logger next(root.path());
+    const bool isCompleted = QTest::qWaitFor([&] { return next.level("recording") == "warn"; }, 2000);
+    QCOMPARE(isCompleted, !isElsewhere);
+    next.call("record.start", {{"name", "cut"}, {"session", "s"}});
+    QCOMPARE(QDir(other.path()).entryList(QDir::AllEntries | QDir::NoDotAndDotDot),
+             QStringList(isElsewhere ? QStringList{"cut", "victim"} : QStringList{"victim"}));
+    QFile victim(other.filePath("victim"));
+    QVERIFY(victim.open(QIODevice::ReadOnly));
+    QCOMPARE(victim.readAll(), QByteArray("precious"));
+    if (isElsewhere)
+        QVERIFY(sidecarOf(other.filePath("cut")).value("ended").isNull());
+}
+
 void TestRecordingEnds::aStopWhileItBeginsEndsIt_data() {
-    QTest::addColumn<bool>("begins");
-    QTest::newRow("begins") << true;
-    QTest::newRow("does not") << false;
+    const Rows<bool> row("begins");
+    row("begins", true);
+    row("does not", false);
 }
 
 void TestRecordingEnds::aStopWhileItBeginsEndsIt() {
@@ -223,12 +275,12 @@ void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {
 }
 
 void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone_data() {
-    QTest::addColumn<QByteArray>("content");
-    QTest::newRow("empty") << QByteArray();
-    QTest::newRow("cut") << QByteArray("{\"format\": \"hermes rec");
-    QTest::newRow("array") << QByteArray("[1]");
-    QTest::newRow("another format") << QByteArray("{\"format\": \"hermes recording 2\"}");
-    QTest::newRow("binary") << QByteArray("\0\xff\xfe", 3);
+    const Rows<QByteArray> row("content");
+    row("empty", QByteArray());
+    row("cut", "{\"format\": \"hermes rec");
+    row("array", "[1]");
+    row("another format", "{\"format\": \"hermes recording 2\"}");
+    row("binary", QByteArray("\0\xff\xfe", 3));
 }
 
 void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone() {
@@ -244,9 +296,7 @@ void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone() {
     QCOMPARE(list.size(), 1);
     QVERIFY(list[0].toObject().value("error").toString().contains(path));
     QVERIFY(!logger.call("record.start", {{"name", "a"}, {"session", "s"}}).ok());
-    QFile file(path);
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QCOMPARE(file.readAll(), content);
+    QCOMPARE(contentOf(path), content);
 }
 
 void TestRecordingEnds::listNamesWhatIsWrongInASidecar() {

@@ -180,22 +180,18 @@ void TestReplyCache::aStopInABatchStopsEachTime() {
 }
 
 void TestReplyCache::whatWasAskedBeforeAStopIsVoid_data() {
-    QTest::addColumn<QJsonValue>("stop");
-    QTest::addColumn<QJsonValue>("id");
-    QTest::addColumn<bool>("isVoid");
-    QTest::newRow("before") << QJsonValue(100) << QJsonValue(99) << true;
-    QTest::newRow("long before") << QJsonValue(10000) << QJsonValue(6000) << true;
-    QTest::newRow("after") << QJsonValue(100) << QJsonValue(101) << false;
-    QTest::newRow("of another program") << QJsonValue(4000000000.0) << QJsonValue(7) << false;
-    QTest::newRow("a text") << QJsonValue(100) << QJsonValue("99") << false;
-    QTest::newRow("the stop has a text") << QJsonValue("100") << QJsonValue(99) << false;
+    const Rows<QJsonValue, QJsonValue, bool> row("stop", "id", "isVoid");
+    row("before", QJsonValue(100), QJsonValue(99), true);
+    row("long before", QJsonValue(10000), QJsonValue(6000), true);
+    row("after", QJsonValue(100), QJsonValue(101), false);
+    row("of another program", QJsonValue(4000000000.0), QJsonValue(7), false);
+    row("a text", QJsonValue(100), QJsonValue("99"), false);
+    row("the stop has a text", QJsonValue("100"), QJsonValue(99), false);
 }
 
 // Its first copy was lost, and the stop has overtaken the repeat.
 void TestReplyCache::whatWasAskedBeforeAStopIsVoid() {
-    QFETCH(QJsonValue, stop);
-    QFETCH(QJsonValue, id);
-    QFETCH(bool, isVoid);
+    FETCH(QJsonValue, stop, QJsonValue, id, bool, isVoid);
     QJsonObject go = makeRequest(0, "go", QJsonObject());
     go["id"] = id;
     QJsonObject halt = makeRequest(0, "halt", QJsonObject());

@@ -23,64 +23,41 @@ private:
 };
 
 void TestSchemaValidator::refused_data() {
-    QTest::addColumn<QString>("schema");
-    QTest::addColumn<QString>("why");
-    QTest::newRow("type") << R"({"type":5})"
-                          << "string";
-    QTest::newRow("inner type") << R"({"properties":{"a":{"type":5}}})"
-                                << "string";
-    QTest::newRow("properties") << R"({"properties":5})"
-                                << "object";
-    QTest::newRow("minimum") << R"({"properties":{"a":{"minimum":"x"}}})"
-                             << "minimum";
-    QTest::newRow("length") << R"({"minLength":1e300})"
-                            << "minLength";
-    QTest::newRow("enum") << R"({"enum":5})"
-                          << "array";
-    QTest::newRow("expression") << R"({"properties":{"a":{"pattern":"("}}})"
-                                << "a: pattern";
-    QTest::newRow("far reference") << R"({"$ref":"http://far/away"})"
-                                   << "$ref";
-    QTest::newRow("circle") << R"({"items":{"anyOf":[{"$ref":"#"}]}})"
-                            << "$ref";
-    QTest::newRow("multiple of nothing") << R"({"properties":{"a":{"multipleOf":0.0}}})"
-                                         << "a: multipleOf";
-    QTest::newRow("unique") << R"({"uniqueItems":true})"
-                            << "uniqueItems";
+    const Rows<QString, QString> row("schema", "why");
+    row("type", R"({"type":5})", "string");
+    row("inner type", R"({"properties":{"a":{"type":5}}})", "string");
+    row("properties", R"({"properties":5})", "object");
+    row("minimum", R"({"properties":{"a":{"minimum":"x"}}})", "minimum");
+    row("length", R"({"minLength":1e300})", "minLength");
+    row("enum", R"({"enum":5})", "array");
+    row("expression", R"({"properties":{"a":{"pattern":"("}}})", "a: pattern");
+    row("far reference", R"({"$ref":"http://far/away"})", "$ref");
+    row("circle", R"({"items":{"anyOf":[{"$ref":"#"}]}})", "$ref");
+    row("multiple of nothing", R"({"properties":{"a":{"multipleOf":0.0}}})", "a: multipleOf");
+    row("unique", R"({"uniqueItems":true})", "uniqueItems");
 }
 
 void TestSchemaValidator::refused() {
-    QFETCH(QString, schema);
-    QFETCH(QString, why);
+    FETCH(QString, schema, QString, why);
     const auto made = SchemaValidator::make(object(schema.toUtf8()));
     QVERIFY(!made);
     QVERIFY2(made.error().message.contains(why), qPrintable(made.error().message));
 }
 
 void TestSchemaValidator::patterns_data() {
-    QTest::addColumn<QString>("pattern");
-    QTest::addColumn<QString>("text");
-    QTest::addColumn<bool>("isRight");
-    QTest::newRow("right") << "^[a-z]{1,3}$"
-                           << "abc" << true;
-    QTest::newRow("wrong") << "^[a-z]{1,3}$"
-                           << "abcd" << false;
-    QTest::newRow("anywhere") << "b"
-                              << "abc" << true;
-    QTest::newRow("ends with a line feed") << "^[a-z]+$"
-                                           << "abc\n"
-                                           << false;
-    QTest::newRow("dollar") << "^[$]\\$$"
-                            << "$$" << true;
-    QTest::newRow("a long text") << "^(.|\\n)*$" << QString(1000000, 'a') << true;
+    const Rows<QString, QString, bool> row("pattern", "text", "isRight");
+    row("right", "^[a-z]{1,3}$", "abc", true);
+    row("wrong", "^[a-z]{1,3}$", "abcd", false);
+    row("anywhere", "b", "abc", true);
+    row("ends with a line feed", "^[a-z]+$", "abc\n", false);
+    row("dollar", "^[$]\\$$", "$$", true);
+    row("a long text", "^(.|\\n)*$", QString(1000000, 'a'), true);
     // Too much to be decided: whoever applies the value decides.
-    QTest::newRow("without end") << "^(a+)+$" << QString(100, 'a') + 'b' << true;
+    row("without end", "^(a+)+$", QString(100, 'a') + 'b', true);
 }
 
 void TestSchemaValidator::patterns() {
-    QFETCH(QString, pattern);
-    QFETCH(QString, text);
-    QFETCH(bool, isRight);
+    FETCH(QString, pattern, QString, text, bool, isRight);
     const auto made = SchemaValidator::make({{"type", "string"}, {"pattern", pattern}});
     QVERIFY(made);
     QCOMPARE(made->check(text).empty(), isRight);

@@ -99,13 +99,12 @@ void TestSerialInterface::carriesEveryByteInOrder() {
 }
 
 void TestSerialInterface::takesItsSettings_data() {
-    QTest::addColumn<QString>("options");
-    QTest::addColumn<int>("speed");
-    QTest::addColumn<int>("flags"); // of termios c_cflag, but for what a terminal always has
-    QTest::newRow("nothing said") << "" << int(B115200) << int(CS8);
-    QTest::newRow("baud") << "?baud=38400" << int(B38400) << int(CS8);
-    QTest::newRow("stop bits") << "?stop_bits=2&baud=9600" << int(B9600) << int(CS8 | CSTOPB);
-    QTest::newRow("hardware flow") << "?flow=hardware" << int(B115200) << int(CS8 | CRTSCTS);
+    const Rows<QString, int, int> row(
+        "options", "speed", "flags"); // flags: of termios c_cflag, but for what a terminal always has
+    row("nothing said", "", int(B115200), int(CS8));
+    row("baud", "?baud=38400", int(B38400), int(CS8));
+    row("stop bits", "?stop_bits=2&baud=9600", int(B9600), int(CS8 | CSTOPB));
+    row("hardware flow", "?flow=hardware", int(B115200), int(CS8 | CRTSCTS));
 }
 
 void TestSerialInterface::takesItsSettings() {
@@ -128,46 +127,34 @@ void TestSerialInterface::takesItsSettings() {
 }
 
 void TestSerialInterface::knowsHowFastItIs_data() {
-    QTest::addColumn<QString>("options");
-    QTest::addColumn<double>("bytesPerSecond");
-    QTest::newRow("usual") << "" << 11520.0;
-    QTest::newRow("baud") << "?baud=9600" << 960.0;
-    QTest::newRow("longer frames") << "?baud=57600&parity=even&stop_bits=2" << 4800.0;
-    QTest::newRow("shorter frames") << "?baud=9600&data_bits=6" << 1200.0;
-    QTest::newRow("slow radio") << "?baud=57600&pace=19200" << 1920.0;
-    QTest::newRow("fast radio") << "?baud=9600&pace=19200" << 960.0;
+    const Rows<QString, double> row("options", "bytesPerSecond");
+    row("usual", "", 11520.0);
+    row("baud", "?baud=9600", 960.0);
+    row("longer frames", "?baud=57600&parity=even&stop_bits=2", 4800.0);
+    row("shorter frames", "?baud=9600&data_bits=6", 1200.0);
+    row("slow radio", "?baud=57600&pace=19200", 1920.0);
+    row("fast radio", "?baud=9600&pace=19200", 960.0);
 }
 
 void TestSerialInterface::knowsHowFastItIs() {
-    QFETCH(QString, options);
-    QFETCH(double, bytesPerSecond);
+    FETCH(QString, options, double, bytesPerSecond);
     QCOMPARE(SerialInterface(urlOf("serial://" + link + options), nullptr).bytesPerSecond(), bytesPerSecond);
 }
 
 void TestSerialInterface::wrongSettingsAreNamed_data() {
-    QTest::addColumn<QString>("options");
-    QTest::addColumn<QString>("message");
-    QTest::newRow("baud text") << "?baud=fast"
-                               << "baud \"fast\" is not a number above 0";
-    QTest::newRow("baud negative") << "?baud=-1"
-                                   << "baud \"-1\"";
-    QTest::newRow("baud zero") << "?baud=0"
-                               << "baud \"0\"";
-    QTest::newRow("pace") << "?pace=0"
-                          << "pace \"0\" is not a number above 0";
-    QTest::newRow("data bits") << "?data_bits=9"
-                               << "data_bits is \"9\", expected one of: 5, 6, 7, 8";
-    QTest::newRow("parity") << "?parity=maybe"
-                            << "parity is \"maybe\", expected one of: none, even, odd";
-    QTest::newRow("stop bits") << "?stop_bits=3"
-                               << "stop_bits is \"3\", expected one of: 1, 2";
-    QTest::newRow("flow") << "?flow=rts"
-                          << "flow is \"rts\", expected one of: none, hardware, software";
+    const Rows<QString, QString> row("options", "message");
+    row("baud text", "?baud=fast", "baud \"fast\" is not a number above 0");
+    row("baud negative", "?baud=-1", "baud \"-1\"");
+    row("baud zero", "?baud=0", "baud \"0\"");
+    row("pace", "?pace=0", "pace \"0\" is not a number above 0");
+    row("data bits", "?data_bits=9", "data_bits is \"9\", expected one of: 5, 6, 7, 8");
+    row("parity", "?parity=maybe", "parity is \"maybe\", expected one of: none, even, odd");
+    row("stop bits", "?stop_bits=3", "stop_bits is \"3\", expected one of: 1, 2");
+    row("flow", "?flow=rts", "flow is \"rts\", expected one of: none, hardware, software");
 }
 
 void TestSerialInterface::wrongSettingsAreNamed() {
-    QFETCH(QString, options);
-    QFETCH(QString, message);
+    FETCH(QString, options, QString, message);
     PtyInterface device(urlOf("pty://" + link), nullptr);
     device.open();
     SerialInterface host(urlOf("serial://" + link + options), nullptr);
@@ -289,9 +276,7 @@ static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseco
     QVERIFY(QDir(system.path()).mkpath("class/tty/ttyUSB7/device"));
     for (const auto &[name, text] : {std::pair("class/tty/ttyUSB7/device/latency_timer", milliseconds),
                                      std::pair("ttyUSB7", QByteArray())}) {
-        QFile file(system.filePath(name));
-        QVERIFY(file.open(QIODevice::WriteOnly));
-        file.write(text);
+        put(system.filePath(name), text);
     }
     QVERIFY(QFile::link(system.filePath("ttyUSB7"), system.filePath("motors")));
 }

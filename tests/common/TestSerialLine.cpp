@@ -5,6 +5,7 @@
 #include "common/client/Client.h"
 #include "tests/support/NoisyLine.h"
 #include "tests/support/Patience.h"
+#include "tests/support/PatientClient.h"
 
 #include <set>
 
@@ -51,11 +52,6 @@ Figures figuresOf(std::vector<double> values) {
     return {at(0.5), at(0.99), at(1)};
 }
 
-unsigned int seedOfRun() {
-    const QByteArray given = qgetenv("HERMES_SEED");
-    return given.isEmpty() ? std::random_device{}() : given.toUInt();
-}
-
 } // namespace
 
 class TestSerialLine : public QObject {
@@ -94,9 +90,8 @@ private:
     }
     void printLink() const;
     void damage() {
-        const unsigned int seed = seedOfRun();
-        qInfo("one byte in %d is damaged, HERMES_SEED=%u", damageOneIn, seed);
-        line->setDamage(damageOneIn, seed);
+        qInfo("one byte in %d is damaged", damageOneIn);
+        line->setDamage(damageOneIn, newSeed());
     }
 
     std::unique_ptr<NoisyLine> line;
@@ -170,19 +165,15 @@ void TestSerialLine::eachCallOnceOnADamagedLine() {
 }
 
 void TestSerialLine::stopDoesNotWaitBehindAMap_data() {
-    QTest::addColumn<bool>("ofDaemon");
-    QTest::addColumn<bool>("ofClient");
-    QTest::addColumn<bool>("isDamaged");
-    QTest::newRow("a large reply") << true << false << false;
-    QTest::newRow("a large request") << false << true << false;
-    QTest::newRow("both") << true << true << false;
-    QTest::newRow("both, damaged") << true << true << true;
+    const Rows<bool, bool, bool> row("ofDaemon", "ofClient", "isDamaged");
+    row("a large reply", true, false, false);
+    row("a large request", false, true, false);
+    row("both", true, true, false);
+    row("both, damaged", true, true, true);
 }
 
 void TestSerialLine::stopDoesNotWaitBehindAMap() {
-    QFETCH(bool, ofDaemon);
-    QFETCH(bool, ofClient);
-    QFETCH(bool, isDamaged);
+    FETCH(bool, ofDaemon, bool, ofClient, bool, isDamaged);
     if (isDamaged)
         damage();
     const int bytes = 1000000, stops = 60;
@@ -402,9 +393,7 @@ void TestSerialLine::aPortThatComesBackIsHeardAgain() {
     QTRY_COMPARE(health()["level"].toString(), QString("error"));
     QVERIFY(health()["message"].toString().contains("the device is gone"));
     adapter = plugIn();
-    Client hopeful;
-    hopeful.connectTo("serial://" + adapter->device(1) + "?baud=115200&protocol=serial");
-    QVERIFY(hopeful.waitConnected());
+    ConnectedClient hopeful("serial://" + adapter->device(1) + "?baud=115200&protocol=serial");
     QVERIFY(hopeful.callAndWait("count", QJsonArray{1}));
     QCOMPARE(health()["level"].toString(), QString("ok"));
 }

@@ -12,24 +12,20 @@ class TestServiceAccount : public QObject {
 
 private Q_SLOTS:
     void knowsItsMembers_data() {
-        QTest::addColumn<uint>("account");
-        QTest::addColumn<uint>("user");
-        QTest::addColumn<bool>("isMember");
+        const Rows<uint, uint, bool> row("account", "user", "isMember");
         const uint daemon = 1, bin = 2, nobody = 65534, none = 4000000000u,
                    person = 1000; // of Debian's base-passwd
-        QTest::newRow("itself") << daemon << daemon << true;
-        QTest::newRow("another service") << daemon << bin << false;
-        QTest::newRow("nobody") << daemon << nobody << false;
-        QTest::newRow("root's group is none") << 0u << 0u << false;
-        QTest::newRow("a person's group is none") << person << person << false;
-        QTest::newRow("nobody is no service") << nobody << nobody << false;
-        QTest::newRow("unknown user") << daemon << none << false;
-        QTest::newRow("unknown account") << 998u << none << false;
+        row("itself", daemon, daemon, true);
+        row("another service", daemon, bin, false);
+        row("nobody", daemon, nobody, false);
+        row("root's group is none", 0u, 0u, false);
+        row("a person's group is none", person, person, false);
+        row("nobody is no service", nobody, nobody, false);
+        row("unknown user", daemon, none, false);
+        row("unknown account", 998u, none, false);
     }
     void knowsItsMembers() {
-        QFETCH(uint, account);
-        QFETCH(uint, user);
-        QFETCH(bool, isMember);
+        FETCH(uint, account, uint, user, bool, isMember);
         if (isMember && !::getpwuid(account))
             QSKIP("this system has no user 1, which Debian has");
         QCOMPARE(ServiceAccount::hasMember(account, user), isMember);

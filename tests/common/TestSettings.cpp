@@ -46,25 +46,23 @@ void TestSettings::init() {
 }
 
 void TestSettings::refusesAllOrNothing_data() {
-    QTest::addColumn<QString>("path");
-    QTest::addColumn<QJsonValue>("value");
-    QTest::newRow("too small") << "motor.radius_m" << QJsonValue(0);
-    QTest::newRow("too large") << "motor.radius_m" << QJsonValue(1.5);
-    QTest::newRow("number as text") << "motor.radius_m" << QJsonValue("0.5");
-    QTest::newRow("not whole") << "motor.ticks" << QJsonValue(1.5);
-    QTest::newRow("not a choice") << "mode" << QJsonValue("other");
-    QTest::newRow("choice of another type") << "mode" << QJsonValue(1);
-    QTest::newRow("number for boolean") << "on" << QJsonValue(1);
-    QTest::newRow("null") << "on" << QJsonValue();
-    QTest::newRow("value for a group") << "motor" << QJsonValue(5);
-    QTest::newRow("element of an array") << "listen.1" << QJsonValue(QJsonArray{"a", 5});
-    QTest::newRow("unknown at the top") << "moter" << QJsonValue(5);
-    QTest::newRow("unknown in a group") << "motor.radius" << QJsonValue(0.5);
+    const Rows<QString, QJsonValue> row("path", "value");
+    row("too small", "motor.radius_m", QJsonValue(0));
+    row("too large", "motor.radius_m", QJsonValue(1.5));
+    row("number as text", "motor.radius_m", QJsonValue("0.5"));
+    row("not whole", "motor.ticks", QJsonValue(1.5));
+    row("not a choice", "mode", QJsonValue("other"));
+    row("choice of another type", "mode", QJsonValue(1));
+    row("number for boolean", "on", QJsonValue(1));
+    row("null", "on", QJsonValue());
+    row("value for a group", "motor", QJsonValue(5));
+    row("element of an array", "listen.1", QJsonValue(QJsonArray{"a", 5}));
+    row("unknown at the top", "moter", QJsonValue(5));
+    row("unknown in a group", "motor.radius", QJsonValue(0.5));
 }
 
 void TestSettings::refusesAllOrNothing() {
-    QFETCH(QString, path);
-    QFETCH(QJsonValue, value);
+    FETCH(QString, path, QJsonValue, value);
     const QJsonObject before = settings->values();
     const QString target = path == "listen.1" ? "listen" : path;
     const QJsonObject good{{"motor", QJsonObject{{"ticks", 5}}}};
@@ -151,17 +149,12 @@ void TestSettings::savesOnlyChangesAndReadsThemBack() {
     QVERIFY(settings->load(file));
     QCOMPARE(settings->text("mode"), QString("file"));
     QCOMPARE(*settings->save(), file); // remembered
-    QFile saved(file);
-    QVERIFY(saved.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(saved.readAll()).object(), (QJsonObject{{"mode", "file"}}));
+    QCOMPARE(QJsonDocument::fromJson(contentOf(file)).object(), (QJsonObject{{"mode", "file"}}));
 }
 
 void TestSettings::readsWhatWindowsWrites() {
-    QFile file(folder.filePath("windows.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("\xef\xbb\xbf{\r\n\"on\": false\r\n}\r\n");
-    file.close();
-    QVERIFY(settings->load(file.fileName()));
+    put(folder.filePath("windows.json"), "\xef\xbb\xbf{\r\n\"on\": false\r\n}\r\n");
+    QVERIFY(settings->load(folder.filePath("windows.json")));
     QVERIFY(!settings->flag("on"));
 }
 
@@ -178,33 +171,26 @@ void TestSettings::insistsOnTheCommandLine() {
 }
 
 void TestSettings::fileErrorsNameFileAndPlace_data() {
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<QString>("says");
-    QTest::newRow("syntax") << QByteArray("{\n  \"on\": true,\n  oops\n}\n") << "line 3";
-    QTest::newRow("cut") << QByteArray("{\n\"on\": tr") << "line 2";
-    QTest::newRow("large number") << QByteArray("{\n\"motor\": {\"ticks\": 1e999}}")
-                                  << "line 2: Number too big to be stored in double";
-    QTest::newRow("repeated key") << QByteArray("{\"on\": true,\n\"on\": false}")
-                                  << "line 2: the key \"on\" occurs twice";
-    QTest::newRow("not an object") << QByteArray("[1]") << "expected a JSON object";
-    QTest::newRow("unknown key") << QByteArray("{\"motor\": {\"raduis\": 1}}") << "motor.raduis is 1";
-    QTest::newRow("bad value") << QByteArray("{\"mode\": \"x\"}")
-                               << "mode is \"x\", expected one of \"live\", \"file\"";
-    QTest::newRow("empty") << QByteArray("") << "it has 0 bytes";
-    QTest::newRow("UTF-16") << QByteArray("\xff\xfe{\0}\0", 6) << "line 1: found UTF-16, expected UTF-8";
-    QTest::newRow("large") << QByteArray((1 << 20) + 1, ' ') << "it has 1048577 bytes";
+    const Rows<QByteArray, QString> row("text", "says");
+    row("syntax", "{\n  \"on\": true,\n  oops\n}\n", "line 3");
+    row("cut", "{\n\"on\": tr", "line 2");
+    row("large number", "{\n\"motor\": {\"ticks\": 1e999}}", "line 2: Number too big to be stored in double");
+    row("repeated key", "{\"on\": true,\n\"on\": false}", "line 2: the key \"on\" occurs twice");
+    row("not an object", "[1]", "expected a JSON object");
+    row("unknown key", "{\"motor\": {\"raduis\": 1}}", "motor.raduis is 1");
+    row("bad value", "{\"mode\": \"x\"}", "mode is \"x\", expected one of \"live\", \"file\"");
+    row("empty", "", "it has 0 bytes");
+    row("UTF-16", QByteArray("\xff\xfe{\0}\0", 6), "line 1: found UTF-16, expected UTF-8");
+    row("large", QByteArray((1 << 20) + 1, ' '), "it has 1048577 bytes");
 }
 
 void TestSettings::fileErrorsNameFileAndPlace() {
-    QFETCH(QByteArray, text);
-    QFETCH(QString, says);
-    QFile file(folder.filePath("bad.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(text);
-    file.close();
-    const auto result = settings->load(file.fileName());
+    FETCH(QByteArray, text, QString, says);
+    const QString file = folder.filePath("bad.json");
+    put(file, text);
+    const auto result = settings->load(file);
     QVERIFY(!result);
-    QVERIFY2(result.error().message.contains(file.fileName()), qPrintable(result.error().message));
+    QVERIFY2(result.error().message.contains(file), qPrintable(result.error().message));
     QVERIFY2(result.error().message.contains(says), qPrintable(result.error().message));
     QVERIFY2(!result.error().message.endsWith('.'), "more may follow in the sentence");
     QCOMPARE(settings->values(), settings->defaults());
@@ -247,8 +233,7 @@ void TestSettings::replacesNoDevice_data() {
 }
 
 void TestSettings::replacesNoDevice() {
-    QFETCH(mode_t, kind);
-    QFETCH(bool, linked);
+    FETCH(mode_t, kind, bool, linked);
     const QTemporaryDir own;
     const QString target = own.filePath("target"), name = linked ? own.filePath("link.json") : target;
     const QByteArray path = QFile::encodeName(target);

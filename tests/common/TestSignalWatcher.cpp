@@ -17,10 +17,10 @@ private Q_SLOTS:
 };
 
 void TestSignalWatcher::namesWhatCame_data() {
-    QTest::addColumn<int>("number");
-    QTest::newRow("SIGINT") << SIGINT;
-    QTest::newRow("SIGTERM") << SIGTERM;
-    QTest::newRow("SIGHUP") << SIGHUP;
+    const Rows<int> row("number");
+    row("SIGINT", SIGINT);
+    row("SIGTERM", SIGTERM);
+    row("SIGHUP", SIGHUP);
 }
 
 void TestSignalWatcher::namesWhatCame() {

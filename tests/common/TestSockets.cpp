@@ -67,9 +67,9 @@ private Q_SLOTS:
     }
 
     void whatComesAfterSignalsIsSeen_data() {
-        QTest::addColumn<int>("most_ms");
-        QTest::newRow("in time") << 60000;
-        QTest::newRow("without a limit") << -1;
+        const Rows<int> row("most_ms");
+        row("in time", 60000);
+        row("without a limit", -1);
     }
     void whatComesAfterSignalsIsSeen() {
         QFETCH(int, most_ms);

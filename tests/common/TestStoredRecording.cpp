@@ -70,12 +70,11 @@ void TestStoredRecording::tellsFilesAndTime() {
 }
 
 void TestStoredRecording::lengths_data() {
-    QTest::addColumn<QJsonObject>("sidecar");
-    QTest::addColumn<double>("length");
-    QTest::newRow("the clock was set meanwhile") << with("end", 5000) << 2.5;
-    QTest::newRow("cut off, without end_mono") << with("end_mono", QJsonValue()) << 2.5;
-    QTest::newRow("ends before it begins") << with("end_mono", 1) << 0.0;
-    QTest::newRow("of no use") << with("end_mono", 1e300) << 1e7;
+    const Rows<QJsonObject, double> row("sidecar", "length");
+    row("the clock was set meanwhile", with("end", 5000), 2.5);
+    row("cut off, without end_mono", with("end_mono", QJsonValue()), 2.5);
+    row("ends before it begins", with("end_mono", 1), 0.0);
+    row("of no use", with("end_mono", 1e300), 1e7);
 }
 
 void TestStoredRecording::lengths() {
@@ -105,8 +104,7 @@ void TestStoredRecording::refusals_data() {
 }
 
 void TestStoredRecording::refusals() {
-    QFETCH(QJsonObject, sidecar);
-    QFETCH(QString, name);
+    FETCH(QJsonObject, sidecar, QString, name);
     const Result<StoredRecording> found = find(sidecar, name);
     const Error error = !found ? found.error() : found->files() ? Error() : found->files().error();
     QTEST(error.code, "code");

@@ -72,19 +72,15 @@ void TestTurns::stepsOfAnOwnerKeepTheirOrder() {
 }
 
 void TestTurns::whoRestedWaitsForNoCrowd_data() {
-    QTest::addColumn<QString>("crowd");
-    QTest::addColumn<int>("number");
-    QTest::addColumn<double>("duration_s");
-    QTest::newRow("steps are wanted again") << "again" << 200 << 50e-6;
-    QTest::newRow("steps add the next ones") << "adds" << 200 << 50e-6;
-    QTest::newRow("long steps add the next ones") << "adds" << 20 << 3e-3;
-    QTest::newRow("steps add newcomers") << "newcomers" << 200 << 50e-6;
+    const Rows<QString, int, double> row("crowd", "number", "duration_s");
+    row("steps are wanted again", "again", 200, 50e-6);
+    row("steps add the next ones", "adds", 200, 50e-6);
+    row("long steps add the next ones", "adds", 20, 3e-3);
+    row("steps add newcomers", "newcomers", 200, 50e-6);
 }
 
 void TestTurns::whoRestedWaitsForNoCrowd() {
-    QFETCH(QString, crowd);
-    QFETCH(int, number);
-    QFETCH(double, duration_s);
+    FETCH(QString, crowd, int, number, double, duration_s);
     std::list<QObject> owners(static_cast<std::size_t>(number));
     int stepsOfCrowd = 0;
     std::function<bool(QObject *)> step = [&](QObject *one) {

@@ -55,6 +55,7 @@ private Q_SLOTS:
     void nameMayBeWrittenWithEscapes();
     void isNeverRefusedForItsForm_data();
     void isNeverRefusedForItsForm();
+    void aFrameOfManyValuesTakesNoMemory();
     void hasAPlaceWhenAllAreTaken();
     void silentClientsGiveWay();
     void refusalIsReadWhateverWasSent();
@@ -148,8 +149,7 @@ void TestUrgent::isNeverRefusedForItsForm_data() {
 }
 
 void TestUrgent::isNeverRefusedForItsForm() {
-    QFETCH(QByteArray, request);
-    QFETCH(QByteArray, taken);
+    FETCH(QByteArray, request, QByteArray, taken);
     RawClient client(address());
     client.send(request);
     QVERIFY(client.message().contains("result"));
@@ -158,6 +158,16 @@ void TestUrgent::isNeverRefusedForItsForm() {
     daemon->taken = {};
     QVERIFY(QJsonDocument::fromJson(client.line()).array()[0].toObject().contains("result"));
     QCOMPARE(daemon->taken, QJsonDocument::fromJson(taken).object());
+}
+
+void TestUrgent::aFrameOfManyValuesTakesNoMemory() {
+    start({});
+    RawClient client(address());
+    client.send('[' + QByteArray("{},").repeated(60000) + "{}]");
+    const QJsonObject error = errorOf(client.message());
+    QVERIFY2(error["message"].toString().endsWith("more than 50000 values"),
+             qPrintable(error["message"].toString()));
+    QVERIFY(client.ask("halt").contains("result"));
 }
 
 void TestUrgent::hasAPlaceWhenAllAreTaken() {

@@ -97,8 +97,7 @@ void TestWorld::refusesBadFiles_data() {
 }
 
 void TestWorld::refusesBadFiles() {
-    QFETCH(QByteArray, text);
-    QFETCH(QByteArray, message);
+    FETCH(QByteArray, text, QByteArray, message);
     QVERIFY(parseWorld(square, "w").ok());
     const auto world = parseWorld(text.toStdString(), "w");
     QVERIFY(!world);
@@ -114,9 +113,9 @@ void TestWorld::saysWhichFileIsMissing() {
 }
 
 void TestWorld::roomsAreClosed_data() {
-    QTest::addColumn<int>("edges");
-    QTest::newRow("cutsquare") << 5;
-    QTest::newRow("oblique") << 19;
+    const Rows<int> row("edges");
+    row("cutsquare", 5);
+    row("oblique", 19);
 }
 
 void TestWorld::roomsAreClosed() { // one polygon, free space inside, every pose in it
@@ -143,20 +142,14 @@ void TestWorld::roomsAreClosed() { // one polygon, free space inside, every pose
 }
 
 void TestWorld::worldsCanBeDriven_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<int>("edges");
-    QTest::addColumn<int>("poses");
-    QTest::addColumn<double>("step");
-    QTest::newRow("pillars") << "pillars" << 4 + 8 * 4 << 39 << 0.67;
-    QTest::newRow("quadratic") << "quadratic" << 3 + 12 + 11 << 25 << 0.56;
-    QTest::newRow("laboratory") << "laboratory" << 96 << 10 << 0.6;
+    const Rows<QString, int, int, double> row("name", "edges", "poses", "step");
+    row("pillars", "pillars", 4 + 8 * 4, 39, 0.67);
+    row("quadratic", "quadratic", 3 + 12 + 11, 25, 0.56);
+    row("laboratory", "laboratory", 96, 10, 0.6);
 }
 
 void TestWorld::worldsCanBeDriven() {
-    QFETCH(QString, name);
-    QFETCH(int, edges);
-    QFETCH(int, poses);
-    QFETCH(double, step);
+    FETCH(QString, name, int, edges, int, poses, double, step);
     const auto world = shipped(name);
     QVERIFY(world.ok());
     QCOMPARE(QString::fromStdString(world->name), name);

@@ -85,4 +85,20 @@ inline QString makeCapture(const QTemporaryDir &folder, int count) {
     return path;
 }
 
+struct MadeCapture {
+    explicit MadeCapture(int count)
+        : path(makeCapture(folder, count)) {}
+
+    QTemporaryDir folder;
+    QString path;
+};
+
+/// A listener to such a capture.
+struct MadeReplay : MadeCapture, LidarListener {
+    using MadeCapture::MadeCapture;
+    Outcome<void> play(double speed, bool loop = false, bool paused = false) {
+        return openPcap(path.toStdString(), speed, loop, paused);
+    }
+};
+
 } // namespace hermes

@@ -66,6 +66,16 @@ protected:
         connectTo(*daemon_);
     }
 
+    void launchReady(const QStringList &settings = {}) {
+        launch(settings);
+        QTRY_VERIFY(state()["ready"].toBool());
+    }
+    /// The client has the control.
+    void launchHeld(const QStringList &settings = {}) {
+        launchReady(settings);
+        call("control.acquire");
+    }
+
     QJsonObject call(const QString &method, const QJsonObject &params = {}) {
         return DaemonClient::call(method, params).toObject();
     }

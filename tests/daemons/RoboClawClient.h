@@ -6,6 +6,21 @@
 
 #include <cmath>
 
+/// Big-endian.
+inline QByteArray number(std::int64_t value, int bytes) {
+    QByteArray text;
+    for (int i = bytes - 1; i >= 0; --i)
+        text += char(value >> 8 * i);
+    return text;
+}
+
+inline std::int64_t integer(const QByteArray &data, int at, int size, bool isSigned = true) {
+    std::int64_t value = 0;
+    for (int i = 0; i < size; ++i)
+        value = value << 8 | std::uint8_t(data[at + i]);
+    return isSigned && value >> (8 * size - 1) ? value - (std::int64_t(1) << 8 * size) : value;
+}
+
 /// A host of emulated controllers, written from the published packet format alone; it shares no code with the
 /// product.
 class RoboClawClient {
@@ -22,12 +37,6 @@ public:
                 crc = (crc << 1) ^ ((crc & 0x8000) ? 0x11021 : 0);
         }
         return std::uint16_t(crc);
-    }
-    static QByteArray number(std::int64_t value, int bytes) {
-        QByteArray text;
-        for (int i = bytes - 1; i >= 0; --i)
-            text += char(value >> 8 * i);
-        return text;
     }
 
     QByteArray send(const QByteArray &bytes, double gap = 0.02) {
@@ -55,12 +64,6 @@ public:
         const QByteArray data = answer.left(answer.size() - 2);
         return answer.right(2) == number(crcOf(asked + data), 2) ? data : QByteArray("wrong CRC");
     }
-    static std::int64_t integer(const QByteArray &data, int at, int size, bool isSigned = true) {
-        std::int64_t value = 0;
-        for (int i = 0; i < size; ++i)
-            value = value << 8 | std::uint8_t(data[at + i]);
-        return isSigned && value >> (8 * size - 1) ? value - (std::int64_t(1) << 8 * size) : value;
-    }
     bool speeds(int address, int m1, int m2, int acceleration) {
         return write(address, 40, number(acceleration, 4) + number(m1, 4) + number(m2, 4));
     }
@@ -80,12 +83,19 @@ inline void pass(hermes::simulator::Drivetrain &drivetrain, double seconds) {
         drivetrain.advance(0.001);
 }
 
-/// Gives all four motors a velocity control that reaches this many counts/s.
-inline void setQpps(RoboClawClient &client, int qpps) {
+/// Gives all four motors a velocity control that reaches 150000 counts/s.
+inline void setQpps(RoboClawClient &client) {
     for (const int address : {0x80, 0x81}) {
         for (const int command : {28, 29})
-            QVERIFY(client.write(address, command,
-                                 RoboClawClient::number(0x4000, 4) + RoboClawClient::number(0x10000, 4) +
-                                     RoboClawClient::number(0x8000, 4) + RoboClawClient::number(qpps, 4)));
+            QVERIFY(
+                client.write(address, command,
+                             number(0x4000, 4) + number(0x10000, 4) + number(0x8000, 4) + number(150000, 4)));
     }
+}
+
+/// A client of a drive train whose motors have that control.
+inline RoboClawClient readyClient(hermes::simulator::Drivetrain &drivetrain) {
+    RoboClawClient client(drivetrain);
+    setQpps(client);
+    return client;
 }

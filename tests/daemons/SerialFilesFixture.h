@@ -3,13 +3,11 @@
 #include "daemons/seriallogger/SerialExport.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialRecorder.h"
+#include "tests/support/FileSizeLimit.h"
 #include "tests/support/Files.h"
 #include "tests/support/Patience.h"
 
 #include <QTemporaryDir>
-
-#include <csignal>
-#include <sys/resource.h>
 
 namespace hermes {
 
@@ -51,30 +49,25 @@ inline Result<QList<SerialLogReader::Piece>> readAll(const QString &base) {
     }
 }
 
-/// No file of this process may become longer while this lives: as on a full disk, without needing one.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t bytes) {
-        std::signal(SIGXFSZ, SIG_IGN);
-        getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limit{bytes, before_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
-
-private:
-    rlimit before_;
-};
-
 /// A folder with the recording of a logger "logger", and its port "a".
 class SerialFilesFixture {
 protected:
     RecordingPlan plan() const { return {folder_->path(), "logger", 0, 0}; }
     QString base() const { return folder_->filePath("logger-a"); }
+    /// A recording of that port has begun; its bytes go through a queue of that size.
+    void begin(std::size_t bytes = 1 << 20) {
+        recorder_.reset(); // it reads from the queue
+        queue_ = std::make_unique<ChunkQueue>(bytes);
+        recorder_ = std::make_unique<SerialRecorder>();
+        recorder_->setPorts({{"a", "u", queue_.get()}});
+        QVERIFY(recorder_->begin(plan()).ok());
+    }
     /// The CSV without its header.
     QList<QByteArray> exported(ExportRows rows);
 
     std::unique_ptr<QTemporaryDir> folder_;
+    std::unique_ptr<ChunkQueue> queue_;
+    std::unique_ptr<SerialRecorder> recorder_;
 };
 
 inline QList<QByteArray> SerialFilesFixture::exported(ExportRows rows) {

@@ -84,18 +84,16 @@ void TestBatteryGauge::nothingIsKnownBeforeARest() {
 void TestBatteryGauge::whatIsMissingIsNamed_data() {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
                      inf = std::numeric_limits<double>::infinity();
-    QTest::addColumn<double>("voltage");
-    QTest::addColumn<double>("motors_a");
-    QTest::newRow("no voltage") << 0.0 << 1.0;
-    QTest::newRow("NaN") << nan << 1.0;
-    QTest::newRow("infinite") << inf << 1.0;
-    QTest::newRow("current NaN") << 24.0 << nan;
-    QTest::newRow("current infinite") << 24.0 << inf;
+    const Rows<double, double> row("voltage", "motors_a");
+    row("no voltage", 0.0, 1.0);
+    row("NaN", nan, 1.0);
+    row("infinite", inf, 1.0);
+    row("current NaN", 24.0, nan);
+    row("current infinite", 24.0, inf);
 }
 
 void TestBatteryGauge::whatIsMissingIsNamed() {
-    QFETCH(double, voltage);
-    QFETCH(double, motors_a);
+    FETCH(double, voltage, double, motors_a);
     pass(10, 24.4, 0);
     QVERIFY(state().charge);
     pass(1, voltage, motors_a);
@@ -110,26 +108,19 @@ void TestBatteryGauge::whatIsMissingIsNamed() {
 }
 
 void TestBatteryGauge::voltagesThatCannotBeTrueGiveNoCharge_data() {
-    QTest::addColumn<double>("first");
-    QTest::addColumn<double>("second");
-    QTest::addColumn<QString>("reason");
+    const Rows<double, double, QString> row("first", "second", "reason");
     const QString impossible = ": expected more than 0 V, at most 34 V",
                   differ = ": expected at most 1 V between them";
-    QTest::newRow("second above") << 23.4 << 65.5
-                                  << "controller 1 tells 23.4 V, controller 2 65.5 V" + impossible;
-    QTest::newRow("first above") << 34.1 << 24.0
-                                 << "controller 1 tells 34.1 V, controller 2 24 V" + impossible;
-    QTest::newRow("both above") << 65.5 << 65.5
-                                << "controller 1 tells 65.5 V, controller 2 65.5 V" + impossible;
-    QTest::newRow("one zero") << 24.0 << 0.0 << "controller 1 tells 24 V, controller 2 0 V" + impossible;
-    QTest::newRow("they differ") << 24.5 << 23.4 << "controller 1 tells 24.5 V, controller 2 23.4 V" + differ;
-    QTest::newRow("they differ far") << 24.0 << 34.0 << "controller 1 tells 24 V, controller 2 34 V" + differ;
+    row("second above", 23.4, 65.5, "controller 1 tells 23.4 V, controller 2 65.5 V" + impossible);
+    row("first above", 34.1, 24.0, "controller 1 tells 34.1 V, controller 2 24 V" + impossible);
+    row("both above", 65.5, 65.5, "controller 1 tells 65.5 V, controller 2 65.5 V" + impossible);
+    row("one zero", 24.0, 0.0, "controller 1 tells 24 V, controller 2 0 V" + impossible);
+    row("they differ", 24.5, 23.4, "controller 1 tells 24.5 V, controller 2 23.4 V" + differ);
+    row("they differ far", 24.0, 34.0, "controller 1 tells 24 V, controller 2 34 V" + differ);
 }
 
 void TestBatteryGauge::voltagesThatCannotBeTrueGiveNoCharge() {
-    QFETCH(double, first);
-    QFETCH(double, second);
-    QFETCH(QString, reason);
+    FETCH(double, first, double, second, QString, reason);
     restAt(first, second, 10); // from the start
     QCOMPARE(state().reason, reason);
     QVERIFY(!state().charge && !state().left_s);

@@ -152,9 +152,7 @@ void TestControllerStops::stopsGoBeforeAllElse() {
 
 void TestControllerStops::whoIsNotHeardIsStoppedInSilence_data() {
     using Passes = decltype(ControllerBench::passes);
-    QTest::addColumn<Passes>("passes");
-    QTest::addColumn<double>("latency");
-    QTest::addColumn<double>("timeout_s");
+    const Rows<Passes, double, double> row("passes", "latency", "timeout_s");
     const Passes nothing = [](const auto &, const auto &) { return std::nullopt; };
     const Passes damaged = [](const auto &, const auto &bytes) {
         ControllerBench::Bytes wrong;
@@ -164,17 +162,15 @@ void TestControllerStops::whoIsNotHeardIsStoppedInSilence_data() {
     };
     for (const double timeout_s : {0.2, 0.5}) {
         const QByteArray name = ", " + QByteArray::number(timeout_s);
-        QTest::newRow("mute" + name) << nothing << 0.0 << timeout_s;
-        QTest::newRow("damaged" + name) << damaged << 0.0 << timeout_s;
-        QTest::newRow("late" + name) << Passes([](const auto &, const auto &b) { return std::optional(b); })
-                                     << 0.1 << timeout_s;
+        row("mute" + name, nothing, 0.0, timeout_s);
+        row("damaged" + name, damaged, 0.0, timeout_s);
+        row(
+            "late" + name, [](const auto &, const auto &b) { return std::optional(b); }, 0.1, timeout_s);
     }
 }
 
 void TestControllerStops::whoIsNotHeardIsStoppedInSilence() {
-    QFETCH(decltype(ControllerBench::passes), passes);
-    QFETCH(double, latency);
-    QFETCH(double, timeout_s);
+    FETCH(decltype(ControllerBench::passes), passes, double, latency, double, timeout_s);
     ControllerBench bench(2, timeout_s);
     driveOff(bench);
     bench.passes = passes;
@@ -264,8 +260,7 @@ void TestControllerStops::whoIsStoppedOnASlowLineHasItsTurns_data() {
 
 // The other one, which answers, takes all the time that a slow line has.
 void TestControllerStops::whoIsStoppedOnASlowLineHasItsTurns() {
-    QFETCH(double, latency);
-    QFETCH(double, loss);
+    FETCH(double, latency, double, loss);
     ControllerBench bench;
     bench.latency = latency;
     driveOff(bench);
@@ -323,19 +318,15 @@ void TestControllerStops::whoIsBarredIsLeftInSilence() {
 }
 
 void TestControllerStops::lateAnswersSlowTheCycleDown_data() {
-    QTest::addColumn<int>("controllers");
-    QTest::addColumn<double>("latency");
-    QTest::addColumn<double>("least");
-    QTest::newRow("10 ms, two") << 2 << 0.010 << 15.0;
-    QTest::newRow("16 ms, two") << 2 << 0.016 << 10.0;
-    QTest::newRow("16 ms, one") << 1 << 0.016 << 17.0;
-    QTest::newRow("30 ms, one") << 1 << 0.030 << 10.0;
+    const Rows<int, double, double> row("controllers", "latency", "least");
+    row("10 ms, two", 2, 0.010, 15.0);
+    row("16 ms, two", 2, 0.016, 10.0);
+    row("16 ms, one", 1, 0.016, 17.0);
+    row("30 ms, one", 1, 0.030, 10.0);
 }
 
 void TestControllerStops::lateAnswersSlowTheCycleDown() {
-    QFETCH(int, controllers);
-    QFETCH(double, latency);
-    QFETCH(double, least);
+    FETCH(int, controllers, double, latency, double, least);
     ControllerBench bench(controllers);
     bench.latency = latency;
     QVERIFY2(bench.runUntil([&] { return bench.areReady(); }, 5), qPrintable(bench.controller(0).error()));
@@ -377,13 +368,13 @@ QString TestControllerStops::rowOf(Command command) {
 }
 
 void TestControllerStops::readyMeansThatEverythingWasRead_data() {
-    QTest::addColumn<Command>("missing");
+    const Rows<Command> row("missing");
     for (const Command command :
          {Command::ReadVersion, Command::SetSerialTimeout, Command::ReadSerialTimeout,
           Command::SetVelocityPidM1, Command::ReadVelocityPidM2, Command::ReadEncoders, Command::ReadStatus,
           Command::ReadCurrents, Command::ReadMainBattery, Command::ReadLogicBattery,
           Command::ReadTemperature})
-        QTest::newRow(qPrintable(rowOf(command))) << command;
+        row(qPrintable(rowOf(command)), command);
 }
 
 void TestControllerStops::readyMeansThatEverythingWasRead() {
@@ -445,17 +436,15 @@ void TestControllerStops::dutiesThatAreToldNoMoreAreForgotten() {
 }
 
 void TestControllerStops::whatIsAnsweredNoMoreIsNamed_data() {
-    QTest::addColumn<Command>("missing");
-    QTest::addColumn<double>("after_s");
+    const Rows<Command, double> row("missing", "after_s");
     for (const Command command : {Command::SpeedAccel, Command::ReadEncoders})
-        QTest::newRow(qPrintable(rowOf(command))) << command << 0.35;
+        row(qPrintable(rowOf(command)), command, 0.35);
     for (const Command command : {Command::ReadStatus, Command::ReadTemperature, Command::ReadSerialTimeout})
-        QTest::newRow(qPrintable(rowOf(command))) << command << 3.5;
+        row(qPrintable(rowOf(command)), command, 3.5);
 }
 
 void TestControllerStops::whatIsAnsweredNoMoreIsNamed() {
-    QFETCH(Command, missing);
-    QFETCH(double, after_s);
+    FETCH(Command, missing, double, after_s);
     ControllerBench bench;
     driveOff(bench);
     bench.passes = [=](const auto &packet, const auto &bytes) {

@@ -96,27 +96,22 @@ void TestDrive::drivesWithTheLimitsOfAcceleration() {
 }
 
 void TestDrive::refusesBadCommands_data() {
-    QTest::addColumn<double>("vx");
-    QTest::addColumn<double>("omega");
-    QTest::addColumn<int>("code");
-    QTest::addColumn<QString>("text");
+    const Rows<double, double, int, QString> row("vx", "omega", "code", "text");
     const double inf = std::numeric_limits<double>::infinity();
-    QTest::newRow("too fast") << 1.5 << 0.0 << int(ErrorCode::OverLimit)
-                              << "vx is 1.5, expected a number from -1 to 1 m/s";
-    QTest::newRow("too fast back") << -1.5 << 0.0 << int(ErrorCode::OverLimit)
-                                   << "vx is -1.5, expected a number from -1 to 1 m/s";
-    QTest::newRow("both") << 1.5 << 9.0 << int(ErrorCode::OverLimit)
-                          << "vx is 1.5, expected a number from -1 to 1 m/s; omega is 9, expected a number "
-                             "from -1.5 to 1.5 rad/s";
-    QTest::newRow("not a number") << notANumber << 0.0 << int(ErrorCode::InvalidParams)
-                                  << "vx is nan, expected a number from -1 to 1 m/s";
-    QTest::newRow("infinite") << 0.0 << -inf << int(ErrorCode::InvalidParams)
-                              << "omega is -inf, expected a number from -1.5 to 1.5 rad/s";
+    row("too fast", 1.5, 0.0, int(ErrorCode::OverLimit), "vx is 1.5, expected a number from -1 to 1 m/s");
+    row("too fast back", -1.5, 0.0, int(ErrorCode::OverLimit),
+        "vx is -1.5, expected a number from -1 to 1 m/s");
+    row("both", 1.5, 9.0, int(ErrorCode::OverLimit),
+        "vx is 1.5, expected a number from -1 to 1 m/s; omega is 9, expected a number "
+        "from -1.5 to 1.5 rad/s");
+    row("not a number", notANumber, 0.0, int(ErrorCode::InvalidParams),
+        "vx is nan, expected a number from -1 to 1 m/s");
+    row("infinite", 0.0, -inf, int(ErrorCode::InvalidParams),
+        "omega is -inf, expected a number from -1.5 to 1.5 rad/s");
 }
 
 void TestDrive::refusesBadCommands() {
-    QFETCH(double, vx);
-    QFETCH(double, omega);
+    FETCH(double, vx, double, omega);
     QVERIFY(drive_->acquire(anna, "anna", 1, 0).ok());
     const Error error = refusal(drive_->driveTwist(anna, {vx, 0, omega}, 0, 0));
     QTEST(error.code, "code");
@@ -194,16 +189,16 @@ void TestDrive::motionRenewsTheLease() {
 }
 
 void TestDrive::stopsAtOnce_data() {
-    QTest::addColumn<std::function<void(Drive &)>>("event");
+    const Rows<std::function<void(Drive &)>> row("event");
     using Event = std::function<void(Drive &)>;
-    QTest::newRow("motor.stop") << Event([](Drive &d) { d.stop(anna, "anna"); });
-    QTest::newRow("motor.stop of another") << Event([](Drive &d) { d.stop(bert, "bert"); });
-    QTest::newRow("motor.estop") << Event([](Drive &d) { d.emergencyStop(bert, "bert", 1); });
-    QTest::newRow("client gone") << Event([](Drive &d) { d.clientGone(anna); });
-    QTest::newRow("control.release") << Event([](Drive &d) { d.release(anna); });
-    QTest::newRow("fault") << Event([](Drive &d) { d.fault("battery", "low"); });
-    QTest::newRow("controllers lost") << Event([](Drive &d) { d.setNotReady("no answer"); });
-    QTest::newRow("gap") << Event([](Drive &d) { d.stoodStill("stood still for 3 s"); });
+    row("motor.stop", Event([](Drive &d) { d.stop(anna, "anna"); }));
+    row("motor.stop of another", Event([](Drive &d) { d.stop(bert, "bert"); }));
+    row("motor.estop", Event([](Drive &d) { d.emergencyStop(bert, "bert", 1); }));
+    row("client gone", Event([](Drive &d) { d.clientGone(anna); }));
+    row("control.release", Event([](Drive &d) { d.release(anna); }));
+    row("fault", Event([](Drive &d) { d.fault("battery", "low"); }));
+    row("controllers lost", Event([](Drive &d) { d.setNotReady("no answer"); }));
+    row("gap", Event([](Drive &d) { d.stoodStill("stood still for 3 s"); }));
 }
 
 void TestDrive::stopsAtOnce() {
@@ -353,25 +348,22 @@ static std::optional<double> faultAfter(EncoderMonitor &monitor, At at, double s
 }
 
 void TestDrive::encoderMismatch_data() {
-    QTest::addColumn<double>("commanded");
-    QTest::addColumn<double>("measured");
-    QTest::addColumn<int>("expected");
-    QTest::newRow("follows") << 5.0 << 4.5 << int(Mismatch::None);
-    QTest::newRow("both stand") << 0.0 << 0.0 << int(Mismatch::None);
-    QTest::newRow("commanded but not moving") << 5.0 << 0.1 << int(Mismatch::StandsStill);
-    QTest::newRow("commanded backwards but not moving") << -5.0 << 0.0 << int(Mismatch::StandsStill);
-    QTest::newRow("moving but not commanded") << 0.0 << -0.3 << int(Mismatch::MovesUncommanded);
-    QTest::newRow("runs away") << 2.0 << -6.0 << int(Mismatch::MovesBackwards);
-    QTest::newRow("too slow to judge") << 0.4 << 0.0 << int(Mismatch::None);
-    QTest::newRow("against a slow command") << 0.3 << -9.9 << int(Mismatch::MovesBackwards);
-    QTest::newRow("far faster than a slow command") << 0.3 << 9.9 << int(Mismatch::MovesTooFast);
-    QTest::newRow("brakes") << 5.0 << 10.0 << int(Mismatch::None);
-    QTest::newRow("no number") << 0.0 << notANumber << int(Mismatch::MovesUncommanded);
+    const Rows<double, double, int> row("commanded", "measured", "expected");
+    row("follows", 5.0, 4.5, int(Mismatch::None));
+    row("both stand", 0.0, 0.0, int(Mismatch::None));
+    row("commanded but not moving", 5.0, 0.1, int(Mismatch::StandsStill));
+    row("commanded backwards but not moving", -5.0, 0.0, int(Mismatch::StandsStill));
+    row("moving but not commanded", 0.0, -0.3, int(Mismatch::MovesUncommanded));
+    row("runs away", 2.0, -6.0, int(Mismatch::MovesBackwards));
+    row("too slow to judge", 0.4, 0.0, int(Mismatch::None));
+    row("against a slow command", 0.3, -9.9, int(Mismatch::MovesBackwards));
+    row("far faster than a slow command", 0.3, 9.9, int(Mismatch::MovesTooFast));
+    row("brakes", 5.0, 10.0, int(Mismatch::None));
+    row("no number", 0.0, notANumber, int(Mismatch::MovesUncommanded));
 }
 
 void TestDrive::encoderMismatch() {
-    QFETCH(double, commanded);
-    QFETCH(double, measured);
+    FETCH(double, commanded, double, measured);
     EncoderMonitor monitor;
     Mismatch found = Mismatch::None;
     for (int i = 0; i <= 30; ++i)
@@ -396,10 +388,8 @@ void TestDrive::encoderMismatchNeedsTime() {
 // Whatever is commanded meanwhile, the time of what no command explains adds up.
 void TestDrive::encoderMismatchAddsUp_data() {
     using Told = std::function<double(double)>;
-    using Measured = std::function<double(double, double)>; // time, told
-    QTest::addColumn<Told>("told");
-    QTest::addColumn<Measured>("measured");
-    QTest::addColumn<double>("latest"); // 0: no fault at all
+    using Measured = std::function<double(double, double)>;               // time, told
+    const Rows<Told, Measured, double> row("told", "measured", "latest"); // latest: 0: no fault at all
     const auto taps = [](double on, double off, double speed) {
         return Told([=](double t) { return std::fmod(t, on + off) < on ? speed : 0; });
     };
@@ -413,23 +403,21 @@ void TestDrive::encoderMismatchAddsUp_data() {
             return speed += std::clamp(told - speed, -step, step);
         });
     };
-    QTest::newRow("backward, to and fro") << toAndFro << runsAway << 0.7;
-    QTest::newRow("backward, tapped") << taps(0.4, 0.4, 2) << runsAway << 0.7;
-    QTest::newRow("backward, tapped fast") << taps(0.06, 0.06, 2) << runsAway << 0.7;
-    QTest::newRow("stands, tapped") << taps(0.4, 0.4, 2) << stands << 1.3;
-    QTest::newRow("stands, to and fro") << toAndFro << stands << 0.8;
-    QTest::newRow("stands, tapped seldom") << taps(0.3, 2, 2) << stands << 5.0;
-    QTest::newRow("follows, to and fro") << toAndFro << follows() << 0.0;
-    QTest::newRow("follows, tapped") << taps(0.1, 0.1, 5) << follows() << 0.0;
-    QTest::newRow("follows, full speed and stops") << taps(1, 1, 20) << follows() << 0.0;
+    row("backward, to and fro", toAndFro, runsAway, 0.7);
+    row("backward, tapped", taps(0.4, 0.4, 2), runsAway, 0.7);
+    row("backward, tapped fast", taps(0.06, 0.06, 2), runsAway, 0.7);
+    row("stands, tapped", taps(0.4, 0.4, 2), stands, 1.3);
+    row("stands, to and fro", toAndFro, stands, 0.8);
+    row("stands, tapped seldom", taps(0.3, 2, 2), stands, 5.0);
+    row("follows, to and fro", toAndFro, follows(), 0.0);
+    row("follows, tapped", taps(0.1, 0.1, 5), follows(), 0.0);
+    row("follows, full speed and stops", taps(1, 1, 20), follows(), 0.0);
 }
 
 void TestDrive::encoderMismatchAddsUp() {
     using Told = std::function<double(double)>;
     using Measured = std::function<double(double, double)>;
-    QFETCH(Told, told);
-    QFETCH(Measured, measured);
-    QFETCH(double, latest);
+    FETCH(Told, told, Measured, measured, double, latest);
     EncoderMonitor monitor;
     const auto after = faultAfter(
         monitor, [&](double t) { return std::pair(told(t), measured(t, told(t))); }, 20);

@@ -1,15 +1,14 @@
 // A drive is written down and read again: whole, cut, damaged, hostile; disks that are full or gone.
 #include "JournalBytes.h"
 #include "daemons/scanmatcher/DriveJournal.h"
+#include "tests/support/FileSizeLimit.h"
 #include "tests/vectorlib/RingBuilding.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
 
-#include <csignal>
 #include <malloc.h>
 #include <set>
-#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;
@@ -20,11 +19,6 @@ using vectorlib::TrackedBy;
 using vectorlib::Transformation2D;
 
 namespace {
-
-QByteArray contentOf(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
 
 QString difference(const MappedDrive &a, const MappedDrive &b) {
     const vectorlib::LoopCloser &x = a.loops, &y = b.loops;
@@ -314,19 +308,13 @@ void TestDriveJournal::aFullDiskIsToldAndMadeUpFor() {
     DriveJournal journal(folder->path(), "drive.journal");
     journal.finish(memory, trust);
     const qint64 before = journal.state().bytes;
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old{};
-    ::getrlimit(RLIMIT_FSIZE, &old);
-    rlimit small = old;
-    small.rlim_cur = rlim_t(before + 1000);
-    ::setrlimit(RLIMIT_FSIZE, &small);
-    const auto release = qScopeGuard([&] { ::setrlimit(RLIMIT_FSIZE, &old); });
+    std::optional<FileSizeLimit> disk(rlim_t(before + 1000));
     drive(memory, 100, 200);
     journal.finish(memory, trust);
     QVERIFY2(journal.state().fault.contains("cannot be written"), qPrintable(journal.state().fault));
     QCOMPARE(qint64(contentOf(journal.state().path).size()), before); // no half block
     QCOMPARE(journal.state().scans, quint64(100));
-    ::setrlimit(RLIMIT_FSIZE, &old);
+    disk.reset();
     journal.finish(memory, trust);
     QCOMPARE(journal.state().fault, QString());
     QCOMPARE(difference(memory, read().drive), QString());

@@ -37,9 +37,9 @@ void TestEmulatedFaults::init() {
 }
 
 void TestEmulatedFaults::driveOff() {
-    setQpps(*client_, 150000);
+    setQpps(*client_);
     for (const int address : {0x80, 0x81}) {
-        QVERIFY(client_->write(address, 14, RoboClawClient::number(2, 1)));
+        QVERIFY(client_->write(address, 14, number(2, 1)));
         QVERIFY(client_->speeds(address, 20000, 20000, 1000000));
     }
     passTalking(0.1, 0x81);
@@ -82,7 +82,7 @@ void TestEmulatedFaults::latchedControllerKeepsItsSetPoint() {
     driveOff();
     faults().latched = true;
     QVERIFY(client_->speeds(0x80, 0, 0, 1000000));
-    QVERIFY(client_->write(0x80, 34, RoboClawClient::number(0, 4)));
+    QVERIFY(client_->write(0x80, 34, number(0, 4)));
     passTalking(0.5, 0x80);
     QVERIFY(speed(0) > 19000);
     pass(*robot_, 0.3); // nobody talks
@@ -112,16 +112,16 @@ void TestEmulatedFaults::echoComesBeforeTheAnswer() {
 
 void TestEmulatedFaults::brownoutForgetsEverything() {
     driveOff();
-    client_->write(0x80, 253, RoboClawClient::number(0x05ABCD, 3));
+    client_->write(0x80, 253, number(0x05ABCD, 3));
     robot_->controller(0).restart(0.3);
     QCOMPARE(client_->read(0x80, 24), QByteArray("silent"));
     passTalking(0.2, 0x81);
     QCOMPARE(client_->read(0x80, 24), QByteArray("silent"));
     passTalking(0.15, 0x81);
-    QCOMPARE(client_->read(0x80, 15), RoboClawClient::number(0, 1));
-    QCOMPARE(client_->read(0x80, 55).right(4), RoboClawClient::number(44000, 4));
-    QCOMPARE(client_->read(0x80, 252, RoboClawClient::number(5, 1)), RoboClawClient::number(0xABCD, 2));
-    QCOMPARE(client_->read(0x81, 15), RoboClawClient::number(2, 1));
+    QCOMPARE(client_->read(0x80, 15), number(0, 1));
+    QCOMPARE(client_->read(0x80, 55).right(4), number(44000, 4));
+    QCOMPARE(client_->read(0x80, 252, number(5, 1)), number(0xABCD, 2));
+    QCOMPARE(client_->read(0x81, 15), number(2, 1));
     QVERIFY(robot_->controller(0).channel(0).duty() == 0 && speed(1) > 19000);
     QVERIFY(std::abs(client_->count(0x80, 0)) < 10000); // counted anew while it rolls out
 }
@@ -161,14 +161,14 @@ void TestEmulatedFaults::encoderJumps() {
 
 void TestEmulatedFaults::encoderRunsBackward() {
     robot_->wheel(0).setEncoderBackward(true);
-    QVERIFY(client_->write(0x80, 32, RoboClawClient::number(8192, 2)));
+    QVERIFY(client_->write(0x80, 32, number(8192, 2)));
     passTalking(0.3, 0x80);
     QVERIFY(speed(0) > 30000 && client_->count(0x80, 0) < -5000);
-    QVERIFY(RoboClawClient::integer(client_->read(0x80, 18), 0, 4) < -30000);
-    QVERIFY(client_->write(0x80, 32, RoboClawClient::number(0, 2)));
+    QVERIFY(integer(client_->read(0x80, 18), 0, 4) < -30000);
+    QVERIFY(client_->write(0x80, 32, number(0, 2)));
     passTalking(0.5, 0x80);
     QVERIFY(speed(0) == 0);
-    setQpps(*client_, 150000);
+    setQpps(*client_);
     QVERIFY(client_->speeds(0x80, 20000, 0, 1000000)); // the velocity control pushes ever more
     passTalking(1, 0x80);
     QVERIFY(speed(0) > 100000);

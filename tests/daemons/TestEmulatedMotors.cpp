@@ -28,8 +28,7 @@ private Q_SLOTS:
 
 void TestEmulatedMotors::speedFollowsTheRamp() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     QVERIFY(client.speeds(0x80, 40000, -20000, 40000));
     pass(drivetrain, 0.5);
     const double half = drivetrain.controller(0).channel(0).speed();
@@ -38,10 +37,10 @@ void TestEmulatedMotors::speedFollowsTheRamp() {
     QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - 40000) < 400);
     QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + 20000) < 200);
     const QByteArray speed = client.read(0x80, 19);
-    QVERIFY(std::abs(RoboClawClient::integer(speed, 0, 4) + 20000) < 200);
+    QVERIFY(std::abs(integer(speed, 0, 4) + 20000) < 200);
     QCOMPARE(int(speed[4]), 1);
     QVERIFY(std::abs(client.count(0x80, 0) - 60000) < 3000); // 0.5 v t + v t
-    QVERIFY(client.write(0x80, 37, RoboClawClient::number(500000, 4) + RoboClawClient::number(0, 4)));
+    QVERIFY(client.write(0x80, 37, number(500000, 4) + number(0, 4)));
     pass(drivetrain, 1);
     QVERIFY(drivetrain.controller(0).channel(0).speed() < 151000); // QPPS
     QCOMPARE(drivetrain.controller(0).channel(1).speed(), 0.0);
@@ -49,8 +48,7 @@ void TestEmulatedMotors::speedFollowsTheRamp() {
 
 void TestEmulatedMotors::emergencyDecelerationStopsInTime() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     const int fast = 60479, slowing = 241916; // 1 m/s and 4 m/s^2 with wheels of 0.1 m
     QVERIFY(client.speeds(0x80, fast, fast, slowing));
     QVERIFY(client.speeds(0x81, fast, fast, slowing));
@@ -66,26 +64,23 @@ void TestEmulatedMotors::emergencyDecelerationStopsInTime() {
 void TestEmulatedMotors::dutyTurnsTheMotor() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    QVERIFY(client.write(0x80, 34, RoboClawClient::number(16384, 2) + RoboClawClient::number(-16384, 2)));
+    QVERIFY(client.write(0x80, 34, number(16384, 2) + number(-16384, 2)));
     pass(drivetrain, 0.5);
     const double expected = 80000 * drivetrain.battery().voltage() / 24;
     QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - expected) < 100);
     QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + expected) < 100);
-    QCOMPARE(client.read(0x80, 48), RoboClawClient::number(16384, 2) + RoboClawClient::number(-16384, 2));
-    QVERIFY(client.write(0x80, 6, RoboClawClient::number(64, 1)));
-    QVERIFY(client.write(0x80, 4, RoboClawClient::number(0, 1)));
+    QCOMPARE(client.read(0x80, 48), number(16384, 2) + number(-16384, 2));
+    QVERIFY(client.write(0x80, 6, number(64, 1)));
+    QVERIFY(client.write(0x80, 4, number(0, 1)));
     pass(drivetrain, 0.5);
     QVERIFY(!drivetrain.isMoving());
 }
 
 void TestEmulatedMotors::distancesAreDriven() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     const auto move = [&](int speed, int distance, int buffer) {
-        return client.write(0x80, 41,
-                            RoboClawClient::number(speed, 4) + RoboClawClient::number(distance, 4) +
-                                RoboClawClient::number(buffer, 1));
+        return client.write(0x80, 41, number(speed, 4) + number(distance, 4) + number(buffer, 1));
     };
     QVERIFY(move(20000, 10000, 0));
     QVERIFY(move(-10000, 5000, 0));
@@ -110,12 +105,10 @@ void TestEmulatedMotors::mixedDriveNeedsBothValues() {
     const auto duties = [&] {
         pass(drivetrain, 0.01);
         const QByteArray pwm = client.read(0x80, 48);
-        return QPair<int, int>(int(std::lround(RoboClawClient::integer(pwm, 0, 2) / 327.67)),
-                               int(std::lround(RoboClawClient::integer(pwm, 2, 2) / 327.67)));
+        return QPair<int, int>(int(std::lround(integer(pwm, 0, 2) / 327.67)),
+                               int(std::lround(integer(pwm, 2, 2) / 327.67)));
     };
-    const auto set = [&](int command, int value) {
-        return client.write(0x80, command, RoboClawClient::number(value, 1));
-    };
+    const auto set = [&](int command, int value) { return client.write(0x80, command, number(value, 1)); };
     QVERIFY(set(8, 127)); // forward, and no turn yet
     QCOMPARE(duties(), qMakePair(0, 0));
     QVERIFY(set(10, 0));
@@ -129,7 +122,7 @@ void TestEmulatedMotors::mixedDriveNeedsBothValues() {
     QCOMPARE(duties(), qMakePair(100, -100));
     QVERIFY(set(12, 0)); // and full backward: no duty goes beyond what there is
     QCOMPARE(duties(), qMakePair(0, -100));
-    QVERIFY(client.write(0x80, 34, RoboClawClient::number(0, 4)));
+    QVERIFY(client.write(0x80, 34, number(0, 4)));
     QVERIFY(set(13, 64)); // after another command both must come again
     QCOMPARE(duties(), qMakePair(0, 0));
     QVERIFY(set(12, 127));
@@ -138,24 +131,21 @@ void TestEmulatedMotors::mixedDriveNeedsBothValues() {
 
 void TestEmulatedMotors::positionsAreReached() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
-    QVERIFY(client.write(0x80, 22, RoboClawClient::number(5000, 4)));
+    RoboClawClient client = readyClient(drivetrain);
+    QVERIFY(client.write(0x80, 22, number(5000, 4)));
     const auto way = [](int acceleration, int speed, int deceleration, int position) {
-        return RoboClawClient::number(acceleration, 4) + RoboClawClient::number(speed, 4) +
-               RoboClawClient::number(deceleration, 4) + RoboClawClient::number(position, 4);
+        return number(acceleration, 4) + number(speed, 4) + number(deceleration, 4) + number(position, 4);
     };
     // Forward and back from where the counts are, whatever the sign of the speed.
     QVERIFY(client.write(0x80, 67,
-                         way(40000, 20000, 20000, 45000) + way(40000, 20000, 20000, -30000) +
-                             RoboClawClient::number(1, 1)));
+                         way(40000, 20000, 20000, 45000) + way(40000, 20000, 20000, -30000) + number(1, 1)));
     QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0000"));
     pass(drivetrain, 1);
     QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - 20000) < 300);
     QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + 20000) < 300);
     std::int64_t farthest = 0;
     double slowsSince = 0, seconds = 1;
-    while (client.read(0x80, 47) != RoboClawClient::number(0x8080, 2) && seconds < 6) {
+    while (client.read(0x80, 47) != number(0x8080, 2) && seconds < 6) {
         pass(drivetrain, 0.01);
         seconds += 0.01;
         farthest = std::max(farthest, client.count(0x80, 0));
@@ -174,13 +164,11 @@ void TestEmulatedMotors::positionsAreReached() {
 
 void TestEmulatedMotors::positionsWaitInTheQueue() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     const auto go = [&](int command, int position, int buffer) {
         return client.write(0x80, command,
-                            RoboClawClient::number(100000, 4) + RoboClawClient::number(20000, 4) +
-                                RoboClawClient::number(100000, 4) + RoboClawClient::number(position, 4) +
-                                RoboClawClient::number(buffer, 1));
+                            number(100000, 4) + number(20000, 4) + number(100000, 4) + number(position, 4) +
+                                number(buffer, 1));
     };
     QVERIFY(go(65, 5000, 0) && go(65, -1000, 0) && go(66, 300, 0));
     QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0100"));
@@ -202,9 +190,8 @@ void TestEmulatedMotors::positionsWaitInTheQueue() {
 
 void TestEmulatedMotors::silenceStopsTheMotors() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
-    QVERIFY(client.write(0x80, 14, RoboClawClient::number(2, 1)));
+    RoboClawClient client = readyClient(drivetrain);
+    QVERIFY(client.write(0x80, 14, number(2, 1)));
     QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
     for (int i = 0; i < 10; ++i) {
         pass(drivetrain, 0.1);
@@ -225,9 +212,9 @@ void TestEmulatedMotors::silenceStopsTheMotors() {
 void TestEmulatedMotors::encodersWrap() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    QVERIFY(client.write(0x80, 22, RoboClawClient::number(-5, 4)));
+    QVERIFY(client.write(0x80, 22, number(-5, 4)));
     QCOMPARE(client.read(0x80, 16).left(4).toHex(), QByteArray("fffffffb"));
-    setQpps(client, 150000);
+    setQpps(client);
     QVERIFY(client.speeds(0x80, 10000, 0, 1000000));
     pass(drivetrain, 0.1);
     QVERIFY(client.count(0x80, 0) > 0);
@@ -241,10 +228,10 @@ void TestEmulatedMotors::batteryDrains() {
     Drivetrain drivetrain(options);
     RoboClawClient client(drivetrain);
     pass(drivetrain, 1);
-    const auto before = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
-    QVERIFY(client.write(0x80, 34, RoboClawClient::number(20000, 2) + RoboClawClient::number(20000, 2)));
+    const auto before = integer(client.read(0x80, 24), 0, 2);
+    QVERIFY(client.write(0x80, 34, number(20000, 2) + number(20000, 2)));
     pass(drivetrain, 20);
-    const auto after = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
+    const auto after = integer(client.read(0x80, 24), 0, 2);
     QVERIFY2(after < before - 10, qPrintable(QString("%1 %2").arg(before).arg(after)));
     QVERIFY(drivetrain.battery().charge() < 0.7);
 }
@@ -252,8 +239,7 @@ void TestEmulatedMotors::batteryDrains() {
 void TestEmulatedMotors::drivingBackwardDrainsItToo() {
     const auto used = [](int speed) {
         Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
-        setQpps(client, 150000);
+        RoboClawClient client = readyClient(drivetrain);
         for (int i = 0; i < 60; ++i) { // their time-out is not to stop them
             client.speeds(0x80, speed, speed, 100000);
             client.speeds(0x81, speed, speed, 100000);
@@ -269,22 +255,20 @@ void TestEmulatedMotors::drivingBackwardDrainsItToo() {
 
 void TestEmulatedMotors::lowBatteryCutsTheMotors() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
-    QVERIFY(client.write(0x80, 57, RoboClawClient::number(210, 2) + RoboClawClient::number(340, 2)));
+    RoboClawClient client = readyClient(drivetrain);
+    QVERIFY(client.write(0x80, 57, number(210, 2) + number(340, 2)));
     QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
     pass(drivetrain, 0.5);
     drivetrain.battery().setCharge(0);
     pass(drivetrain, 5);
-    QVERIFY(RoboClawClient::integer(client.read(0x80, 90), 0, 4) & 0x4000);
+    QVERIFY(integer(client.read(0x80, 90), 0, 4) & 0x4000);
     QVERIFY(drivetrain.controller(0).channel(0).speed() < 1000); // rolled out
     QCOMPARE(drivetrain.controller(0).channel(0).current(), 0.0);
 }
 
 void TestEmulatedMotors::blockedWheelDrawsCurrent() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     QVERIFY(client.speeds(0x80, 60000, 60000, 300000));
     pass(drivetrain, 1);
     const double free = drivetrain.controller(0).channel(0).current();
@@ -292,20 +276,19 @@ void TestEmulatedMotors::blockedWheelDrawsCurrent() {
     pass(drivetrain, 1);
     QCOMPARE(drivetrain.controller(0).channel(0).speed(), 0.0);
     const QByteArray currents = client.read(0x80, 49);
-    QVERIFY(RoboClawClient::integer(currents, 0, 2) > 1500 && free < 2);
-    QVERIFY(RoboClawClient::integer(currents, 2, 2) < 200);
-    QVERIFY(client.write(0x80, 133, RoboClawClient::number(1000, 4) + RoboClawClient::number(0, 4)));
+    QVERIFY(integer(currents, 0, 2) > 1500 && free < 2);
+    QVERIFY(integer(currents, 2, 2) < 200);
+    QVERIFY(client.write(0x80, 133, number(1000, 4) + number(0, 4)));
     pass(drivetrain, 0.1);
-    QCOMPARE(RoboClawClient::integer(client.read(0x80, 49), 0, 2), std::int64_t(1000));
-    QVERIFY(RoboClawClient::integer(client.read(0x80, 90), 0, 4) & 0x10000);
+    QCOMPARE(integer(client.read(0x80, 49), 0, 2), std::int64_t(1000));
+    QVERIFY(integer(client.read(0x80, 90), 0, 4) & 0x10000);
     pass(drivetrain, 30);
-    QVERIFY(RoboClawClient::integer(client.read(0x80, 82), 0, 2) > 255);
+    QVERIFY(integer(client.read(0x80, 82), 0, 2) > 255);
 }
 
 void TestEmulatedMotors::brokenEncoderStandsStill() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     drivetrain.wheel(0).setEncoderBroken(true);
     QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
     pass(drivetrain, 1);
@@ -316,8 +299,7 @@ void TestEmulatedMotors::brokenEncoderStandsStill() {
 
 void TestEmulatedMotors::emergencyStopHolds() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
     pass(drivetrain, 0.5);
     drivetrain.controller(0).faults().status = roboclaw::EmergencyStop;
@@ -332,8 +314,7 @@ void TestEmulatedMotors::slipShortensTheWay() {
     Drivetrain::Options options;
     options.slip = 0.2;
     Drivetrain drivetrain(options);
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
     QVERIFY(client.speeds(0x81, 30000, 30000, 300000));
     pass(drivetrain, 2);
@@ -348,8 +329,7 @@ void TestEmulatedMotors::wheelsSlipEachByItself() {
         options.slipSpread = 0.03;
         options.seed = seed;
         Drivetrain drivetrain(options);
-        RoboClawClient client(drivetrain);
-        setQpps(client, 150000);
+        RoboClawClient client = readyClient(drivetrain);
         client.speeds(0x80, 76000, 76000, 3000000);
         client.speeds(0x81, 76000, 76000, 3000000);
         pass(drivetrain, 1);

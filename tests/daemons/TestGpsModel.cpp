@@ -121,17 +121,15 @@ void TestGpsModel::fixesKeepTheirGrid() {
 }
 
 void TestGpsModel::positionsAreThoseOfTheRobot_data() {
-    QTest::addColumn<double>("latitude");
-    QTest::addColumn<double>("longitude");
-    QTest::newRow("here") << 50.0 << 10.0;
-    QTest::newRow("south and west") << -33.9 << -151.2;
-    QTest::newRow("equator and date line") << 0.0 << 180.0;
-    QTest::newRow("far north") << 80.0 << -0.00001;
+    const Rows<double, double> row("latitude", "longitude");
+    row("here", 50.0, 10.0);
+    row("south and west", -33.9, -151.2);
+    row("equator and date line", 0.0, 180.0);
+    row("far north", 80.0, -0.00001);
 }
 
 void TestGpsModel::positionsAreThoseOfTheRobot() {
-    QFETCH(double, latitude);
-    QFETCH(double, longitude);
+    FETCH(double, latitude, double, longitude);
     Simulation::Options options;
     options.gps.origin = {latitude, longitude};
     options.gps.altitude = 512;

@@ -79,8 +79,7 @@ void TestHostileJournals::hostileTablesAreRefused_data() {
 }
 
 void TestHostileJournals::hostileTablesAreRefused() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(bool, isRead);
+    FETCH(QByteArray, bytes, bool, isRead);
     const auto read = readDriveJournal(bytes, "hostile.journal");
     QCOMPARE(read.ok(), isRead);
     if (!isRead) {

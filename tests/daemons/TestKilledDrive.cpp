@@ -1,5 +1,6 @@
 // A matcher that is killed while it maps: what it remembered is there again, and the drive goes on.
 #include "RingDrive.h"
+#include "tests/support/PatientClient.h"
 
 #include <QProcess>
 #include <QRegularExpression>
@@ -51,20 +52,18 @@ void TestKilledDrive::startMatcher() {
     QString log;
     const QRegularExpression listens("127.0.0.1:(\\d+),");
     QTRY_VERIFY((log += process.readAll()).contains(listens));
-    client_ = std::make_unique<PatientClient>();
-    QVERIFY(client_->connectTo(asOwner("127.0.0.1:" + listens.match(log).captured(1))).ok());
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner("127.0.0.1:" + listens.match(log).captured(1)));
     QTRY_VERIFY(source->hasSubscribers("odometry") && source->hasSubscribers("scan2d"));
     listen();
 }
 
 void TestKilledDrive::atMostFiveSecondsAreLost_data() {
-    QTest::addColumn<int>("scans");
+    const Rows<int> row("scans");
     std::random_device device;
     const int round = int(way.size()) / 2;
     for (int trial = 0; trial < 3; ++trial) {
         const int scans = round + 20 + int(device() % unsigned(round / 2));
-        QTest::newRow(qPrintable(QString::number(scans))) << scans;
+        row(qPrintable(QString::number(scans)), scans);
     }
 }
 

@@ -86,9 +86,7 @@ private Q_SLOTS:
 };
 
 void TestLidarFeed::liveGivesWhatDirectDecodingGives() {
-    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "hdl32e-outdoor.pcap");
     LidarListener listener;
     QVERIFY(listener.feed.openLive("127.0.0.1", 0, 4 << 20, {}));
     sendCapture(path, listener.feed.port());
@@ -124,10 +122,8 @@ void TestLidarFeed::sourcesThatCannotBeOpened() {
 }
 
 void TestLidarFeed::slowReadersLoseTurnsAndAreTold() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 1000));
+    MadeReplay listener(6000);
+    QVERIFY(listener.play(1000));
     QTRY_VERIFY(listener.ended.load());
     listener.take();
     const LidarFeed::Counts counts = listener.feed.counts();
@@ -138,11 +134,9 @@ void TestLidarFeed::slowReadersLoseTurnsAndAreTold() {
 
 /// Also when the source is live by the time it is taken; the turn that was cut off by that, too.
 void TestLidarFeed::whatWaitsIsStillOfTheReplay() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
+    MadeReplay listener(6000);
     listener.feed.wantClouds(LidarFeed::Thinning());
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    QVERIFY(listener.play(0));
     QTRY_VERIFY(listener.ready.load() >= 16); // the queue of the clouds is full
     QVERIFY(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}));
     int turns = 0, clouds = 0;
@@ -219,18 +213,14 @@ void TestLidarFeed::positionPacketsTellTheHour() {
 }
 
 void TestLidarFeed::ofSeveralSensorsInACaptureOneIsDecoded_data() {
-    QTest::addColumn<int>("port"); // of the second
-    QTest::addColumn<int>("only");
-    QTest::addColumn<double>("range");
-    QTest::newRow("to one port") << 2368 << 0 << 5.0;
-    QTest::newRow("to two ports") << 4711 << 0 << 5.0;
-    QTest::newRow("to two ports, the second") << 4711 << 4711 << 6.0;
+    const Rows<int, int, double> row("port", "only", "range"); // port: of the second
+    row("to one port", 2368, 0, 5.0);
+    row("to two ports", 4711, 0, 5.0);
+    row("to two ports, the second", 4711, 4711, 6.0);
 }
 
 void TestLidarFeed::ofSeveralSensorsInACaptureOneIsDecoded() {
-    QFETCH(int, port);
-    QFETCH(int, only);
-    QFETCH(double, range);
+    FETCH(int, port, int, only, double, range);
     const Sensor sensor;
     QTemporaryDir folder;
     const std::string path = folder.filePath("two.pcap").toStdString();

@@ -14,6 +14,21 @@ namespace {
 
 constexpr std::int64_t start_ns = 1700000000000000000;
 
+/// The robot looks at it from the origin.
+World wallAhead(double x) {
+    World world;
+    world.edges = {{x, -9, x, 9}};
+    world.poses = {{0, 0, 0}};
+    return world;
+}
+
+Simulation::Options exactAndStill() {
+    Simulation::Options options;
+    options.lidar.sigma = 0;
+    options.rpm = 1e-3; // as good as standing still, looking straight ahead
+    return options;
+}
+
 } // namespace
 
 class TestLidarModel : public QObject {
@@ -31,17 +46,15 @@ private Q_SLOTS:
 };
 
 void TestLidarModel::ringPointsLieOnTheWalls_data() {
-    QTest::addColumn<bool>("driving");
-    QTest::addColumn<double>("sigma");
-    QTest::newRow("standing, no noise") << false << 0.0;
-    QTest::newRow("standing") << false << 0.01;
-    QTest::newRow("driving, no noise") << true << 0.0;
-    QTest::newRow("driving") << true << 0.01;
+    const Rows<bool, double> row("driving", "sigma");
+    row("standing, no noise", false, 0.0);
+    row("standing", false, 0.01);
+    row("driving, no noise", true, 0.0);
+    row("driving", true, 0.01);
 }
 
 void TestLidarModel::ringPointsLieOnTheWalls() {
-    QFETCH(bool, driving);
-    QFETCH(double, sigma);
+    FETCH(bool, driving, double, sigma);
     const World world = pillars();
     Simulation::Options options;
     options.lidar.sigma = sigma;
@@ -116,9 +129,7 @@ void TestLidarModel::lasersMeetWallsFloorOrNothing() {
 }
 
 void TestLidarModel::rangesOutOfReachReturnNothing() {
-    World world;
-    world.edges = {{5, -9, 5, 9}};
-    world.poses = {{0, 0, 0}};
+    World world = wallAhead(5);
     Simulation::Options options;
     options.lidar.sensorHeight = 0.01;
     const auto ahead = [&] {
@@ -138,25 +149,17 @@ void TestLidarModel::rangesOutOfReachReturnNothing() {
 }
 
 void TestLidarModel::rangesAreQuantised() {
-    World world;
-    world.edges = {{5.0011, -9, 5.0011, 9}};
-    world.poses = {{0, 0, 0}};
-    Simulation::Options options;
-    options.lidar.sigma = 0;
-    options.rpm = 1e-3; // as good as standing still, looking straight ahead
+    World world = wallAhead(5.0011);
+    Simulation::Options options = exactAndStill();
     Simulation simulation(world, options, start_ns);
     for (int block = 0; block < 12; ++block)
         QCOMPARE(int(velodyne::DataPacket(simulation.nextPacket().data()).distance(block, 15)), 2501);
 }
 
 void TestLidarModel::returnsDropOutAndLieFar() {
-    World world;
-    world.edges = {{5, -9, 5, 9}};
-    world.poses = {{0, 0, 0}};
-    Simulation::Options options;
-    options.lidar.sigma = 0;
+    World world = wallAhead(5);
+    Simulation::Options options = exactAndStill();
     options.lidar.dropouts = 0.1;
-    options.rpm = 1e-3; // as good as standing still, looking straight ahead
     Simulation simulation(world, options, start_ns);
     const auto returns = [&] {
         std::array<int, 3> counts{}; // none, on the wall, elsewhere
@@ -194,13 +197,9 @@ void TestLidarModel::sameSeedSamePackets() {
 }
 
 void TestLidarModel::peopleStandBeforeTheWall() {
-    World world;
-    world.edges = {{5, -9, 5, 9}};
-    world.poses = {{0, 0, 0}};
+    World world = wallAhead(5);
     world.people = {{1e-6, {{2, 0}, {2, 1}}}};
-    Simulation::Options options;
-    options.lidar.sigma = 0;
-    options.rpm = 1e-3; // as good as standing still, looking straight ahead
+    Simulation::Options options = exactAndStill();
     const auto distance = [&](int laser) {
         Simulation simulation(world, options, start_ns);
         return double(velodyne::DataPacket(simulation.nextPacket().data()).distance(0, laser)) * 0.002;
@@ -219,13 +218,9 @@ void TestLidarModel::peopleStandBeforeTheWall() {
 }
 
 void TestLidarModel::peopleAreWhereTheyAreAtEachFiring() {
-    World world;
-    world.edges = {{9, -9, 9, 9}};
-    world.poses = {{0, 0, 0}};
+    World world = wallAhead(9);
     world.people = {{2, {{4, 0}, {8, 0}}}};
-    Simulation::Options options;
-    options.lidar.sigma = 0;
-    options.rpm = 1e-3;
+    Simulation::Options options = exactAndStill();
     Simulation simulation(world, options, start_ns);
     int firings = 0;
     for (int i = 0; i < 1808; ++i) {

@@ -24,17 +24,15 @@ private Q_SLOTS:
 };
 
 void TestLidarReplay::replayGivesWhatDirectDecodingGives_data() {
-    QTest::addColumn<double>("speed");
-    QTest::newRow("as fast as possible") << 0.0;
-    QTest::newRow("real time") << 1.0;
-    QTest::newRow("threefold") << 3.0;
+    const Rows<double> row("speed");
+    row("as fast as possible", 0.0);
+    row("real time", 1.0);
+    row("threefold", 3.0);
 }
 
 void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
     QFETCH(double, speed);
-    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "hdl32e-outdoor.pcap");
     LidarListener listener;
     QVERIFY(listener.openPcap(path.toStdString(), speed));
     QVERIFY(listener.waitForEnd());
@@ -46,39 +44,34 @@ void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
 }
 
 void TestLidarReplay::fastReplayWaitsForItsReader() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000); // 34 turns
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    MadeReplay listener(6000); // 34 turns
+    QVERIFY(listener.play(0));
     QTRY_COMPARE(listener.ready.load(), 16);                   // the queue is full
     QCOMPARE(listener.feed.counts().turns, std::uint64_t(16)); // answers meanwhile
     QVERIFY(!listener.ended);
     QVERIFY(listener.waitForEnd());
-    QVERIFY(same(listener.turns, decode(path)));
+    QVERIFY(same(listener.turns, decode(listener.path)));
     QCOMPARE(listener.feed.counts().turnsDropped, std::uint64_t(0));
 }
 
 void TestLidarReplay::replayKeepsItsPace() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 1000); // 0.553 s
-    LidarListener listener;
+    MadeReplay listener(1000); // 0.553 s
     QElapsedTimer timer;
     timer.start();
-    QVERIFY(listener.openPcap(path.toStdString(), 1));
+    QVERIFY(listener.play(1));
     QVERIFY(listener.waitForEnd());
     QVERIFY(timer.elapsed() > 540);
-    QVERIFY(same(listener.turns, decode(path)));
+    QVERIFY(same(listener.turns, decode(listener.path)));
 }
 
 void TestLidarReplay::cutCaptureGivesAllBeforeTheCut() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 500);
-    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    MadeReplay listener(500);
+    QVERIFY(QFile::resize(listener.path, 24 + 300 * (16 + 42 + 1206) + 700));
+    QVERIFY(listener.play(0));
     QVERIFY(listener.waitForEnd());
-    QVERIFY2(listener.error.find(path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
-             listener.error.c_str());
+    QVERIFY2(
+        listener.error.find(listener.path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
+        listener.error.c_str());
     QCOMPARE(listener.feed.counts().packets.packets, std::uint64_t(300));
     std::size_t points = 0;
     for (const Turn &turn : listener.turns)
@@ -87,10 +80,8 @@ void TestLidarReplay::cutCaptureGivesAllBeforeTheCut() {
 }
 
 void TestLidarReplay::replayLoops() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 500);
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0, true));
+    MadeReplay listener(500);
+    QVERIFY(listener.play(0, true));
     QTRY_VERIFY((listener.take(), listener.turns.size() >= 12));
     QVERIFY(!listener.ended);
     listener.feed.close();
@@ -104,31 +95,27 @@ void TestLidarReplay::replayLoops() {
     QCOMPARE(counts.lost + counts.outOfOrder + counts.clockJumps, std::uint64_t(0));
     QVERIFY(listener.feed.player().playback().status().loops >= 2);
     // A file that is cut is played to the cut, once.
-    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
+    QVERIFY(QFile::resize(listener.path, 24 + 300 * (16 + 42 + 1206) + 700));
     LidarListener cut;
-    QVERIFY(cut.openPcap(path.toStdString(), 0, true));
+    QVERIFY(cut.openPcap(listener.path.toStdString(), 0, true));
     QVERIFY(cut.waitForEnd());
     QVERIFY(!cut.error.empty());
     QCOMPARE(cut.feed.counts().packets.packets, std::uint64_t(300));
 }
 
 void TestLidarReplay::replaySeeks_data() {
-    QTest::addColumn<double>("target_s");
-    QTest::addColumn<bool>("pcapng");
-    QTest::addColumn<int>("first"); // packet played after it
-    QTest::newRow("to the beginning") << 0.0 << false << 0;
-    QTest::newRow("between two packets") << 0.0100 << false << 19;
-    QTest::newRow("behind the first mark") << 3.0 << false << 5426;
-    QTest::newRow("the last packet") << 11999 * 552.96e-6 << false << 11999;
-    QTest::newRow("pcapng") << 3.0 << true << 5426;
+    const Rows<double, bool, int> row("target_s", "pcapng", "first"); // first: packet played after it
+    row("to the beginning", 0.0, false, 0);
+    row("between two packets", 0.0100, false, 19);
+    row("behind the first mark", 3.0, false, 5426);
+    row("the last packet", 11999 * 552.96e-6, false, 11999);
+    row("pcapng", 3.0, true, 5426);
 }
 
 /// Paused, so that nothing but a turn from the target on is played after the seek; from the front and from
 /// behind.
 void TestLidarReplay::replaySeeks() {
-    QFETCH(double, target_s);
-    QFETCH(bool, pcapng);
-    QFETCH(int, first);
+    FETCH(double, target_s, bool, pcapng, int, first);
     QTemporaryDir folder;
     QString path = makeCapture(folder, 12000);
     if (pcapng) {
@@ -181,10 +168,8 @@ void TestLidarReplay::replaySeeks() {
 }
 
 void TestLidarReplay::replayPauses() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 3000); // 1.659 s
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 1));
+    MadeReplay listener(3000); // 1.659 s
+    QVERIFY(listener.play(1));
     QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
     listener.feed.player().playback().setPaused(true);
     std::uint64_t packets = 0; // one may be on its way
@@ -198,14 +183,12 @@ void TestLidarReplay::replayPauses() {
     listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd()); // and does not hurry to catch up: the rest takes its time
     QVERIFY(timer.elapsed() > 700 + qint64(double(3000 - packets) * 0.553) - 20);
-    QVERIFY(same(listener.turns, decode(path)));
+    QVERIFY(same(listener.turns, decode(listener.path)));
 }
 
 void TestLidarReplay::closingEndsAWaitingReplay() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    MadeReplay listener(6000);
+    QVERIFY(listener.play(0));
     QTRY_COMPARE(listener.ready.load(), 16);
     listener.feed.close(); // does not hang
     QVERIFY(!listener.ended);

@@ -17,12 +17,10 @@ private Q_SLOTS:
 };
 
 void TestLidarTurns::allLasersOfATurn() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 1000);
-    LidarListener listener;
+    MadeReplay listener(1000);
     std::atomic<std::size_t> points{0};
     std::atomic<int> clouds{0};
-    QVERIFY(listener.openPcap(path.toStdString(), 1, false, true));
+    QVERIFY(listener.play(1, false, true));
     listener.feed.captureTurn([&](const Turn *turn) {
         points = turn ? turn->points.size() : 0;
         ++clouds;
@@ -34,12 +32,10 @@ void TestLidarTurns::allLasersOfATurn() {
 }
 
 void TestLidarTurns::aCaptureEndsWithItsSource() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 100); // less than a turn
-    LidarListener listener;
+    MadeReplay listener(100); // less than a turn
     std::atomic<int> refused{0};
     const auto capture = [&refused](const Turn *turn) { refused += turn == nullptr; };
-    QVERIFY(listener.openPcap(path.toStdString(), 1, false, true));
+    QVERIFY(listener.play(1, false, true));
     listener.feed.captureTurn(capture);
     listener.feed.captureTurn(capture); // both are told
     listener.feed.player().playback().setPaused(false);
@@ -52,14 +48,12 @@ void TestLidarTurns::aCaptureEndsWithItsSource() {
 }
 
 void TestLidarTurns::cloudsAreThinned() {
-    QTemporaryDir folder;
-    const QString path = makeCapture(folder, 6000);
-    LidarListener listener;
+    MadeReplay listener(6000);
     LidarFeed::Thinning thinning;
     thinning.maximumPoints = 1000;
     thinning.turnStep = 2;
     listener.feed.wantClouds(thinning);
-    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    QVERIFY(listener.play(0));
     QVERIFY(listener.waitForEnd());
     QCOMPARE(listener.turns.size(), std::size_t(35));
     QCOMPARE(listener.clouds.size(), std::size_t(18));

@@ -131,12 +131,11 @@ void TestLiveCommands::askAny(std::size_t i) {
 }
 
 void TestLiveCommands::anyCommandAtAnyTime_data() {
-    QTest::addColumn<unsigned>("seed");
-    const QByteArray given = qgetenv("HERMES_SEED");
-    unsigned seed = given.isEmpty() ? std::random_device()() : given.toUInt();
+    const Rows<unsigned> row("seed");
+    unsigned seed = newSeed();
     const int trials = std::max(1, qEnvironmentVariableIntValue("HERMES_TRIALS"));
     for (int trial = 0; trial < trials; ++trial, ++seed)
-        QTest::newRow(qPrintable(QString("HERMES_SEED=%1").arg(seed))) << seed;
+        row(qPrintable(QString("HERMES_SEED=%1").arg(seed)), seed);
 }
 
 void TestLiveCommands::anyCommandAtAnyTime() {

@@ -127,17 +127,15 @@ void TestLiveLoops::anotherMapForgetsTheDrive() {
 }
 
 void TestLiveLoops::aFullMemoryTakesNoMore_data() {
-    QTest::addColumn<double>("most"); // MB
-    QTest::addColumn<bool>("corrects");
-    QTest::newRow("before any loop") << 0.3 << false;
-    QTest::newRow("where a loop is closed") << 1.0 << true;
-    QTest::newRow("later") << 1.3 << true;
+    const Rows<double, bool> row("most", "corrects"); // most: MB
+    row("before any loop", 0.3, false);
+    row("where a loop is closed", 1.0, true);
+    row("later", 1.3, true);
 }
 
 // The drive goes on in the map that it has.
 void TestLiveLoops::aFullMemoryTakesNoMore() {
-    QFETCH(double, most);
-    QFETCH(bool, corrects);
+    FETCH(double, most, bool, corrects);
     const auto limit = [&](double mb) {
         call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{"remember_mb", mb}}}}}});
     };

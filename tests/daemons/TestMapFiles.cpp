@@ -1,5 +1,6 @@
 // Files of maps: large ones, a disk that takes its time, a matcher that is killed while it writes.
 #include "MatcherFixture.h"
+#include "tests/support/PatientClient.h"
 
 #include "tests/support/Files.h"
 #include "tests/support/LoopWatch.h"
@@ -142,9 +143,7 @@ void TestMapFiles::aMatcherKilledWhileItWritesLeavesAWholeMap() {
         QString log;
         const QRegularExpression listens("127.0.0.1:(\\d+),");
         QTRY_VERIFY((log += process.readAll()).contains(listens));
-        PatientClient other;
-        QVERIFY(other.connectTo(asOwner("127.0.0.1:" + listens.match(log).captured(1))).ok());
-        QVERIFY(other.waitConnected().ok());
+        ConnectedClient other(asOwner("127.0.0.1:" + listens.match(log).captured(1)));
         QVERIFY(other.callAndWait("map.load", QJsonObject{{"path", "new.csv"}}).ok());
         bool saved = false;
         other.call("map.save", QJsonObject{{"path", "map.csv"}, {"force", true}},

@@ -118,27 +118,15 @@ void TestMatcherOdometry::followsAZigzagByBentOdometry() {
 }
 
 void TestMatcherOdometry::badOdometryIsCountedAndLeftAlone_data() {
-    QTest::addColumn<QString>("kind");
-    QTest::addColumn<QString>("count");
-    QTest::addColumn<QString>("level");
-    QTest::newRow("reset with every scan") << "reset"
-                                           << "restarts"
-                                           << "warn";
-    QTest::newRow("refused") << "nonsense"
-                             << "refused"
-                             << "warn";
-    QTest::newRow("out of order") << "backwards"
-                                  << "out_of_order"
-                                  << "ok";
-    QTest::newRow("of another time") << "stale"
-                                     << "scans_without"
-                                     << "warn";
+    const Rows<QString, QString, QString> row("kind", "count", "level");
+    row("reset with every scan", "reset", "restarts", "warn");
+    row("refused", "nonsense", "refused", "warn");
+    row("out of order", "backwards", "out_of_order", "ok");
+    row("of another time", "stale", "scans_without", "warn");
 }
 
 void TestMatcherOdometry::badOdometryIsCountedAndLeftAlone() {
-    QFETCH(QString, kind);
-    QFETCH(QString, count);
-    QFETCH(QString, level);
+    FETCH(QString, kind, QString, count, QString, level);
     connectOdometry();
     call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
     for (int i = 0; i < 20; ++i) {

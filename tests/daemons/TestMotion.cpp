@@ -53,17 +53,15 @@ private Q_SLOTS:
 };
 
 void TestMotion::wheelsTurnAsNamed_data() {
-    QTest::addColumn<Twist2D>("twist");
-    QTest::addColumn<WheelValues>("expected"); // radius 0.1, lever 0.45
-    QTest::newRow("forward") << Twist2D{1, 0, 0} << WheelValues{10, 10, 10, 10};
-    QTest::newRow("left") << Twist2D{0, 1, 0} << WheelValues{-10, 10, 10, -10};
-    QTest::newRow("counter-clockwise") << Twist2D{0, 0, 1} << WheelValues{-4.5, 4.5, -4.5, 4.5};
-    QTest::newRow("all") << Twist2D{0.5, -0.2, 0.4} << WheelValues{5.2, 4.8, 1.2, 8.8};
+    const Rows<Twist2D, WheelValues> row("twist", "expected"); // expected: radius 0.1, lever 0.45
+    row("forward", {1, 0, 0}, {10, 10, 10, 10});
+    row("left", {0, 1, 0}, {-10, 10, 10, -10});
+    row("counter-clockwise", {0, 0, 1}, {-4.5, 4.5, -4.5, 4.5});
+    row("all", {0.5, -0.2, 0.4}, {5.2, 4.8, 1.2, 8.8});
 }
 
 void TestMotion::wheelsTurnAsNamed() {
-    QFETCH(Twist2D, twist);
-    QFETCH(WheelValues, expected);
+    FETCH(Twist2D, twist, WheelValues, expected);
     const WheelValues speeds = WheelLayout::mecanum(geometry).wheelSpeeds(twist);
     for (int i = 0; i < wheelCount; ++i)
         QVERIFY2(std::abs(speeds[i] - expected[i]) < 1e-12, wheelNames[i]);
@@ -85,9 +83,9 @@ void TestMotion::mecanumIsTheMatrixOfTheThesis() {
 }
 
 void TestMotion::forwardIsThePseudoInverse_data() {
-    QTest::addColumn<bool>("mecanum");
-    QTest::newRow("mecanum") << true;
-    QTest::newRow("differential") << false;
+    const Rows<bool> row("mecanum");
+    row("mecanum", true);
+    row("differential", false);
 }
 
 // The two conditions that define it for a matrix A of full column rank: F A = 1, and A F is symmetric.
@@ -177,24 +175,19 @@ void TestMotion::rampOfSingleWheelsIsLimited() {
 }
 
 void TestMotion::odometryFollowsArcs_data() {
-    QTest::addColumn<Pose2D>("start");
-    QTest::addColumn<Twist2D>("displacement");
-    QTest::addColumn<Pose2D>("end");
-    QTest::newRow("straight") << Pose2D{} << Twist2D{2, 0, 0} << Pose2D{2, 0, 0};
-    QTest::newRow("sideways") << Pose2D{1, 1, pi / 2} << Twist2D{0, 2, 0} << Pose2D{-1, 1, pi / 2};
-    QTest::newRow("quarter circle") << Pose2D{} << Twist2D{1, 0, pi / 2} << Pose2D{2 / pi, 2 / pi, pi / 2};
-    QTest::newRow("full circle") << Pose2D{3, 4, 1} << Twist2D{5, -2, 2 * pi} << Pose2D{3, 4, 1};
-    QTest::newRow("heading wraps") << Pose2D{0, 0, 3} << Twist2D{0, 0, 1} << Pose2D{0, 0, 4 - 2 * pi};
-    QTest::newRow("heading pi, not -pi") << Pose2D{} << Twist2D{0, 0, -pi} << Pose2D{0, 0, pi};
+    const Rows<Pose2D, Twist2D, Pose2D> row("start", "displacement", "end");
+    row("straight", {}, {2, 0, 0}, {2, 0, 0});
+    row("sideways", {1, 1, pi / 2}, {0, 2, 0}, {-1, 1, pi / 2});
+    row("quarter circle", {}, {1, 0, pi / 2}, {2 / pi, 2 / pi, pi / 2});
+    row("full circle", {3, 4, 1}, {5, -2, 2 * pi}, {3, 4, 1});
+    row("heading wraps", {0, 0, 3}, {0, 0, 1}, {0, 0, 4 - 2 * pi});
+    row("heading pi, not -pi", {}, {0, 0, -pi}, {0, 0, pi});
     // Integrated in 200,000 steps.
-    QTest::newRow("general") << Pose2D{0, 0, 0.3} << Twist2D{1, -0.4, 1.4}
-                             << Pose2D{0.807012141, 0.575516530, 1.7};
+    row("general", {0, 0, 0.3}, {1, -0.4, 1.4}, {0.807012141, 0.575516530, 1.7});
 }
 
 void TestMotion::odometryFollowsArcs() {
-    QFETCH(Pose2D, start);
-    QFETCH(Twist2D, displacement);
-    QFETCH(Pose2D, end);
+    FETCH(Pose2D, start, Twist2D, displacement, Pose2D, end);
     Odometry odometry;
     odometry.reset(start);
     odometry.move(displacement);

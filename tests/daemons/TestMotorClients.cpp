@@ -24,11 +24,8 @@ private Q_SLOTS:
 };
 
 void TestMotorClients::leaseIsExclusiveAndRunsOut() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    PatientClient other;
-    QVERIFY(other.connectTo(address()).ok());
-    QVERIFY(other.waitConnected().ok());
+    launchReady();
+    ConnectedClient other(address());
     QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 1}})["holder"].toString(),
              QString("anna"));
     const auto refused = other.callAndWait("motor.drive", QJsonObject{{"vx", 0.1}});
@@ -41,8 +38,7 @@ void TestMotorClients::leaseIsExclusiveAndRunsOut() {
 
 // Sent in one go: the stop is done first, and what was sent before it must not undo it.
 void TestMotorClients::whatAStopOvertakesIsVoid() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QTcpSocket socket;
     const QStringList place = address().split(':');
     socket.connectToHost("127.0.0.1", quint16(place.last().section(',', 0, 0).toUInt()));
@@ -68,17 +64,15 @@ void TestMotorClients::whatAStopOvertakesIsVoid() {
     for (int before : {1, 2, 3})
         QVERIFY2(replies[before].contains("error"), qPrintable(QString::number(before)));
     QVERIFY(replies[4].contains("result"));
-    QVERIFY(replies[5]["error"]["data"]["retry_after_s"].toDouble() > 1); // it counts, but comes too early
+    QVERIFY(replies[5].value("error")["data"]["retry_after_s"].toDouble() >
+            1); // it counts, but comes too early
     QVERIFY(state()["estop"].toBool());
     QCOMPARE(rig_->fastest(), 0.0);
 }
 
 void TestMotorClients::takingOverStopsTheRobot() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    PatientClient other;
-    QVERIFY(other.connectTo(address()).ok());
-    QVERIFY(other.waitConnected().ok());
+    launchReady();
+    ConnectedClient other(address());
     call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QJsonObject ask{{"client", "bert"}, {"timeout_s", 10}};
@@ -105,8 +99,7 @@ void TestMotorClients::takingOverStopsTheRobot() {
 }
 
 void TestMotorClients::silentClientIsStopped() {
-    launch({"safety.command_timeout_s=0.25"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"safety.command_timeout_s=0.25"});
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
@@ -117,8 +110,7 @@ void TestMotorClients::silentClientIsStopped() {
 // Longer than the mail to it holds: the cycle goes on, and tells how much was not read.
 void TestMotorClients::aBusyMainThreadDelaysNoStop() {
     plugServer();
-    launch({"safety.command_timeout_s=0.25"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"safety.command_timeout_s=0.25"});
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     client_->notify("control.acquire", QJsonObject{{"timeout_s", 10}});
@@ -140,8 +132,7 @@ void TestMotorClients::aBusyMainThreadDelaysNoStop() {
 
 // More than the mail to the loop holds.
 void TestMotorClients::manyCommandsAtOnceAreAllAnswered() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     constexpr int count = 300;
     QStringList names;
     for (int i = 0; i < count; ++i)
@@ -156,8 +147,7 @@ void TestMotorClients::manyCommandsAtOnceAreAllAnswered() {
 }
 
 void TestMotorClients::clientThatGoesIsStopped() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QString where = address();

@@ -54,8 +54,7 @@ private Q_SLOTS:
 };
 
 void TestMotorControl::setsTheControllersUp() {
-    launch({"pid.p=2", "pid.i=0.25", "pid.d=0", "pid.qpps=140000"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady({"pid.p=2", "pid.i=0.25", "pid.d=0", "pid.qpps=140000"});
     rig_->with([](std::vector<RoboClawEmulator> &all) {
         for (RoboClawEmulator &controller : all) {
             for (int motor : {0, 1}) {
@@ -131,8 +130,7 @@ void TestMotorControl::aSleepForgetsTheCharge() {
 }
 
 void TestMotorControl::drivesAndTellsWhere() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("odometry.reset", {{"x", 1}, {"y", 2}, {"theta", pi / 2}});
     call("control.acquire", {{"client", "test"}});
     const QJsonObject twist{{"vx", 0.4}, {"vy", 0.2}};
@@ -166,8 +164,7 @@ void TestMotorControl::drivesAndTellsWhere() {
 }
 
 void TestMotorControl::topicsCome() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QJsonObject first, wheels, power;
     std::vector<double> times; // of the odometry
     client_->subscribe("odometry", {{"queue", 100}}, [&](const TopicUpdate &update) {
@@ -191,32 +188,26 @@ void TestMotorControl::topicsCome() {
 }
 
 void TestMotorControl::refusals_data() {
-    QTest::addColumn<QString>("method");
-    QTest::addColumn<QJsonObject>("params");
-    QTest::addColumn<int>("code");
-    QTest::addColumn<QString>("names");
-    const auto row = [](const char *name, const char *method, const QJsonObject &params, ErrorCode code,
-                        const char *names) { QTest::newRow(name) << method << params << int(code) << names; };
-    row("too fast", "motor.drive", {{"vx", 3}}, ErrorCode::OverLimit,
+    const Rows<QString, QJsonObject, int, QString> row("method", "params", "code", "names");
+    row("too fast", "motor.drive", {{"vx", 3}}, int(ErrorCode::OverLimit),
         "vx is 3, expected a number from -1 to 1 m/s");
-    row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, ErrorCode::OverLimit, "rear_left is 1e+06");
-    row("unknown parameter", "motor.drive", {{"vz", 1}}, ErrorCode::InvalidParams, "vz");
-    row("not a number", "motor.drive", {{"vx", "fast"}}, ErrorCode::InvalidParams, "vx");
-    row("null", "motor.drive", {{"omega", QJsonValue()}}, ErrorCode::InvalidParams,
+    row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, int(ErrorCode::OverLimit),
+        "rear_left is 1e+06");
+    row("unknown parameter", "motor.drive", {{"vz", 1}}, int(ErrorCode::InvalidParams), "vz");
+    row("not a number", "motor.drive", {{"vx", "fast"}}, int(ErrorCode::InvalidParams), "vx");
+    row("null", "motor.drive", {{"omega", QJsonValue()}}, int(ErrorCode::InvalidParams),
         "omega is null, expected a number in rad/s");
-    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady,
+    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, int(ErrorCode::NotReady),
         "less than 1 s from now");
-    row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, ErrorCode::InvalidParams, "timeout_s");
+    row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, int(ErrorCode::InvalidParams),
+        "timeout_s");
 }
 
 void TestMotorControl::refusals() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).code, int(ErrorCode::ControlHeld)); // no lease
     call("control.acquire", {{"timeout_s", 10}});
-    QFETCH(QString, method);
-    QFETCH(QJsonObject, params);
-    QFETCH(QString, names);
+    FETCH(QString, method, QJsonObject, params, QString, names);
     const Error error = failure(method, params);
     QTEST(error.code, "code");
     const QString all = error.message + QJsonDocument(error.data.toObject()).toJson();
@@ -228,8 +219,7 @@ void TestMotorControl::refusals() {
 
 // As a client may send them that does not keep to JSON.
 void TestMotorControl::numbersWithoutAValueAreRefused() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QTcpSocket socket;
     socket.connectToHost("127.0.0.1", quint16(QUrl(address()).port()));
     QByteArray answers;
@@ -264,8 +254,7 @@ void TestMotorControl::missingDeviceIsNamedAndFoundWhenItComes() {
 
 // As hermesctl setup tests the wheels, and is killed.
 void TestMotorControl::oneWheelTurnsAndStopsByItself() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     QCOMPARE(failure("motor.wheels", {{"front_left", 1}}).code, int(ErrorCode::ControlHeld));
     call("control.acquire");
     call("motor.wheels", {{"front_left", 1}});
@@ -280,9 +269,7 @@ void TestMotorControl::oneWheelTurnsAndStopsByItself() {
 }
 
 void TestMotorControl::emergencyStopLatches() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.5}});
     call("motor.estop");
     QVERIFY(state()["estop"].toBool());
@@ -301,9 +288,7 @@ void TestMotorControl::emergencyStopLatches() {
 }
 
 void TestMotorControl::stopsBrakeWithTheEmergencyDeceleration() {
-    launch({"safety.deceleration=2", "faults.encoder_hold_s=2"});
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld({"safety.deceleration=2", "faults.encoder_hold_s=2"});
     driveUntil({{"vx", 0.6}}, [this] { return atRim(rig_->fastest()) > 0.58; });
     call("motor.stop");
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
@@ -315,8 +300,7 @@ void TestMotorControl::stopsBrakeWithTheEmergencyDeceleration() {
 }
 
 void TestMotorControl::newPidIsWrittenAndReadBack() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     call("settings.set", {{"values", QJsonObject{{"pid", QJsonObject{{"p", 3}}}}}});
     QTRY_COMPARE(rig_->with([](auto &all) { return all[1].channel(1).pid().p; }), 3.0);
     QTRY_VERIFY(state()["ready"].toBool());
@@ -326,10 +310,8 @@ void TestMotorControl::twoLines() {
     rig_.reset();
     RoboClawRig front(folder_->filePath("front"), {controllerAt(0x80)});
     RoboClawRig rear(folder_->filePath("rear"), {controllerAt(0x80)});
-    launch({"controllers.1.url=" + url("front"), "controllers.2.url=" + url("rear"),
-            "controllers.2.address=128", "wheels.rear_left.reversed=true"});
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld({"controllers.1.url=" + url("front"), "controllers.2.url=" + url("rear"),
+                "controllers.2.address=128", "wheels.rear_left.reversed=true"});
     driveUntil({{"omega", 1}}, [&] {
         const auto f = front.speeds(), r = rear.speeds(); // rear_left is mounted the other way round
         return f[0] < -1000 && f[1] > 1000 && r[0] > 1000 && r[1] > 1000;
@@ -342,9 +324,7 @@ void TestMotorControl::twoLines() {
 }
 
 void TestMotorControl::shutdownStops() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.5}});
     client_.reset();
     daemon_->shutDown();
@@ -353,34 +333,27 @@ void TestMotorControl::shutdownStops() {
 }
 
 void TestMotorControl::settingsAreCheckedAgainstEachOther_data() {
-    QTest::addColumn<QStringList>("settings");
-    QTest::addColumn<QString>("path");
-    QTest::newRow("a path alone") << QStringList{"controllers.1.url=/dev/ttyACM0"} << "controllers.1.url";
-    QTest::newRow("unknown scheme") << QStringList{"controllers.2.url=serail:///dev/ttyACM0"}
-                                    << "controllers.2.url";
-    QTest::newRow("one address twice") << QStringList{"controllers.2.address=128"} << "controllers.2.address";
-    QTest::newRow("one motor twice") << QStringList{"wheels.rear_left.controller=1"}
-                                     << "wheels.rear_left.motor";
-    QTest::newRow("thresholds crossed") << QStringList{"faults.battery_v=24"} << "faults.battery_v";
-    QTest::newRow("encoder fault while braking")
-        << QStringList{"safety.deceleration=1"} << "faults.encoder_hold_s";
-    QTest::newRow("motor.wheels is faster than any twist")
-        << QStringList{"motion.vx=0.1", "motion.vy=0.1", "motion.omega=0.1", "safety.deceleration=2"}
-        << "faults.encoder_hold_s";
-    QTest::newRow("a fault that comes too late")
-        << QStringList{"faults.encoder_hold_s=5"} << "faults.encoder_hold_s";
-    QTest::newRow("turning counts as standing")
-        << QStringList{"faults.encoder_moving_rad_s=0.9", "faults.encoder_commanded_rad_s=0.9"}
-        << "faults.encoder_moving_rad_s";
-    QTest::newRow("standing may be a command")
-        << QStringList{"faults.encoder_commanded_rad_s=5"} << "faults.encoder_commanded_rad_s";
-    QTest::newRow("an encoder that shows no turning")
-        << QStringList{"frame.counts_per_turn=50", "pid.qpps=150"} << "frame.counts_per_turn";
+    const Rows<QStringList, QString> row("settings", "path");
+    row("a path alone", {"controllers.1.url=/dev/ttyACM0"}, "controllers.1.url");
+    row("unknown scheme", {"controllers.2.url=serail:///dev/ttyACM0"}, "controllers.2.url");
+    row("one address twice", {"controllers.2.address=128"}, "controllers.2.address");
+    row("one motor twice", {"wheels.rear_left.controller=1"}, "wheels.rear_left.motor");
+    row("thresholds crossed", {"faults.battery_v=24"}, "faults.battery_v");
+    row("encoder fault while braking", {"safety.deceleration=1"}, "faults.encoder_hold_s");
+    row("motor.wheels is faster than any twist",
+        {"motion.vx=0.1", "motion.vy=0.1", "motion.omega=0.1", "safety.deceleration=2"},
+        "faults.encoder_hold_s");
+    row("a fault that comes too late", {"faults.encoder_hold_s=5"}, "faults.encoder_hold_s");
+    row("turning counts as standing",
+        {"faults.encoder_moving_rad_s=0.9", "faults.encoder_commanded_rad_s=0.9"},
+        "faults.encoder_moving_rad_s");
+    row("standing may be a command", {"faults.encoder_commanded_rad_s=5"}, "faults.encoder_commanded_rad_s");
+    row("an encoder that shows no turning", {"frame.counts_per_turn=50", "pid.qpps=150"},
+        "frame.counts_per_turn");
 }
 
 void TestMotorControl::settingsAreCheckedAgainstEachOther() {
-    QFETCH(QStringList, settings);
-    QFETCH(QString, path);
+    FETCH(QStringList, settings, QString, path);
     MotorControl daemon;
     const auto result = daemon.settings().set([&] {
         QJsonObject values;

@@ -24,9 +24,7 @@ private Q_SLOTS:
 };
 
 void TestMotorFaults::pulledLineRecoversWithoutAJump() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.5}});
     drive({{"vx", 0.5}}, 0.5);
     rig_->pull();
@@ -54,9 +52,7 @@ void TestMotorFaults::pulledLineRecoversWithoutAJump() {
 }
 
 void TestMotorFaults::controllerThatLostItsCountsMakesNoJump() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveUntil({{"vx", 0.5}}, [this] { return state()["pose"].toObject()["x"].toDouble() > 0.05; });
     call("motor.stop");
     QTRY_VERIFY(rig_->fastest() < 10);
@@ -77,47 +73,39 @@ void TestMotorFaults::controllerThatLostItsCountsMakesNoJump() {
 
 void TestMotorFaults::faultsStopAndLatch_data() {
     using Break = std::function<void(RoboClawRig &)>;
-    QTest::addColumn<Break>("breakIt");
-    QTest::addColumn<QString>("setting");
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<QString>("says");
-    QTest::newRow("low battery") << Break([](RoboClawRig &rig) { rig.setVoltage(20); })
-                                 << "faults.battery_v=21"
-                                 << "battery"
-                                 << "the battery has 20 V, at least 21 V are needed";
-    QTest::newRow("over-current") << Break([](RoboClawRig &rig) {
-        rig.with([](auto &all) { all[1].channel(0).setBlocked(true); });
-    }) << R"(faults={"current_a": 8, "current_warning_a": 5})"
-                                  << "current"
-                                  << "controller 2";
-    QTest::newRow("over-temperature")
-        << Break([](RoboClawRig &) {}) << R"(faults={"temperature_c": 20, "temperature_warning_c": 10})"
-        << "temperature"
-        << "at most 20 are allowed";
-    QTest::newRow("commanded but not moving") << Break([](RoboClawRig &rig) {
-        rig.with([](auto &all) { all[0].channel(1).setEncoderBroken(true); });
-    }) << "faults.current_a=150"
-                                              << "encoder"
-                                              << "wheel front_right was told to turn and stands still";
-    QTest::newRow("status bit") << Break([](RoboClawRig &rig) {
-        rig.with([](auto &all) { all[1].faults().status = roboclaw::DriverFaultM1; });
-    }) << "faults.current_a=150"
-                                << "controller_2"
-                                << "controller 2";
-    QTest::newRow("hard-wired emergency stop") << Break([](RoboClawRig &rig) {
-        rig.with([](auto &all) { all[0].faults().status = roboclaw::EmergencyStop; });
-    }) << "faults.current_a=150"
-                                               << "controller_1"
-                                               << "controller 1";
+    const Rows<Break, QString, QString, QString> row("breakIt", "setting", "name", "says");
+    row(
+        "low battery", [](RoboClawRig &rig) { rig.setVoltage(20); }, "faults.battery_v=21", "battery",
+        "the battery has 20 V, at least 21 V are needed");
+    row(
+        "over-current",
+        [](RoboClawRig &rig) { rig.with([](auto &all) { all[1].channel(0).setBlocked(true); }); },
+        R"(faults={"current_a": 8, "current_warning_a": 5})", "current", "controller 2");
+    row(
+        "over-temperature", [](RoboClawRig &) {},
+        R"(faults={"temperature_c": 20, "temperature_warning_c": 10})", "temperature",
+        "at most 20 are allowed");
+    row(
+        "commanded but not moving",
+        [](RoboClawRig &rig) { rig.with([](auto &all) { all[0].channel(1).setEncoderBroken(true); }); },
+        "faults.current_a=150", "encoder", "wheel front_right was told to turn and stands still");
+    row(
+        "status bit",
+        [](RoboClawRig &rig) {
+            rig.with([](auto &all) { all[1].faults().status = roboclaw::DriverFaultM1; });
+        },
+        "faults.current_a=150", "controller_2", "controller 2");
+    row(
+        "hard-wired emergency stop",
+        [](RoboClawRig &rig) {
+            rig.with([](auto &all) { all[0].faults().status = roboclaw::EmergencyStop; });
+        },
+        "faults.current_a=150", "controller_1", "controller 1");
 }
 
 void TestMotorFaults::faultsStopAndLatch() {
-    QFETCH(std::function<void(RoboClawRig &)>, breakIt);
-    QFETCH(QString, setting);
-    QFETCH(QString, name);
-    QFETCH(QString, says);
-    launch({setting, "faults.hold_s=0.1"});
-    QTRY_VERIFY(state()["ready"].toBool());
+    FETCH(std::function<void(RoboClawRig &)>, breakIt, QString, setting, QString, name, QString, says);
+    launchReady({setting, "faults.hold_s=0.1"});
     const auto isLatched = [&] { return state()["latched"].toObject().contains(name); };
     const auto tryUntil = [&](const auto &isReached) { // at 25 Hz, for 10 s at most
         for (int i = 0; i < 250 && !isReached(); ++i) {
@@ -139,9 +127,7 @@ void TestMotorFaults::faultsStopAndLatch() {
 }
 
 void TestMotorFaults::deafControllerIsNamed() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
-    call("control.acquire");
+    launchHeld();
     driveOff({{"vx", 0.4}});
     rig_->with([](auto &all) { all[1].faults().silent = true; });
     QTRY_VERIFY(!state()["ready"].toBool());
@@ -168,8 +154,7 @@ void TestMotorFaults::wrongFirmwareIsNamed() {
 }
 
 void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     rig_->with([](auto &all) {
         for (RoboClawEmulator &controller : all)
             controller.faults().corrupt = 0.03;
@@ -184,8 +169,7 @@ void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
 }
 
 void TestMotorFaults::turningUncommandedIsAFault() {
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool());
+    launchReady();
     double turned = RoboClawRig::now();
     QTimer turn;
     connect(&turn, &QTimer::timeout, this, [&] { // in steps that are shorter than a cycle

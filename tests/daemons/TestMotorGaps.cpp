@@ -80,9 +80,7 @@ QByteArray TestMotorGaps::toldState() const {
 }
 
 void TestMotorGaps::whatWasSentMeanwhileIsVoid_data() {
-    QTest::addColumn<double>("seconds");
-    QTest::addColumn<int>("lease_s");
-    QTest::addColumn<int>("times");
+    const Rows<double, int, int> row("seconds", "lease_s", "times");
     const QString gaps = qEnvironmentVariable("HERMES_GAPS", "1 3");
     int lease_s = 60;
     for (const QString &seconds : gaps.split(' ')) {
@@ -90,13 +88,11 @@ void TestMotorGaps::whatWasSentMeanwhileIsVoid_data() {
             << seconds.toDouble() << lease_s << 1;
         lease_s = 70 - lease_s; // 10 and 60 in turn
     }
-    QTest::newRow("three in a row") << 0.6 << 60 << 3;
+    row("three in a row", 0.6, 60, 3);
 }
 
 void TestMotorGaps::whatWasSentMeanwhileIsVoid() {
-    QFETCH(double, seconds);
-    QFETCH(int, lease_s);
-    QFETCH(int, times);
+    FETCH(double, seconds, int, lease_s, int, times);
     startClient(lease_s);
     for (int trial = 0; trial < trials(); ++trial) {
         if (QTest::currentTestFailed())

@@ -50,8 +50,7 @@ void TestMotorNoise::compareErrorsOfBothSides(quint64 flipped) {
 
 void TestMotorNoise::flippedBytesStopAndMoveNothing() {
     rig_->setFlips(1e-3);
-    launch();
-    QTRY_VERIFY(state()["ready"].toBool()); // set up over the noisy line
+    launchReady(); // set up over the noisy line
     const quint64 before = rig_->noise().flipped;
     rig_->setFlips(1e-3);
     call("control.acquire", {{"timeout_s", 10}});

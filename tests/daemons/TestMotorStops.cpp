@@ -23,9 +23,7 @@ private Q_SLOTS:
 
 // From before the client writes the request to the last byte of the stop of both controllers.
 void TestMotorStops::emergencyStopReachesTheWire() {
-    PatientClient client;
-    QVERIFY(client.connectTo("127.0.0.1:" + port_).ok());
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client("127.0.0.1:" + port_);
     std::vector<double> times;
     for (int trial = 0; int(times.size()) < trials(); ++trial) {
         QTRY_VERIFY(client.callAndWait("control.acquire", QJsonObject{{"timeout_s", 10}}).ok());
@@ -50,9 +48,9 @@ void TestMotorStops::emergencyStopReachesTheWire() {
 }
 
 void TestMotorStops::signalToTheClient_data() {
-    QTest::addColumn<int>("signal");
-    QTest::newRow("killed") << SIGKILL;
-    QTest::newRow("frozen") << SIGSTOP;
+    const Rows<int> row("signal");
+    row("killed", SIGKILL);
+    row("frozen", SIGSTOP);
 }
 
 void TestMotorStops::signalToTheClient() {

@@ -43,21 +43,17 @@ private Q_SLOTS:
 };
 
 void TestPacketAccount::missingPacketsAreCounted_data() {
-    QTest::addColumn<std::vector<int>>("numbers");
-    QTest::addColumn<int>("missing");
-    QTest::addColumn<int>("late");
-    QTest::newRow("none") << std::vector<int>{0, 1, 2, 3} << 0 << 0;
-    QTest::newRow("one") << std::vector<int>{0, 1, 3} << 1 << 0;
-    QTest::newRow("many") << std::vector<int>{0, 20001, 20002} << 20000 << 0;
-    QTest::newRow("swapped") << std::vector<int>{0, 2, 1, 3} << 0 << 1;
-    QTest::newRow("twice") << std::vector<int>{0, 1, 1, 2} << 0 << 1;
-    QTest::newRow("lost and twice") << std::vector<int>{0, 2, 2, 3} << 1 << 1;
+    const Rows<std::vector<int>, int, int> row("numbers", "missing", "late");
+    row("none", {0, 1, 2, 3}, 0, 0);
+    row("one", {0, 1, 3}, 1, 0);
+    row("many", {0, 20001, 20002}, 20000, 0);
+    row("swapped", {0, 2, 1, 3}, 0, 1);
+    row("twice", {0, 1, 1, 2}, 0, 1);
+    row("lost and twice", {0, 2, 2, 3}, 1, 1);
 }
 
 void TestPacketAccount::missingPacketsAreCounted() {
-    QFETCH(std::vector<int>, numbers);
-    QFETCH(int, missing);
-    QFETCH(int, late);
+    FETCH(std::vector<int>, numbers, int, missing, int, late);
     for (const bool dual : {false, true}) {
         Sensor sensor;
         sensor.dual = dual;

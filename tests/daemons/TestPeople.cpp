@@ -32,22 +32,18 @@ private Q_SLOTS:
 };
 
 void TestPeople::walkToAndFro_data() {
-    QTest::addColumn<double>("seconds");
-    QTest::addColumn<double>("x");
-    QTest::addColumn<double>("y");
-    QTest::newRow("begin") << 0.0 << 0.0 << 0.0;
-    QTest::newRow("first leg") << 2.0 << 1.0 << 0.0;
-    QTest::newRow("second leg") << 5.0 << 2.0 << 0.5;
-    QTest::newRow("end") << 6.0 << 2.0 << 1.0;
-    QTest::newRow("way back") << 7.0 << 2.0 << 0.5;
-    QTest::newRow("begin again") << 12.0 << 0.0 << 0.0;
-    QTest::newRow("second time") << 14.0 << 1.0 << 0.0;
+    const Rows<double, double, double> row("seconds", "x", "y");
+    row("begin", 0.0, 0.0, 0.0);
+    row("first leg", 2.0, 1.0, 0.0);
+    row("second leg", 5.0, 2.0, 0.5);
+    row("end", 6.0, 2.0, 1.0);
+    row("way back", 7.0, 2.0, 0.5);
+    row("begin again", 12.0, 0.0, 0.0);
+    row("second time", 14.0, 1.0, 0.0);
 }
 
 void TestPeople::walkToAndFro() {
-    QFETCH(double, seconds);
-    QFETCH(double, x);
-    QFETCH(double, y);
+    FETCH(double, seconds, double, x, double, y);
     People people({{0.5, {{0, 0}, {2, 0}, {2, 1}}}}, robotRadius);
     pass(people, seconds, farAway);
     QVERIFY((people.all()[0].position - Point(x, y)).norm() < 0.005);

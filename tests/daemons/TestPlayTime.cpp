@@ -25,20 +25,16 @@ PlayTime *(*volatile begin)(void *, std::int64_t) = [](void *memory, std::int64_
 } // namespace
 
 void TestPlayTime::longStepsAreAClockThatWasSet_data() {
-    QTest::addColumn<int>("length_s");
-    QTest::addColumn<int>("step_s");
-    QTest::addColumn<int>("played_s");
-    QTest::newRow("within a minute") << 10 << 60 << 60;
-    QTest::newRow("longer than a minute") << 10 << 61 << 0;
-    QTest::newRow("within a long recording") << 600 << 599 << 599;
-    QTest::newRow("longer than the recording") << 600 << 601 << 0;
-    QTest::newRow("back") << 600 << -1 << 0;
+    const Rows<int, int, int> row("length_s", "step_s", "played_s");
+    row("within a minute", 10, 60, 60);
+    row("longer than a minute", 10, 61, 0);
+    row("within a long recording", 600, 599, 599);
+    row("longer than the recording", 600, 601, 0);
+    row("back", 600, -1, 0);
 }
 
 void TestPlayTime::longStepsAreAClockThatWasSet() {
-    QFETCH(int, length_s);
-    QFETCH(int, step_s);
-    QFETCH(int, played_s);
+    FETCH(int, length_s, int, step_s, int, played_s);
     for (const int before : {0x00, 0x7f, 0xff}) { // whatever lay there must not matter
         alignas(PlayTime) unsigned char memory[sizeof(PlayTime)];
         std::memset(memory, before, sizeof memory);

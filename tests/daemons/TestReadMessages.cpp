@@ -57,26 +57,22 @@ void TestReadMessages::readsOdometry() {
 }
 
 void TestReadMessages::refusesOdometry_data() {
-    QTest::addColumn<QString>("member");
-    QTest::addColumn<QJsonValue>("value");
-    QTest::addColumn<QString>("error");
+    const Rows<QString, QJsonValue, QString> row("member", "value", "error");
     const QJsonValue none(QJsonValue::Null);
-    QTest::newRow("no pose") << "pose" << none << "member pose: found null, expected an object";
-    QTest::newRow("pose of text") << "pose" << QJsonValue(QJsonObject{{"x", "1"}}) << "member pose.x";
-    QTest::newRow("no heading") << "pose" << QJsonValue(QJsonObject{{"x", 1}, {"y", 1}, {"theta", none}})
-                                << "member pose.theta: found null, expected a number";
-    QTest::newRow("far beyond") << "pose" << QJsonValue(QJsonObject{{"x", 1e300}, {"y", 1}, {"theta", 1}})
-                                << "found 1e+300, expected a number from -1e+10 to 1e+10";
-    QTest::newRow("no twist") << "twist" << none << "member twist: found null";
-    QTest::newRow("no covariance") << "covariance" << none << "found null, expected an array of 9";
-    QTest::newRow("negative variance") << "covariance" << QJsonValue(QJsonArray{1, 0, 0, 0, 1, 0, 0, 0, -1})
-                                       << "member covariance.8: found -1, expected a variance";
+    row("no pose", "pose", none, "member pose: found null, expected an object");
+    row("pose of text", "pose", QJsonValue(QJsonObject{{"x", "1"}}), "member pose.x");
+    row("no heading", "pose", QJsonValue(QJsonObject{{"x", 1}, {"y", 1}, {"theta", none}}),
+        "member pose.theta: found null, expected a number");
+    row("far beyond", "pose", QJsonValue(QJsonObject{{"x", 1e300}, {"y", 1}, {"theta", 1}}),
+        "found 1e+300, expected a number from -1e+10 to 1e+10");
+    row("no twist", "twist", none, "member twist: found null");
+    row("no covariance", "covariance", none, "found null, expected an array of 9");
+    row("negative variance", "covariance", QJsonValue(QJsonArray{1, 0, 0, 0, 1, 0, 0, 0, -1}),
+        "member covariance.8: found -1, expected a variance");
 }
 
 void TestReadMessages::refusesOdometry() {
-    QFETCH(QString, member);
-    QFETCH(QJsonValue, value);
-    QFETCH(QString, error);
+    FETCH(QString, member, QJsonValue, value, QString, error);
     QJsonObject data = message();
     data[member] = value;
     const auto sample = odometryOf(data, start);
@@ -87,28 +83,22 @@ void TestReadMessages::refusesOdometry() {
 }
 
 void TestReadMessages::readsScans_data() {
-    QTest::addColumn<QJsonObject>("data");
-    QTest::addColumn<QString>("error");
+    const Rows<QJsonObject, QString> row("data", "error");
     const QJsonArray one{1.0}, two{1.0, 2.0};
-    QTest::newRow("good") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", two}} << "";
-    QTest::newRow("no points") << QJsonObject{{"stamp", 1}, {"x", QJsonArray()}, {"y", QJsonArray()}} << "";
-    QTest::newRow("no stamp") << QJsonObject{{"x", two}, {"y", two}} << "stamp";
-    QTest::newRow("no x") << QJsonObject{{"stamp", 1}, {"y", two}} << "member x: found nothing";
-    QTest::newRow("fewer y") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", one}}
-                             << "member y: found an array of 1, expected 2";
-    QTest::newRow("null in x") << QJsonObject{{"stamp", 1},
-                                              {"x", QJsonArray{1, QJsonValue::Null}},
-                                              {"y", two}}
-                               << "member x.1: found null, expected a number";
-    QTest::newRow("too large") << QJsonObject{{"stamp", 1}, {"x", QJsonArray{1, 1e300}}, {"y", two}}
-                               << "member x.1: found 1e+300, expected a number";
-    QTest::newRow("t of another size")
-        << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", one}} << "member t";
+    row("good", {{"stamp", 1}, {"x", two}, {"y", two}, {"t", two}}, "");
+    row("no points", {{"stamp", 1}, {"x", QJsonArray()}, {"y", QJsonArray()}}, "");
+    row("no stamp", {{"x", two}, {"y", two}}, "stamp");
+    row("no x", {{"stamp", 1}, {"y", two}}, "member x: found nothing");
+    row("fewer y", {{"stamp", 1}, {"x", two}, {"y", one}}, "member y: found an array of 1, expected 2");
+    row("null in x", {{"stamp", 1}, {"x", QJsonArray{1, QJsonValue::Null}}, {"y", two}},
+        "member x.1: found null, expected a number");
+    row("too large", {{"stamp", 1}, {"x", QJsonArray{1, 1e300}}, {"y", two}},
+        "member x.1: found 1e+300, expected a number");
+    row("t of another size", {{"stamp", 1}, {"x", two}, {"y", two}, {"t", one}}, "member t");
 }
 
 void TestReadMessages::readsScans() {
-    QFETCH(QJsonObject, data);
-    QFETCH(QString, error);
+    FETCH(QJsonObject, data, QString, error);
     const auto scan = scanOf(data);
     QCOMPARE(scan.ok(), error.isEmpty());
     if (!scan)

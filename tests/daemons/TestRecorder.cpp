@@ -1,15 +1,13 @@
 #include "common/capture/PcapReader.h"
 #include "daemons/velodynelogger/Recorder.h"
 #include "protocol/wire/Fields.h"
+#include "tests/support/FileSizeLimit.h"
 #include "tests/support/Sensor.h"
 
 #include <QProcess>
 #include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QtTest>
-
-#include <csignal>
-#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::velodynelogger;
@@ -211,17 +209,12 @@ void TestRecorder::lossesOfTheReceiverAreItsOwn() {
 void TestRecorder::reportsTheDisk() {
     QTemporaryDir folder;
     const Sensor sensor;
-    // A limit on the size of files stands for a full disk; without the signal it is an error of write().
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit before;
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit small{1000000, before.rlim_max};
     Recorder recorder;
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &small), 0);
+    std::optional<FileSizeLimit> disk(1000000);
     QVERIFY(recorder.begin(planIn(folder)).ok());
     push(recorder, sensor, 0, 2000);
     QTRY_VERIFY(recorder.state().error);
-    setrlimit(RLIMIT_FSIZE, &before);
+    disk.reset();
     recorder.end();
     const RecordingState state = recorder.state();
     QCOMPARE(state.error->code, int(ErrorCode::InputOutput));
@@ -259,19 +252,18 @@ void TestRecorder::toolsReadTheFiles() {
 }
 
 void TestRecorder::repairReadsOnWhereTheSidecarEnds_data() {
-    QTest::addColumn<int>("known"); // packets when the sidecar was written
-    QTest::addColumn<int>("cut");   // bytes missing at the end
-    QTest::newRow("whole, all known") << 300 << 0;
-    QTest::newRow("whole") << 120 << 0;
-    QTest::newRow("cut in a payload") << 120 << 100;
-    QTest::newRow("cut in a record's header") << 120 << 1206 + 42 + 3;
-    QTest::newRow("sidecar knows nothing") << 0 << 1;
-    QTest::newRow("sidecar knows more than is there") << 300 << 1000 * 100;
+    const Rows<int, int> row(
+        "known", "cut"); // known: packets when the sidecar was written; cut: bytes missing at the end
+    row("whole, all known", 300, 0);
+    row("whole", 120, 0);
+    row("cut in a payload", 120, 100);
+    row("cut in a record's header", 120, 1206 + 42 + 3);
+    row("sidecar knows nothing", 0, 1);
+    row("sidecar knows more than is there", 300, 1000 * 100);
 }
 
 void TestRecorder::repairReadsOnWhereTheSidecarEnds() {
-    QFETCH(int, known);
-    QFETCH(int, cut);
+    FETCH(int, known, int, cut);
     QTemporaryDir folder;
     const Sensor sensor;
     RecordingPlan plan = planIn(folder);
@@ -322,6 +314,16 @@ void TestRecorder::repairOfDamagedFiles() {
     QCOMPARE(refused.error().data.toObject().value("path").toString(),
              folder.filePath("velodynelogger-0002.pcap"));
     QCOMPARE(QFileInfo(folder.filePath("velodynelogger-0002.pcap")).size(), 5000); // left alone
+    QVERIFY(QFile::remove(folder.filePath("velodynelogger-0002.pcap")));
+    QTemporaryDir other; // a capture of somebody else's, with something behind its packets
+    QFile victim(other.filePath("victim"));
+    QVERIFY(QFile::copy(folder.filePath("velodynelogger-0001.pcap"), victim.fileName()));
+    QVERIFY(victim.open(QIODevice::Append) && victim.write("precious") == 8);
+    victim.close();
+    const qint64 size = victim.size();
+    QVERIFY(QFile::link(victim.fileName(), folder.filePath("velodynelogger-0002.pcap")));
+    QVERIFY(!recorder.repair(planIn(folder), sidecar).ok());
+    QCOMPARE(victim.size(), size);
 }
 
 QTEST_GUILESS_MAIN(TestRecorder)

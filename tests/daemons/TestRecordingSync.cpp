@@ -195,9 +195,9 @@ private Q_SLOTS:
 
 private:
     static void kinds() {
-        QTest::addColumn<QString>("kind");
-        QTest::newRow("lidar") << "velodynelogger";
-        QTest::newRow("serial") << "seriallogger";
+        const Rows<QString> row("kind");
+        row("lidar", "velodynelogger");
+        row("serial", "seriallogger");
     }
 };
 

@@ -55,8 +55,7 @@ void TestRoboClawEmulator::answersAsPublished_data() {
 }
 
 void TestRoboClawEmulator::answersAsPublished() {
-    QFETCH(QByteArray, sent);
-    QFETCH(QByteArray, answer);
+    FETCH(QByteArray, sent, QByteArray, answer);
     Drivetrain::Options options;
     options.battery.full = 25.2;
     Drivetrain drivetrain(options);
@@ -64,15 +63,15 @@ void TestRoboClawEmulator::answersAsPublished() {
     RoboClawClient client(drivetrain);
     if (QByteArray(QTest::currentDataTag()) == "version") // its CRC is that of the oracle
         answer = answer.left(answer.size() - 2) +
-                 RoboClawClient::number(RoboClawClient::crcOf(sent + answer.left(answer.size() - 2)), 2);
+                 number(RoboClawClient::crcOf(sent + answer.left(answer.size() - 2)), 2);
     QCOMPARE(client.send(sent).toHex(), answer.toHex());
 }
 
 void TestRoboClawEmulator::bothAddressesShareALine() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    QVERIFY(client.write(0x80, 22, RoboClawClient::number(111, 4)));
-    QVERIFY(client.write(0x81, 22, RoboClawClient::number(222, 4)));
+    QVERIFY(client.write(0x80, 22, number(111, 4)));
+    QVERIFY(client.write(0x81, 22, number(222, 4)));
     QCOMPARE(client.count(0x80, 0), std::int64_t(111));
     QCOMPARE(client.count(0x81, 0), std::int64_t(222));
     QCOMPARE(client.read(0x82, 24), QByteArray("silent"));
@@ -87,7 +86,7 @@ void TestRoboClawEmulator::linesOfTheirOwn() {
     options.controller[0].anyAddress = options.controller[1].anyAddress = true; // as on USB
     Drivetrain drivetrain(options);
     RoboClawClient first(drivetrain, 0), second(drivetrain, 1);
-    QVERIFY(first.write(0x80, 22, RoboClawClient::number(111, 4)));
+    QVERIFY(first.write(0x80, 22, number(111, 4)));
     QCOMPARE(first.count(0x87, 0), std::int64_t(111));
     QCOMPARE(second.count(0x80, 0), std::int64_t(0));
 }
@@ -151,53 +150,52 @@ void TestRoboClawEmulator::everyWriteIsAcknowledged() {
         QVERIFY2(!client.write(0x80, entry.key(), QByteArray(entry.value() - 1, '\0')), name.constData());
         QCOMPARE(drivetrain.controller(0).counts().requests, requests);
     }
-    QVERIFY(client.write(0x80, 94, RoboClawClient::number(0xE22EAB7A, 4)));
+    QVERIFY(client.write(0x80, 94, number(0xE22EAB7A, 4)));
 }
 
 void TestRoboClawEmulator::settingsAreKept() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    QVERIFY(client.write(0x80, 14, RoboClawClient::number(3, 1)));
-    QCOMPARE(client.read(0x80, 15), RoboClawClient::number(3, 1));
+    QVERIFY(client.write(0x80, 14, number(3, 1)));
+    QCOMPARE(client.read(0x80, 15), number(3, 1));
     QByteArray dpi, pid; // D, P, I, QPPS are told as P, I, D, QPPS
     for (const int value : {0x4000, 0x18000, 0x8000, 44000})
-        dpi += RoboClawClient::number(value, 4);
+        dpi += number(value, 4);
     for (const int value : {0x18000, 0x8000, 0x4000, 44000})
-        pid += RoboClawClient::number(value, 4);
+        pid += number(value, 4);
     QVERIFY(client.write(0x80, 28, dpi));
     QCOMPARE(client.read(0x80, 55), pid);
     QVERIFY(client.read(0x80, 56) != pid);
-    QVERIFY(client.write(0x80, 57, RoboClawClient::number(0x00960104, 4)));
-    QCOMPARE(client.read(0x80, 59), RoboClawClient::number(0x00960104, 4));
-    client.write(0x80, 253, RoboClawClient::number(0x05ABCD, 3));
-    QCOMPARE(client.read(0x80, 252, RoboClawClient::number(5, 1)), RoboClawClient::number(0xABCD, 2));
-    QCOMPARE(client.read(0x80, 252, RoboClawClient::number(6, 1)), RoboClawClient::number(0, 2));
+    QVERIFY(client.write(0x80, 57, number(0x00960104, 4)));
+    QCOMPARE(client.read(0x80, 59), number(0x00960104, 4));
+    client.write(0x80, 253, number(0x05ABCD, 3));
+    QCOMPARE(client.read(0x80, 252, number(5, 1)), number(0xABCD, 2));
+    QCOMPARE(client.read(0x80, 252, number(6, 1)), number(0, 2));
     for (const auto &[write, read] : std::vector<std::pair<int, int>>{{76, 77}, {100, 101}, {117, 118}}) {
-        const QByteArray data = RoboClawClient::number(0x01020304, read == 118 ? 4 : 2);
+        const QByteArray data = number(0x01020304, read == 118 ? 4 : 2);
         QVERIFY(client.write(0x80, write, data));
         QCOMPARE(client.read(0x80, read), data);
     }
-    QVERIFY(client.write(0x80, 70, RoboClawClient::number(1111, 2)));
-    QVERIFY(client.write(0x80, 71, RoboClawClient::number(2222, 2)));
-    QCOMPARE(client.read(0x80, 72), RoboClawClient::number(1111, 2) + RoboClawClient::number(2222, 2));
-    QVERIFY(client.write(0x80, 103, RoboClawClient::number(65535, 2)));
-    QCOMPARE(client.read(0x80, 104), RoboClawClient::number(0xFFFF, 4));
-    QVERIFY(client.write(0x80, 105, RoboClawClient::number(8000, 2) + RoboClawClient::number(3000, 4)));
-    QCOMPARE(client.read(0x80, 107), RoboClawClient::number(8000, 2) + RoboClawClient::number(3000, 4) +
-                                         RoboClawClient::number(0, 6));
-    const auto volts = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
-    QVERIFY(client.write(0x80, 115, RoboClawClient::number(-10, 1) + RoboClawClient::number(3, 1)));
+    QVERIFY(client.write(0x80, 70, number(1111, 2)));
+    QVERIFY(client.write(0x80, 71, number(2222, 2)));
+    QCOMPARE(client.read(0x80, 72), number(1111, 2) + number(2222, 2));
+    QVERIFY(client.write(0x80, 103, number(65535, 2)));
+    QCOMPARE(client.read(0x80, 104), number(0xFFFF, 4));
+    QVERIFY(client.write(0x80, 105, number(8000, 2) + number(3000, 4)));
+    QCOMPARE(client.read(0x80, 107), number(8000, 2) + number(3000, 4) + number(0, 6));
+    const auto volts = integer(client.read(0x80, 24), 0, 2);
+    QVERIFY(client.write(0x80, 115, number(-10, 1) + number(3, 1)));
     QCOMPARE(client.read(0x80, 116).toHex(), QByteArray("f603"));
-    QCOMPARE(RoboClawClient::integer(client.read(0x80, 24), 0, 2), volts - 10);
-    QCOMPARE(RoboClawClient::integer(client.read(0x80, 25), 0, 2), std::int64_t(53));
-    QVERIFY(client.write(0x80, 93, RoboClawClient::number(0x20, 1)));
-    QCOMPARE(client.read(0x80, 91), RoboClawClient::number(0x0020, 2));
-    QVERIFY(!client.write(0x80, 94, RoboClawClient::number(1, 4))); // not the key
+    QCOMPARE(integer(client.read(0x80, 24), 0, 2), volts - 10);
+    QCOMPARE(integer(client.read(0x80, 25), 0, 2), std::int64_t(53));
+    QVERIFY(client.write(0x80, 93, number(0x20, 1)));
+    QCOMPARE(client.read(0x80, 91), number(0x0020, 2));
+    QVERIFY(!client.write(0x80, 94, number(1, 4))); // not the key
     QVERIFY(client.write(0x80, 95));
     QCOMPARE(client.read(0x80, 55), pid);
     QVERIFY(client.write(0x80, 80));
     QCOMPARE(client.read(0x80, 55), client.read(0x80, 56));
-    QCOMPARE(client.read(0x80, 15), RoboClawClient::number(0, 1));
+    QCOMPARE(client.read(0x80, 15), number(0, 1));
 }
 
 void TestRoboClawEmulator::faultsOfTheLine() {
@@ -220,7 +218,7 @@ void TestRoboClawEmulator::faultsOfTheLine() {
     QVERIFY(client.read(0x80, 24).size() == 2);
     QCOMPARE(client.delay, 0.025);
     faults = {};
-    setQpps(client, 150000);
+    setQpps(client);
     QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
     pass(drivetrain, 0.5);
     faults.silent = true;
@@ -235,8 +233,8 @@ void TestRoboClawEmulator::statusBitsOfBothWidths() {
     options.controller[1].status = roboclaw::Dialect::Other;
     Drivetrain drivetrain(options);
     RoboClawClient client(drivetrain);
-    for (const int number : {0, 1})
-        drivetrain.controller(number).faults().status = 0x00080001;
+    for (const int i : {0, 1})
+        drivetrain.controller(i).faults().status = 0x00080001;
     QCOMPARE(client.read(0x80, 90).toHex(), QByteArray("00080001"));
     QCOMPARE(client.read(0x81, 90).toHex(), QByteArray("0804"));
 }
@@ -244,13 +242,10 @@ void TestRoboClawEmulator::statusBitsOfBothWidths() {
 void TestRoboClawEmulator::oldCommandsSetTheLimits() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    const auto set = [&](int command, int value) {
-        QVERIFY(client.write(0x80, command, RoboClawClient::number(value, 1)));
-    };
+    const auto set = [&](int command, int value) { QVERIFY(client.write(0x80, command, number(value, 1))); };
     const auto limits = [&](int command) {
         const QByteArray told = client.read(0x80, command);
-        return QPair<int, int>(int(RoboClawClient::integer(told, 0, 2)),
-                               int(RoboClawClient::integer(told, 2, 2)));
+        return QPair<int, int>(int(integer(told, 0, 2)), int(integer(told, 2, 2)));
     };
     const auto logic = limits(60);
     set(2, 25); // (11 V - 6 V) * 5
@@ -264,20 +259,19 @@ void TestRoboClawEmulator::oldCommandsSetTheLimits() {
     QCOMPARE(limits(59), qMakePair(110, 250));
     set(2, 140); // 34 V
     pass(drivetrain, 0.01);
-    QVERIFY(RoboClawClient::integer(client.read(0x80, 90), 0, 4) & 0x4000);
+    QVERIFY(integer(client.read(0x80, 90), 0, 4) & 0x4000);
 }
 
 void TestRoboClawEmulator::encoderStatusTellsWraps() {
     Drivetrain drivetrain;
-    RoboClawClient client(drivetrain);
-    setQpps(client, 150000);
+    RoboClawClient client = readyClient(drivetrain);
     const auto status = [&](int command) { return int(quint8(client.read(0x80, command)[4])); };
     const auto drive = [&](int m1, int m2) {
         QVERIFY(client.speeds(0x80, m1, m2, 1000000));
         pass(drivetrain, 0.1);
     };
     QCOMPARE(status(16), 0);
-    QVERIFY(client.write(0x80, 22, RoboClawClient::number(-5, 4)));
+    QVERIFY(client.write(0x80, 22, number(-5, 4)));
     QCOMPARE(status(16), 0); // what is set is no wrap
     drive(10000, -10000);
     QCOMPARE(status(16), 4);     // over the end of 32 bits
@@ -297,25 +291,21 @@ void TestRoboClawEmulator::writtenCellIsAcknowledgedTwice() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
     QByteArray packet = QByteArray::fromHex("80FD05ABCD");
-    packet += RoboClawClient::number(RoboClawClient::crcOf(packet), 2);
+    packet += number(RoboClawClient::crcOf(packet), 2);
     QCOMPARE(client.send(packet).toHex(), QByteArray("ffaa"));
     QCOMPARE(client.delay, 0.005); // of the second: once the first was read
-    QCOMPARE(client.read(0x80, 252, RoboClawClient::number(5, 1)), RoboClawClient::number(0xABCD, 2));
+    QCOMPARE(client.read(0x80, 252, number(5, 1)), number(0xABCD, 2));
 }
 
 void TestRoboClawEmulator::firmwareKnowsItsCommands_data() {
-    QTest::addColumn<QString>("firmware");
-    QTest::addColumn<int>("statusSize");
-    QTest::addColumn<QList<int>>("unknown");
-    QTest::newRow("16 bits") << "4.1.28" << 2 << QList<int>{72, 107, 110, 113, 116, 118};
-    QTest::newRow("usual") << "4.2.8" << 4 << QList<int>{};
-    QTest::newRow("new") << "4.3.6" << 4 << QList<int>{101, 104, 107};
+    const Rows<QString, int, QList<int>> row("firmware", "statusSize", "unknown");
+    row("16 bits", "4.1.28", 2, {72, 107, 110, 113, 116, 118});
+    row("usual", "4.2.8", 4, {});
+    row("new", "4.3.6", 4, {101, 104, 107});
 }
 
 void TestRoboClawEmulator::firmwareKnowsItsCommands() {
-    QFETCH(QString, firmware);
-    QFETCH(int, statusSize);
-    QFETCH(QList<int>, unknown);
+    FETCH(QString, firmware, int, statusSize, QList<int>, unknown);
     Drivetrain::Options options;
     options.controller[0].setFirmware(firmware.toStdString());
     Drivetrain drivetrain(options);
@@ -325,7 +315,7 @@ void TestRoboClawEmulator::firmwareKnowsItsCommands() {
     for (const int command : {15, 24, 49, 72, 77, 78, 101, 104, 107, 110, 113, 116, 118})
         QCOMPARE(client.read(0x80, command) == "silent", unknown.contains(command));
     const bool knowsOld = firmware != "4.3.6";
-    QCOMPARE(client.write(0x80, 0, RoboClawClient::number(127, 1)), knowsOld);
+    QCOMPARE(client.write(0x80, 0, number(127, 1)), knowsOld);
     pass(drivetrain, 0.2);
     QCOMPARE(drivetrain.isMoving(), knowsOld);
 }
@@ -340,8 +330,8 @@ void TestRoboClawEmulator::newFirmwareHasItsOwnFields() {
     pass(drivetrain, 0.02);
     QVERIFY(client.write(0x80, 57, QByteArray::fromHex("0064010401")));
     QCOMPARE(client.read(0x80, 59).toHex(), QByteArray("0064010401"));
-    QVERIFY(client.write(0x80, 68, RoboClawClient::number(1000, 4) + RoboClawClient::number(2000, 4)));
-    QCOMPARE(client.read(0x80, 81), RoboClawClient::number(1000, 4) + RoboClawClient::number(0, 4));
+    QVERIFY(client.write(0x80, 68, number(1000, 4) + number(2000, 4)));
+    QCOMPARE(client.read(0x80, 81), number(1000, 4) + number(0, 4));
     QVERIFY(client.write(0x80, 74, QByteArray::fromHex("0102030405")));
     QCOMPARE(client.read(0x80, 75).toHex(), QByteArray("010203"));
     QVERIFY(client.write(0x80, 148, QByteArray::fromHex("0101")));
@@ -353,9 +343,9 @@ void TestRoboClawEmulator::commandsCanBeUnknown() {
     options.controller[0].unknown = {roboclaw::Command::SetSerialTimeout};
     Drivetrain drivetrain(options);
     RoboClawClient client(drivetrain);
-    QVERIFY(!client.write(0x80, 14, RoboClawClient::number(2, 1)));
-    QVERIFY(client.write(0x81, 14, RoboClawClient::number(2, 1)));
-    QCOMPARE(client.read(0x80, 15), RoboClawClient::number(0, 1));
+    QVERIFY(!client.write(0x80, 14, number(2, 1)));
+    QVERIFY(client.write(0x81, 14, number(2, 1)));
+    QCOMPARE(client.read(0x80, 15), number(0, 1));
     QCOMPARE(drivetrain.controller(0).counts().unknown, std::uint64_t(1));
 }
 

@@ -18,24 +18,18 @@ private Q_SLOTS:
 };
 
 void TestRobotBody::wheelsMoveTheBody_data() {
-    QTest::addColumn<bool>("mecanum");
-    QTest::addColumn<QVector<double>>("wheels"); // front left, front right, rear left, rear right
-    QTest::addColumn<QVector<double>>("twist");
-    QTest::newRow("forward") << true << QVector<double>{10, 10, 10, 10} << QVector<double>{1, 0, 0};
-    QTest::newRow("left") << true << QVector<double>{-10, 10, 10, -10} << QVector<double>{0, 1, 0};
-    QTest::newRow("turn") << true << QVector<double>{-10, 10, -10, 10} << QVector<double>{0, 0, 2};
-    QTest::newRow("against each other")
-        << true << QVector<double>{10, 10, -10, -10} << QVector<double>{0, 0, 0};
-    QTest::newRow("differential forward")
-        << false << QVector<double>{10, 10, 10, 10} << QVector<double>{1, 0, 0};
-    QTest::newRow("differential turn")
-        << false << QVector<double>{-10, 10, -10, 10} << QVector<double>{0, 0, 4};
+    const Rows<bool, QVector<double>, QVector<double>> row(
+        "mecanum", "wheels", "twist"); // wheels: front left, front right, rear left, rear right
+    row("forward", true, {10, 10, 10, 10}, {1, 0, 0});
+    row("left", true, {-10, 10, 10, -10}, {0, 1, 0});
+    row("turn", true, {-10, 10, -10, 10}, {0, 0, 2});
+    row("against each other", true, {10, 10, -10, -10}, {0, 0, 0});
+    row("differential forward", false, {10, 10, 10, 10}, {1, 0, 0});
+    row("differential turn", false, {-10, 10, -10, 10}, {0, 0, 4});
 }
 
 void TestRobotBody::wheelsMoveTheBody() {
-    QFETCH(bool, mecanum);
-    QFETCH(QVector<double>, wheels);
-    QFETCH(QVector<double>, twist);
+    FETCH(bool, mecanum, QVector<double>, wheels, QVector<double>, twist);
     WheelBase base;
     base.kind = mecanum ? WheelBase::Kind::Mecanum : WheelBase::Kind::Differential;
     const Twist2D found = base.twistOf({wheels[0], wheels[1], wheels[2], wheels[3]});

@@ -1,9 +1,8 @@
 #include "MatcherFixture.h"
+#include "tests/support/FileSizeLimit.h"
 
-#include <csignal>
 #include <future>
 #include <limits>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 using namespace hermes;
@@ -99,14 +98,10 @@ void TestScanMatcher::refusesToOverwriteAndNamesThePath() {
 
 void TestScanMatcher::fullDiskLeavesNoFile() {
     drive(0, 3);
-    std::signal(SIGXFSZ, SIG_IGN); // a limit of the file size stands for the disk
-    rlimit before;
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit tiny{100, before.rlim_max};
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &tiny), 0);
+    std::optional<FileSizeLimit> disk(100);
     const Error map = failure("map.save", {{"path", "room.csv"}});
     const auto settings = matcher->settings().save(folder->filePath("settings.json"));
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
+    disk.reset();
     QVERIFY2(map.is(ErrorCode::InputOutput), qPrintable(map.message));
     QVERIFY(!settings.ok());
     QVERIFY(QDir(folder->path()).entryList(QDir::Files).isEmpty());
@@ -114,10 +109,8 @@ void TestScanMatcher::fullDiskLeavesNoFile() {
 
 void TestScanMatcher::loadOfABadFileNamesTheLine() {
     drive(0, 3);
-    QFile file(folder->filePath("bad.csv"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
-    file.close();
+    put(folder->filePath("bad.csv"),
+        "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
     const Error error = failure("map.load", {{"path", "bad.csv"}});
     QVERIFY2(error.message.contains("bad.csv:2"), qPrintable(error.message));
     QVERIFY(call("map.get")["size"].toInt() > 0);                                         // the old map stays
@@ -243,9 +236,9 @@ void TestScanMatcher::aLoadedMapGrowsNoGhost() {
 }
 
 void TestScanMatcher::aReplayLeavesTheLiveMapAlone_data() {
-    QTest::addColumn<QString>("mode");
-    QTest::newRow("mapping") << "mapping";
-    QTest::newRow("localization") << "localization";
+    const Rows<QString> row("mode");
+    row("mapping", "mapping");
+    row("localization", "localization");
 }
 
 void TestScanMatcher::aReplayLeavesTheLiveMapAlone() {

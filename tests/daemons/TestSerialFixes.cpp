@@ -156,12 +156,19 @@ void TestSerialFixes::oneFixForEachMoment_data() {
                    sentence("GPRMC,,V,,,,,,,,,,N");
         },
         three({-1, false, -1}));
+    row(
+        "three decimals, and two of them rounded",
+        [](const QByteArray &t) { return R::gga(t.left(6) + ".30") + R::rmc(t.left(6) + ".295"); },
+        three({noon + 0.3, true, 48.5, speed, 520.5}));
+    row(
+        "three decimals, and two of them cut",
+        [](const QByteArray &t) { return R::gga(t.left(6) + ".299") + R::rmc(t.left(6) + ".29"); },
+        three({noon + 0.299, true, 48.5, speed, 520.5}));
     row("neither fix", [](auto t) { return R::zda(t) + R::vtg() + sentence("GPGSV,1,1,00"); }, {});
 }
 
 void TestSerialFixes::oneFixForEachMoment() {
-    QFETCH(QByteArrayList, bursts);
-    QFETCH(QList<Wanted>, wanted);
+    FETCH(QByteArrayList, bursts, QList<Wanted>, wanted);
     for (const bool live : {false, true}) {
         NmeaStream stream;
         stream.live = live;
@@ -184,23 +191,22 @@ void TestSerialFixes::oneFixForEachMoment() {
 }
 
 void TestSerialFixes::completeOnesAreGivenAtOnce_data() {
-    QTest::addColumn<QByteArrayList>("sentences"); // with TIME in them
-    QTest::addColumn<int>("complete");             // at which of them
+    const Rows<QByteArrayList, int> row(
+        "sentences", "complete"); // sentences: with TIME in them; complete: at which of them
     const QByteArray rmc = R::rmc("TIME"), gga = R::gga("TIME"), gl = R::gga("TIME", "GL"),
                      gll = R::gll("TIME"), gns = R::gns("TIME"), zda = R::zda("TIME");
-    QTest::newRow("RMC") << QByteArrayList{rmc} << 0;
-    QTest::newRow("RMC, GGA") << QByteArrayList{rmc, gga} << 1;
-    QTest::newRow("GGA, RMC") << QByteArrayList{gga, rmc} << 1;
-    QTest::newRow("GLL tells nothing more") << QByteArrayList{rmc, gga, gll} << 1;
-    QTest::newRow("two constellations") << QByteArrayList{gga, gl, gll, rmc} << 3;
-    QTest::newRow("VTG behind") << QByteArrayList{gga, gll, R::vtg()} << 2;
-    QTest::newRow("VTG, RMC") << QByteArrayList{gns, R::vtg(), rmc} << 1; // its date is known
-    QTest::newRow("ZDA behind") << QByteArrayList{gll, zda} << 0;         // for the same reason
+    row("RMC", {rmc}, 0);
+    row("RMC, GGA", {rmc, gga}, 1);
+    row("GGA, RMC", {gga, rmc}, 1);
+    row("GLL tells nothing more", {rmc, gga, gll}, 1);
+    row("two constellations", {gga, gl, gll, rmc}, 3);
+    row("VTG behind", {gga, gll, R::vtg()}, 2);
+    row("VTG, RMC", {gns, R::vtg(), rmc}, 1); // its date is known
+    row("ZDA behind", {gll, zda}, 0);         // for the same reason
 }
 
 void TestSerialFixes::completeOnesAreGivenAtOnce() {
-    QFETCH(QByteArrayList, sentences);
-    QFETCH(int, complete);
+    FETCH(QByteArrayList, sentences, int, complete);
     NmeaStream stream;
     stream.live = true;
     for (int second = 0; second < 5; ++second) {
@@ -237,33 +243,27 @@ void TestSerialFixes::whatIsMissingIsNotWaitedForLong() {
 }
 
 void TestSerialFixes::dateOfTheDay_data() {
-    QTest::addColumn<QByteArrayList>("bursts");
-    QTest::addColumn<QList<double>>("times"); // since the beginning of the day; -1: unknown
-    QTest::newRow("known from RMC") << QByteArrayList{R::rmc("120000"), R::gga("120001"), R::gll("120002")}
-                                    << QList<double>{43200, 43201, 43202};
-    QTest::newRow("known from ZDA") << QByteArrayList{R::gga("120000"), R::gga("120001") + R::zda("120001"),
-                                                      R::gga("120002")}
-                                    << QList<double>{-1, -1, 43202}; // it was given already
-    QTest::newRow("midnight") << QByteArrayList{R::gga("235958") + R::rmc("235958"), R::gga("235959"),
-                                                R::gga("000000"), R::gga("000001"),
-                                                R::rmc("000002", "GP", "020130")}
-                              << QList<double>{86398, 86399, 86400, 86401, 86402};
-    QTest::newRow("midnight between GGA and RMC")
-        << QByteArrayList{R::rmc("235958") + R::gga("235958"), R::gga("235959.00"),
-                          R::rmc("000000", "GP", "020130") + R::gga("000000"), R::gga("000001")}
-        << QList<double>{86398, 86399, 86400, 86401};
-    QTest::newRow("leap second") << QByteArrayList{R::rmc("235959"), R::gga("235960"), R::gga("000000")}
-                                 << QList<double>{86399, 86400, 86400};
-    QTest::newRow("back over midnight")
-        << QByteArrayList{R::rmc("000000", "GP", "020130"), R::gga("235959"), R::gga("000000")}
-        << QList<double>{86400, 86399, 86400};
-    QTest::newRow("an impossible date")
-        << QByteArrayList{R::rmc("120000", "GP", "310230"), R::gga("120001")} << QList<double>{-1};
+    const Rows<QByteArrayList, QList<double>> row(
+        "bursts", "times"); // times: since the beginning of the day; -1: unknown
+    row("known from RMC", {R::rmc("120000"), R::gga("120001"), R::gll("120002")}, {43200, 43201, 43202});
+    row("known from ZDA", {R::gga("120000"), R::gga("120001") + R::zda("120001"), R::gga("120002")},
+        {-1, -1, 43202}); // it was given already
+    row("midnight",
+        {R::gga("235958") + R::rmc("235958"), R::gga("235959"), R::gga("000000"), R::gga("000001"),
+         R::rmc("000002", "GP", "020130")},
+        {86398, 86399, 86400, 86401, 86402});
+    row("midnight between GGA and RMC",
+        {R::rmc("235958") + R::gga("235958"), R::gga("235959.00"),
+         R::rmc("000000", "GP", "020130") + R::gga("000000"), R::gga("000001")},
+        {86398, 86399, 86400, 86401});
+    row("leap second", {R::rmc("235959"), R::gga("235960"), R::gga("000000")}, {86399, 86400, 86400});
+    row("back over midnight", {R::rmc("000000", "GP", "020130"), R::gga("235959"), R::gga("000000")},
+        {86400, 86399, 86400});
+    row("an impossible date", {R::rmc("120000", "GP", "310230"), R::gga("120001")}, {-1, -1});
 }
 
 void TestSerialFixes::dateOfTheDay() {
-    QFETCH(QByteArrayList, bursts);
-    QFETCH(QList<double>, times);
+    FETCH(QByteArrayList, bursts, QList<double>, times);
     NmeaStream stream;
     for (int i = 0; i < bursts.size(); ++i)
         stream.feed(i * 1000, bursts[i]);
@@ -275,19 +275,17 @@ void TestSerialFixes::dateOfTheDay() {
 }
 
 void TestSerialFixes::theClockOfTheReceiver_data() {
-    QTest::addColumn<QByteArrayList>("seconds"); // of 12:00
-    QTest::addColumn<bool>("pauses");
-    QTest::newRow("goes on") << QByteArrayList{"00", "01", "02", "03"} << true;
-    QTest::newRow("goes on, all at once") << QByteArrayList{"00", "01", "02", "03"} << false;
-    QTest::newRow("leaves out") << QByteArrayList{"00", "02", "05", "59"} << false;
-    QTest::newRow("steps back by one") << QByteArrayList{"10", "11", "10", "11", "12"} << true;
-    QTest::newRow("steps back by more") << QByteArrayList{"15", "16", "17", "03", "04"} << false;
-    QTest::newRow("stands") << QByteArrayList{"10", "10", "10"} << true;
+    const Rows<QByteArrayList, bool> row("seconds", "pauses"); // seconds: of 12:00
+    row("goes on", {"00", "01", "02", "03"}, true);
+    row("goes on, all at once", {"00", "01", "02", "03"}, false);
+    row("leaves out", {"00", "02", "05", "59"}, false);
+    row("steps back by one", {"10", "11", "10", "11", "12"}, true);
+    row("steps back by more", {"15", "16", "17", "03", "04"}, false);
+    row("stands", {"10", "10", "10"}, true);
 }
 
 void TestSerialFixes::theClockOfTheReceiver() {
-    QFETCH(QByteArrayList, seconds);
-    QFETCH(bool, pauses);
+    FETCH(QByteArrayList, seconds, bool, pauses);
     for (const bool rmcFirst : {true, false}) {
         NmeaStream stream;
         for (int i = 0; i < seconds.size(); ++i) {

@@ -21,34 +21,22 @@ private Q_SLOTS:
 };
 
 void TestSerialLogger::wrongPortsAreNamed_data() {
-    QTest::addColumn<QString>("ports");
-    QTest::addColumn<QString>("complaint");
-    QTest::newRow("no array") << "{}"
-                              << "ports";
-    QTest::newRow("no url") << R"([{"name":"a"}])"
-                            << "url";
-    QTest::newRow("no name") << R"([{"url":"tcp://127.0.0.1:1"}])"
-                             << "name";
-    QTest::newRow("path as name") << R"([{"name":"a/b","url":"tcp://127.0.0.1:1"}])"
-                                  << "name";
-    QTest::newRow("unknown member") << R"([{"name":"a","url":"tcp://127.0.0.1:1","baud":1}])"
-                                    << "baud";
-    QTest::newRow("unknown scheme") << R"([{"name":"a","url":"usb://x"}])"
-                                    << "ports.0.url";
-    QTest::newRow("no address") << R"([{"name":"a","url":""}])"
-                                << "ports.0.url";
-    QTest::newRow("no device") << R"([{"name":"a","url":"serial://"}])"
-                               << "ports.0.url";
-    QTest::newRow("unknown view") << R"([{"name":"a","url":"tcp://127.0.0.1:1","view":"hex"}])"
-                                  << "view";
-    QTest::newRow("twice")
-        << R"([{"name":"a","url":"tcp://127.0.0.1:1"},{"name":"a","url":"tcp://127.0.0.1:2"}])"
-        << "ports.1.name";
+    const Rows<QString, QString> row("ports", "complaint");
+    row("no array", "{}", "ports");
+    row("no url", R"([{"name":"a"}])", "url");
+    row("no name", R"([{"url":"tcp://127.0.0.1:1"}])", "name");
+    row("path as name", R"([{"name":"a/b","url":"tcp://127.0.0.1:1"}])", "name");
+    row("unknown member", R"([{"name":"a","url":"tcp://127.0.0.1:1","baud":1}])", "baud");
+    row("unknown scheme", R"([{"name":"a","url":"usb://x"}])", "ports.0.url");
+    row("no address", R"([{"name":"a","url":""}])", "ports.0.url");
+    row("no device", R"([{"name":"a","url":"serial://"}])", "ports.0.url");
+    row("unknown view", R"([{"name":"a","url":"tcp://127.0.0.1:1","view":"hex"}])", "view");
+    row("twice", R"([{"name":"a","url":"tcp://127.0.0.1:1"},{"name":"a","url":"tcp://127.0.0.1:2"}])",
+        "ports.1.name");
 }
 
 void TestSerialLogger::wrongPortsAreNamed() {
-    QFETCH(QString, ports);
-    QFETCH(QString, complaint);
+    FETCH(QString, ports, QString, complaint);
     SerialLogger daemon;
     const auto array = QJsonDocument::fromJson(ports.toUtf8());
     const auto result = daemon.settings().set(

@@ -65,14 +65,11 @@ void TestSerialRecorder::recordsEveryByteWithItsTime() {
 }
 
 void TestSerialRecorder::clocksMayStepBack() {
-    ChunkQueue queue(1000);
-    SerialRecorder recorder;
-    recorder.setPorts({{"a", "u", &queue}});
-    QVERIFY(recorder.begin(plan()).ok());
-    push(queue, "one", after(1));
-    push(queue, "two", after(2, -3600));
-    push(queue, "three", {-1, after(3).mono_ns}); // before 1970
-    recorder.end();
+    begin(1000);
+    push(*queue_, "one", after(1));
+    push(*queue_, "two", after(2, -3600));
+    push(*queue_, "three", {-1, after(3).mono_ns}); // before 1970
+    recorder_->end();
     const auto pieces = readAll(base());
     QCOMPARE(pieces->size(), 3);
     QCOMPARE(pieces->at(1).arrival.stamp_ns, after(2, -3600).stamp_ns);
@@ -83,17 +80,14 @@ void TestSerialRecorder::clocksMayStepBack() {
 }
 
 void TestSerialRecorder::lossesAreNotedWhereTheyWere() {
-    ChunkQueue queue(10);
-    SerialRecorder recorder;
-    recorder.setPorts({{"a", "u", &queue}});
-    QVERIFY(recorder.begin(plan()).ok());
-    push(queue, "0123456789ab", after(1)); // larger than the queue: dropped whenever the writer looks
-    push(queue, "right", after(2));
-    QTRY_COMPARE(recorder.state().bytes, 5.0);
-    push(queue, "0123456789a", after(3));
-    recorder.end();
+    begin(10);
+    push(*queue_, "0123456789ab", after(1)); // larger than the queue: dropped whenever the writer looks
+    push(*queue_, "right", after(2));
+    QTRY_COMPARE(recorder_->state().bytes, 5.0);
+    push(*queue_, "0123456789a", after(3));
+    recorder_->end();
     QCOMPARE(contentOf(base() + ".raw"), QByteArray("right"));
-    QCOMPARE(int(recorder.state().losses.value("queue_bytes")), 23);
+    QCOMPARE(int(recorder_->state().losses.value("queue_bytes")), 23);
     double lost = 0;
     for (const QJsonObject &event : eventsOf(folder_->path())) {
         QCOMPARE(event.value("event").toString(), "lost");
@@ -141,38 +135,33 @@ void TestSerialRecorder::nothingIsOverwritten() {
 }
 
 void TestSerialRecorder::aFullDiskLeavesWhatIsRight_data() {
-    QTest::addColumn<int>("limit");
-    QTest::addColumn<int>("chunk");
-    QTest::newRow("bytes do not fit") << 10000 << 700;
-    QTest::newRow("index does not fit") << 10000 << 3;
-    QTest::newRow("index does not fit, half a record") << 10003 << 3;
-    QTest::newRow("header does not fit") << 20 << 100;
+    const Rows<int, int> row("limit", "chunk");
+    row("bytes do not fit", 10000, 700);
+    row("index does not fit", 10000, 3);
+    row("index does not fit, half a record", 10003, 3);
+    row("header does not fit", 20, 100);
 }
 
 void TestSerialRecorder::aFullDiskLeavesWhatIsRight() {
-    QFETCH(int, limit);
-    QFETCH(int, chunk);
-    ChunkQueue queue(1 << 20);
-    SerialRecorder recorder;
-    recorder.setPorts({{"a", "u", &queue}});
-    QVERIFY(recorder.begin(plan()).ok());
+    FETCH(int, limit, int, chunk);
+    begin();
     QByteArray sent;
     int accepted = 0;
     {
         const FileSizeLimit full{rlim_t(limit)};
-        while (!recorder.state().error) {
+        while (!recorder_->state().error) {
             const QByteArray bytes(chunk, char('a' + accepted % 26));
-            push(queue, bytes, after(accepted++));
+            push(*queue_, bytes, after(accepted++));
             sent += bytes;
         }
-        recorder.end();
+        recorder_->end();
     }
-    QCOMPARE(recorder.state().error->code, int(ErrorCode::InputOutput));
-    QVERIFY(recorder.state().error->data.toObject().value("path").toString().startsWith(base()));
+    QCOMPARE(recorder_->state().error->code, int(ErrorCode::InputOutput));
+    QVERIFY(recorder_->state().error->data.toObject().value("path").toString().startsWith(base()));
     const QByteArray raw = contentOf(base() + ".raw");
     QVERIFY(raw.size() <= limit && sent.startsWith(raw));
-    QCOMPARE(recorder.state().bytes, double(raw.size()));
-    QVERIFY(recorder.state().losses.value("disk_bytes") > 0);
+    QCOMPARE(recorder_->state().bytes, double(raw.size()));
+    QVERIFY(recorder_->state().losses.value("disk_bytes") > 0);
     const auto pieces = readAll(base());
     QVERIFY2(pieces.ok(), pieces.ok() ? "" : qPrintable(pieces.error().message));
     QByteArray read;

@@ -3,6 +3,7 @@
 #include "common/recording/Sidecar.h"
 
 #include <limits>
+#include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::seriallogger;
@@ -12,6 +13,8 @@ class TestSerialRepair : public QObject, SerialFilesFixture {
 private Q_SLOTS:
     void init() { folder_ = std::make_unique<QTemporaryDir>(); }
     void whatWasCutOffIsRepaired();
+    void whatLinksLeadToStays_data();
+    void whatLinksLeadToStays();
     void damageIsNamed_data();
     void damageIsNamed();
     void longChunksComeInPieces();
@@ -50,32 +53,57 @@ void TestSerialRepair::whatWasCutOffIsRepaired() {
     QCOMPARE(sidecar, again);
 }
 
+void TestSerialRepair::whatLinksLeadToStays_data() {
+    QTest::addColumn<QString>("file");
+    QTest::addColumn<bool>("isHard");
+    for (const char *file : {"logger-a.index", "logger-events.jsonl"}) {
+        QTest::addRow("%s, a link", file) << file << false;
+        QTest::addRow("%s, a second name", file) << file << true;
+    }
+}
+
+void TestSerialRepair::whatLinksLeadToStays() {
+    QFETCH(QString, file);
+    QFETCH(bool, isHard);
+    ChunkQueue queue(1000);
+    SerialRecorder recorder;
+    recorder.setPorts({{"a", "u", &queue}});
+    QVERIFY(recorder.begin(plan()).ok());
+    recorder.end();
+    QTemporaryDir other;
+    const QString victim = other.filePath("victim"), link = folder_->filePath(file);
+    put(victim, contentOf(base() + ".index") + "precious"); // both would be cut
+    QVERIFY(QFile::remove(link));
+    const auto make = isHard ? ::link : ::symlink;
+    QCOMPARE(make(QFile::encodeName(victim), QFile::encodeName(link)), 0);
+    QJsonObject sidecar{{"files", recorder.state().files}};
+    const auto repaired = recorder.repair(plan(), sidecar);
+    QVERIFY(!repaired);
+    QCOMPARE(repaired.error().data.toObject().value("path").toString(), link);
+    QVERIFY(contentOf(victim).endsWith("precious"));
+}
+
 void TestSerialRepair::damageIsNamed_data() {
-    QTest::addColumn<QByteArray>("raw");
-    QTest::addColumn<QByteArray>("index");
-    QTest::addColumn<QString>("complaint");
+    const Rows<QByteArray, QByteArray, QString> row("raw", "index", "complaint");
     const QByteArray header = "HERMESIX" + QByteArray::fromHex("0100000018000000");
     const auto record = [](qint64 offset) {
         QByteArray bytes(24, 0);
         qToLittleEndian<qint64>(offset, bytes.data());
         return bytes;
     };
-    QTest::newRow("no header") << QByteArray("abc") << QByteArray() << "HERMESIX";
-    QTest::newRow("another file") << QByteArray("abc") << QByteArray(100, 'x') << "HERMESIX";
-    QTest::newRow("another version") << QByteArray("abc")
-                                     << "HERMESIX" + QByteArray::fromHex("0200000018000000") << "version 1";
-    QTest::newRow("no records") << QByteArray("abc") << header << "first record";
-    QTest::newRow("begins late") << QByteArray("abc") << header + record(1) << "first record";
-    QTest::newRow("turns back") << QByteArray("abcdef") << header + record(0) + record(3) + record(2)
-                                << "a record at byte 2 follows one at byte 3";
-    QTest::newRow("twice") << QByteArray("abcdef") << header + record(0) + record(0) << "at byte 0 follows";
-    QTest::newRow("negative") << QByteArray("abc") << header + record(-1) << "first record";
+    row("no header", "abc", QByteArray(), "HERMESIX");
+    row("another file", "abc", QByteArray(100, 'x'), "HERMESIX");
+    row("another version", "abc", "HERMESIX" + QByteArray::fromHex("0200000018000000"), "version 1");
+    row("no records", "abc", header, "first record");
+    row("begins late", "abc", header + record(1), "first record");
+    row("turns back", "abcdef", header + record(0) + record(3) + record(2),
+        "a record at byte 2 follows one at byte 3");
+    row("twice", "abcdef", header + record(0) + record(0), "at byte 0 follows");
+    row("negative", "abc", header + record(-1), "first record");
 }
 
 void TestSerialRepair::damageIsNamed() {
-    QFETCH(QByteArray, raw);
-    QFETCH(QByteArray, index);
-    QFETCH(QString, complaint);
+    FETCH(QByteArray, raw, QByteArray, index, QString, complaint);
     put(base() + ".raw", raw);
     put(base() + ".index", index);
     const auto pieces = readAll(base());
@@ -90,14 +118,11 @@ void TestSerialRepair::damageIsNamed() {
 }
 
 void TestSerialRepair::longChunksComeInPieces() {
-    ChunkQueue queue(1 << 20);
-    SerialRecorder recorder;
-    recorder.setPorts({{"a", "u", &queue}});
-    QVERIFY(recorder.begin(plan()).ok());
+    begin();
     const QByteArray large(SerialLogReader::mostBytes + 5, 'x');
-    push(queue, large, after(1));
-    push(queue, "end", after(2));
-    recorder.end();
+    push(*queue_, large, after(1));
+    push(*queue_, "end", after(2));
+    recorder_->end();
     const auto pieces = readAll(base());
     QCOMPARE(pieces->size(), 3);
     QCOMPARE(pieces->at(1).bytes.size(), 5);

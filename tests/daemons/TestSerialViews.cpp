@@ -68,24 +68,19 @@ private Q_SLOTS:
 };
 
 void TestSerialViews::linesAreSplit_data() {
-    QTest::addColumn<QList<QByteArray>>("chunks");
-    QTest::addColumn<QStringList>("lines");
-    QTest::newRow("LF") << QList<QByteArray>{"one\ntwo\n"} << QStringList{"0@0 one", "4@0 two"};
-    QTest::newRow("CR LF") << QList<QByteArray>{"one\r\ntwo\r\n"} << QStringList{"0@0 one", "5@0 two"};
-    QTest::newRow("CR") << QList<QByteArray>{"one\rtwo\r"} << QStringList{"0@0 one", "4@0 two"};
-    QTest::newRow("parts have the time of the first")
-        << QList<QByteArray>{"o", "n", "e\nt", "wo\n"} << QStringList{"0@0 one", "4@2 two"};
-    QTest::newRow("between CR and LF")
-        << QList<QByteArray>{"one\r", "\ntwo\n"} << QStringList{"0@0 one", "5@1 two"};
-    QTest::newRow("no end") << QList<QByteArray>{"one"} << QStringList{"0@0 one"};
-    QTest::newRow("empty") << QList<QByteArray>{"\n\r\n", "", "\n"} << QStringList();
-    QTest::newRow("not ASCII") << QList<QByteArray>{QByteArray("\0\xff\t\\\n", 5)}
-                               << QStringList{"0@0 \\x00\\xFF\t\\\\"};
+    const Rows<QList<QByteArray>, QStringList> row("chunks", "lines");
+    row("LF", {"one\ntwo\n"}, {"0@0 one", "4@0 two"});
+    row("CR LF", {"one\r\ntwo\r\n"}, {"0@0 one", "5@0 two"});
+    row("CR", {"one\rtwo\r"}, {"0@0 one", "4@0 two"});
+    row("parts have the time of the first", {"o", "n", "e\nt", "wo\n"}, {"0@0 one", "4@2 two"});
+    row("between CR and LF", {"one\r", "\ntwo\n"}, {"0@0 one", "5@1 two"});
+    row("no end", {"one"}, {"0@0 one"});
+    row("empty", {"\n\r\n", "", "\n"}, QStringList());
+    row("not ASCII", {QByteArray("\0\xff\t\\\n", 5)}, {"0@0 \\x00\\xFF\t\\\\"});
 }
 
 void TestSerialViews::linesAreSplit() {
-    QFETCH(QList<QByteArray>, chunks);
-    QFETCH(QStringList, lines);
+    FETCH(QList<QByteArray>, chunks, QStringList, lines);
     QCOMPARE(split(chunks), lines);
 }
 

@@ -111,9 +111,7 @@ void TestSetup::whichIsWhichStaysAsItIs_data() {
 }
 
 void TestSetup::whichIsWhichStaysAsItIs() {
-    QFETCH(const QByteArray, settings);
-    QFETCH(const std::vector<FoundSerial>, lines);
-    QFETCH(const QStringList, expected);
+    FETCH(const QByteArray, settings, const std::vector<FoundSerial>, lines, const QStringList, expected);
     const QJsonObject base{
         {"motorcontrol", QJsonObject{{"controllers", QJsonDocument::fromJson(settings).object()}}}};
     const QJsonObject then = merged(base, propose({lines, {}, {}, {}}, base, "/etc/hermes").settings);
@@ -207,9 +205,8 @@ void TestSetup::writesAndPutsBack() {
     QVERIFY(files.undo().ok());
     QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 1}, "simulator": {}})"));
     QVERIFY(files.undoable().isEmpty());
-    QFile undone(files.path("scanmatcher") + ".undone");
-    QVERIFY(undone.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(undone.readAll()).object(), json(R"({"a": 2})"));
+    QCOMPARE(QJsonDocument::fromJson(contentOf(files.path("scanmatcher") + ".undone")).object(),
+             json(R"({"a": 2})"));
     // One that cannot be written: nothing changes, what can be undone neither.
     QVERIFY(files.write({{"scanmatcher", json(R"({"a": 3})")}}).ok());
     QVERIFY(QDir().mkdir(files.path("supervisor")));
@@ -269,11 +266,8 @@ void TestSetup::replacesNoPipe() {
 void TestSetup::samplesNameTheFolder() {
     const QTemporaryDir folder;
     QVERIFY(QDir(folder.path()).mkpath("samples/one"));
-    QFile file(folder.filePath("samples/one/supervisor.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write(
+    put(folder.filePath("samples/one/supervisor.json"),
         R"({"processes": [{"name": "simulator", "arguments": ["--config", "/etc/hermes/simulator.json"]}]})");
-    file.close();
     const SettingsFiles files(folder.path(), folder.filePath("samples"));
     QCOMPARE(files.sampleNames(), QStringList("one"));
     const QJsonObject sample = *files.sample("one");

@@ -108,10 +108,8 @@ void TestSoftwareTrigger::changesKeepTheScheduleOfOthers() {
 void TestSoftwareTrigger::definitionsSurvive() {
     client_.reset();
     trigger_->shutDown();
-    QFile config(folder_->filePath("settings.json"));
-    QVERIFY(config.open(QIODevice::WriteOnly) && config.write("{}") == 2);
-    config.close();
-    config_ = config.fileName();
+    put(folder_->filePath("settings.json"), "{}");
+    config_ = folder_->filePath("settings.json");
     startTrigger();
     define("kept", period(0.05), {callTarget("count")});
     define("off", byCommand());
@@ -133,9 +131,8 @@ void TestSoftwareTrigger::logHasARowForEachAction() {
     const double stamp = fire("t")["stamp"].toDouble();
     fire("none");
     QTRY_COMPARE(healthItem("firings_log")["values"].toObject()["rows"].toInt(), 2);
-    QFile file(healthItem("firings_log")["values"].toObject()["path"].toString());
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    const QStringList rows = QString(file.readAll()).split('\n');
+    const QStringList rows =
+        QString(contentOf(healthItem("firings_log")["values"].toObject()["path"].toString())).split('\n');
     QCOMPARE(rows.size(), 5); // the header, three rows, and nothing after the last line feed
     QCOMPARE(rows.at(0).count(','), 10);
     QVERIFY(rows.at(1).startsWith(QString::number(stamp, 'f', 6)));
@@ -154,9 +151,7 @@ void TestSoftwareTrigger::endTellsWhatWasUnderWay() {
     QTRY_COMPARE(int(target_->kept.size()), 1);
     trigger_->shutDown();
     const QDir folder(folder_->filePath("log"));
-    QFile file(folder.filePath(folder.entryList(QDir::Files).value(0)));
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QVERIFY(file.readAll().contains("hang,0,"));
+    QVERIFY(contentOf(folder.filePath(folder.entryList(QDir::Files).value(0))).contains("hang,0,"));
 }
 
 QTEST_GUILESS_MAIN(TestSoftwareTrigger)

@@ -80,9 +80,7 @@ void TestSupervisor::launch(const QJsonArray &processes) {
     QVERIFY(!ended);
     const auto launched = supervisor_->launch();
     QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
-    client_ = std::make_unique<PatientClient>();
-    client_->connectTo(asOwner(supervisor_->info().listen.front()));
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner(supervisor_->info().listen.front()));
 }
 
 QJsonObject TestSupervisor::process(const QString &name) {
@@ -148,10 +146,7 @@ void TestSupervisor::endInOrderIsNotStartedAgain() {
 /// By hand it ends; as a service it stays, starts nothing, and tells; the file is not written over.
 void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
     const QString name = folder_->filePath("supervisor.json");
-    QFile file(name);
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("{\n\"processes\": [}\n");
-    file.close();
+    put(name, "{\n\"processes\": [}\n");
     const QStringList line{"hermes-supervisor", "--listen", "tcp://127.0.0.1:0", "--config", name};
     QVERIFY(Supervisor().prepare(line).has_value());
     qputenv("NOTIFY_SOCKET", folder_->filePath("nobody").toUtf8());
@@ -161,9 +156,7 @@ void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
     qunsetenv("NOTIFY_SOCKET");
     QVERIFY(!ended);
     QVERIFY(supervisor_->launch().ok());
-    client_ = std::make_unique<PatientClient>();
-    client_->connectTo(asOwner(supervisor_->info().listen.front()));
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner(supervisor_->info().listen.front()));
     const QJsonObject status = call("daemon.status")->toObject();
     QCOMPARE(status["state"].toString(), QString("degraded"));
     QVERIFY(QJsonDocument(status).toJson().contains("line 2"));
@@ -207,11 +200,11 @@ void TestSupervisor::stubbornProcessIsKilled() {
 }
 
 void TestSupervisor::whatAProcessLeavesBehindIsKilled_data() {
-    QTest::addColumn<QString>("script");
-    QTest::newRow("child") << "sleep 600 & echo $!; wait";
-    QTest::newRow("session of its own") << "setsid sh -c 'echo $$; exec sleep 600' & wait";
-    QTest::newRow("daemon") << "(setsid sh -c 'echo $$; exec sleep 600' &) ; sleep 600";
-    QTest::newRow("of a process that has ended") << "setsid sh -c 'echo $$; exec sleep 600' & sleep 0.2";
+    const Rows<QString> row("script");
+    row("child", "sleep 600 & echo $!; wait");
+    row("session of its own", "setsid sh -c 'echo $$; exec sleep 600' & wait");
+    row("daemon", "(setsid sh -c 'echo $$; exec sleep 600' &) ; sleep 600");
+    row("of a process that has ended", "setsid sh -c 'echo $$; exec sleep 600' & sleep 0.2");
 }
 
 void TestSupervisor::whatAProcessLeavesBehindIsKilled() {
@@ -274,9 +267,9 @@ void TestSupervisor::addAndRemove() {
 }
 
 void TestSupervisor::changedEntryIsStartedAnew_data() {
-    QTest::addColumn<bool>("last");
-    QTest::newRow("the first") << false;
-    QTest::newRow("the last") << true;
+    const Rows<bool> row("last");
+    row("the first", false);
+    row("the last", true);
 }
 
 void TestSupervisor::changedEntryIsStartedAnew() {
@@ -296,18 +289,14 @@ void TestSupervisor::changedEntryIsStartedAnew() {
 }
 
 void TestSupervisor::aMendedEntryIsStarted_data() {
-    QTest::addColumn<QString>("script");
-    QTest::addColumn<QString>("state");
-    QTest::newRow("wrong arguments") << "exit 2"
-                                     << "failed";
-    QTest::newRow("tried again later") << "exit 1"
-                                       << "waiting";
+    const Rows<QString, QString> row("script", "state");
+    row("wrong arguments", "exit 2", "failed");
+    row("tried again later", "exit 1", "waiting");
 }
 
 /// Whatever was wrong with it; one that ended in order, or was stopped, stays as it is.
 void TestSupervisor::aMendedEntryIsStarted() {
-    QFETCH(QString, script);
-    QFETCH(QString, state);
+    FETCH(QString, script, QString, state);
     launch({shell("one", script), shell("two", "exit 0"), shell("three", script)});
     QTRY_COMPARE(process("two")["last_exit"].toString(), QString("exit status 0"));
     QVERIFY(call("process.stop", {{"name", "three"}}).ok());

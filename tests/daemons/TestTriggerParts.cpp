@@ -278,9 +278,7 @@ void TestTriggerParts::logNeverOverwrites() {
     const QStringList files = made.entryList(QDir::Files);
     QCOMPARE(files.size(), 20);
     for (const QString &name : files) {
-        QFile file(made.filePath(name));
-        QVERIFY(file.open(QIODevice::ReadOnly));
-        const QByteArray content = file.readAll();
+        const QByteArray content = contentOf(made.filePath(name));
         QVERIFY2(content.startsWith("head\nrow ") && content.count('\n') == 2, content.constData());
         all += content;
     }
@@ -312,9 +310,7 @@ void TestTriggerParts::logThatIsRemovedBeginsAnew() {
     log.append("row 2\n");
     log.flush();
     QCOMPARE(log.state().rows, quint64(2));
-    QFile file(log.state().path);
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QCOMPARE(file.readAll(), QByteArray("head\nrow 2\n"));
+    QCOMPARE(contentOf(log.state().path), QByteArray("head\nrow 2\n"));
 }
 
 void TestTriggerParts::logCountsWhatTheDiskRefuses() {

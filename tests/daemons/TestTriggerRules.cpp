@@ -103,8 +103,7 @@ void TestTriggerRules::refuses_data() {
 }
 
 void TestTriggerRules::refuses() {
-    QFETCH(QByteArray, trigger);
-    QFETCH(QString, path);
+    FETCH(QByteArray, trigger, QString, path);
     const QJsonDocument json = QJsonDocument::fromJson(trigger);
     QVERIFY(json.isObject());
     const Error error = failure("trigger.define", json.object());

@@ -40,13 +40,9 @@ void TestWheelTracker::init() {
 }
 
 void TestWheelTracker::motions_data() {
-    QTest::addColumn<double>("gap_s");
-    QTest::addColumn<double>("turn"); // rad, of all wheels; NaN: the second controller begins at zero again
-    QTest::addColumn<bool>("isSetUpAgain");
-    QTest::addColumn<bool>("plausible");
-    const auto row = [](const char *name, double gap, double turn, bool isSetUpAgain, bool plausible) {
-        QTest::newRow(name) << gap << turn << isSetUpAgain << plausible;
-    };
+    const Rows<double, double, bool, bool> row(
+        "gap_s", "turn", "isSetUpAgain",
+        "plausible"); // turn: rad, of all wheels; NaN: the second controller begins at zero again
     row("a cycle", 0.02, 0.3, false, true);
     row("a cycle, too far", 0.02, 2.5, false, false);
     row("set out during a silence", 0.3, 4.0, false, true); // it stood at the reading before
@@ -58,10 +54,7 @@ void TestWheelTracker::motions_data() {
 }
 
 void TestWheelTracker::motions() {
-    QFETCH(double, gap_s);
-    QFETCH(double, turn);
-    QFETCH(bool, isSetUpAgain);
-    QFETCH(bool, plausible);
+    FETCH(double, gap_s, double, turn, bool, isSetUpAgain, bool, plausible);
     const quint32 before = counts(8);
     QVERIFY(!read(1, before, before));
     QVERIFY(read(1.02, before, before)->plausible);

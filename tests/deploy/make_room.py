@@ -82,6 +82,34 @@ class MakeRoom(unittest.TestCase):
         self.assertIn("damaged: kept", told.stderr)
         self.assertIn("expected", told.stderr)
 
+    def test_any_sidecar_keeps_its_folder_alone(self):
+        for number, text in enumerate(("[" * 200000, "[]", "null", '{"format": 1}', "\udcff", "1" * 5000)):
+            (self.recording(f"odd-{number}", DAY_S) / "odd.json").write_bytes(text.encode(errors="surrogateescape"))
+        for number, end in enumerate((float("nan"), 10 ** 400, "yesterday", [])):
+            self.recording(f"end-{number}", DAY_S, end=end)
+        (self.recording("pipe", DAY_S) / "pipe.json").unlink(missing_ok=True)
+        os.mkfifo(self.root / "pipe" / "pipe.json")
+        before = self.names()
+        self.recording("old", DAY_S)
+        told = self.run_program("--free", "900T")
+        self.assertEqual(self.names(), before)
+        self.assertIn("old: removed", told.stdout)
+
+    def test_the_age_is_known_before_the_clock_is_set(self):
+        long_ago = time.time() - 300
+        young = {"boot": make_room.boot(), "end_mono": time.monotonic() - 300}
+        self.recording("young", long_ago, **young)
+        self.recording("young-by-a-clock-of-last-year", 400 * DAY_S, **young)
+        self.recording("of-another-run", long_ago, boot="another", end_mono=5)
+        before = self.names()
+        self.recording("old", DAY_S)
+        told = self.run_program("--free", "900T")
+        self.assertEqual(self.names(), before)
+        self.assertIn("of-another-run: kept", told.stderr)
+        with mock.patch.object(make_room, "YOUNG_S", 200):
+            ends = [make_room.end_of(self.root / name, time.time()) for name in ("young", "young-by-a-clock-of-last-year")]
+        self.assertTrue(all(abs(time.time() - 300 - end) < 30 for end in ends), ends)
+
     def test_a_recording_with_something_else_in_its_folder_is_kept(self):
         elsewhere = self.root / "elsewhere"
         elsewhere.touch()

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <QFile>
+#include "tests/support/Files.h"
+
 #include <QMap>
 #include <QProcess>
 #include <QVector>
@@ -22,8 +23,7 @@ inline bool hasMatplotlib() {
 }
 
 inline QList<QByteArray> lines(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll().trimmed().split('\n') : QList<QByteArray>();
+    return contentOf(path).trimmed().split('\n');
 }
 
 /// The rows of a CSV file by the names of its columns.

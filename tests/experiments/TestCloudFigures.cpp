@@ -1,3 +1,4 @@
+#include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
 #include "tests/support/RealData.h"
 #include "vectorlib/experiments/FewestLines.h"
@@ -10,19 +11,6 @@ using namespace hermes::experiments;
 using Points = std::vector<vectorlib::Vector2D<double>>;
 
 namespace {
-
-/// The rows of a CSV file by the names of its columns.
-QVector<QMap<QByteArray, QByteArray>> table(const QString &path) {
-    QVector<QMap<QByteArray, QByteArray>> rows;
-    const QList<QByteArray> text = contents(path).trimmed().split('\n'), names = text.value(0).split(',');
-    for (const QByteArray &line : text.mid(1)) {
-        const QList<QByteArray> fields = line.split(',');
-        rows.resize(rows.size() + 1);
-        for (int i = 0; i < names.size(); ++i)
-            rows.last()[names[i]] = fields.value(i);
-    }
-    return rows;
-}
 
 std::size_t fewestByTrying(const Points &points, std::size_t first, double sigma) {
     std::size_t fewest = points.size() - first;
@@ -50,14 +38,11 @@ Points randomWalk(std::uint64_t seed, int count) {
 
 /// hermes-vector experiment: figures 5.3 to 5.5, 6.1 to 6.3 and 6.7 to 6.13 of the thesis, and the options of
 /// segmentation and vectorization that go with them.
-class TestCloudFigures : public QObject {
+class TestCloudFigures : public QObject, protected TestFolder {
     Q_OBJECT
-    TestFolder folder_;
-    QString path(const char *name = "") const { return folder_.path(name); }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void fewestLinesAreTheFewest() {
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -100,8 +85,7 @@ private Q_SLOTS:
     // Thesis 6.1.4: without noise the error stays at 0 to the corner, then grows; with noise it goes up and
     // down; a threshold lets the first line run past the corner, where the optimum does not.
     void thresholdRunsPastTheCorner() {
-        const Result r = run({"experiment", "threshold", "--out", path()});
-        QVERIFY2(r.status == 0, r.err.constData());
+        const Result r = ran({"experiment", "threshold", "--out", path()});
         const QJsonObject precise = json(r.out)["precise"].toObject(),
                           noised = json(r.out)["noised"].toObject(),
                           all = json(r.out)["vectorizations"].toObject();
@@ -118,18 +102,17 @@ private Q_SLOTS:
         QVERIFY(inc["first_line_turned_deg"].toDouble() > optimum["first_line_turned_deg"].toDouble());
         QCOMPARE(table(path("threshold.csv")).size(), 99);
         for (const char *picture : {"threshold-clouds.svg", "threshold-lines.svg"})
-            QVERIFY2(contents(path(picture)).endsWith("</svg>\n"), picture);
+            QVERIFY2(contentOf(path(picture)).endsWith("</svg>\n"), picture);
     }
 
     // Thesis 5.2.2: without a lower bound near points are false outliers; without an upper one far clusters
     // are merged; of the outliers hardly one more stays.
     void adaptiveThresholdNeedsItsBounds() {
-        const Result r = run({"experiment", "adaptive-threshold", "--out", path()});
-        QVERIFY2(r.status == 0, r.err.constData());
+        ran({"experiment", "adaptive-threshold", "--out", path()});
         QMap<QByteArray, QMap<QByteArray, QByteArray>> of;
         for (const auto &row : table(path("adaptive-threshold.csv"))) {
             of[row["case"]] = row;
-            QVERIFY(contents(path("adaptive-threshold-" + row["case"] + ".svg")).endsWith("</svg>\n"));
+            QVERIFY(contentOf(path("adaptive-threshold-" + row["case"] + ".svg")).endsWith("</svg>\n"));
         }
         QCOMPARE(of.size(), 4);
         QVERIFY(of["near-unbounded"]["points_lost"].toInt() > 50);
@@ -140,21 +123,18 @@ private Q_SLOTS:
     }
 
     void scansOfALogInColours() {
-        const Result r =
-            run({"experiment", "real-segmentation", "--log", data("corrected.log"), "--out", path()});
-        QVERIFY2(r.status == 0, r.err.constData());
+        ran({"experiment", "real-segmentation", "--log", data("corrected.log"), "--out", path()});
         QCOMPARE(table(path("real-segmentation.csv")).size(), 3);
         for (const char *kind : {"corridor", "empty-room", "laboratory"})
-            QVERIFY(contents(path(qPrintable(QString("real-segmentation-%1.svg").arg(kind))))
+            QVERIFY(contentOf(path(qPrintable(QString("real-segmentation-%1.svg").arg(kind))))
                         .contains("outliers"));
     }
 
     void capturesHaveRealScans() {
         writeCapture(path("two.pcap"), 400, {{0xC0A801C9, 2368, 5}, {0xC0A801CA, 2369, 6}});
         for (const char *name : {"empty-room", "corridor", "laboratory", "real-segmentation"}) {
-            const Result r = run({"experiment", name, "--log", path("two.pcap"), "--port", "2369", "--out",
+            const Result r = ran({"experiment", name, "--log", path("two.pcap"), "--port", "2369", "--out",
                                   path(), "--force"});
-            QVERIFY2(r.status == 0, r.err.constData());
             QVERIFY2(r.err.contains("read 192.168.1.202"), r.err.constData());
             const auto rows = table(path(qPrintable(QString("%1.csv").arg(name))));
             QVERIFY2(rows[0]["points"].toInt() > 2000, name);
@@ -166,28 +146,21 @@ private Q_SLOTS:
         for (const auto &row : rows)
             QVERIFY(std::abs(row["lines_percent"].toDouble() -
                              100 * (row["lines"].toDouble() / reference - 1)) < 0.01);
-        const Result none = run({"experiment", "corridor", "--out", path(), "--force"});
-        QCOMPARE(none.status, 2);
-        QVERIFY2(none.err.contains("--log"), none.err.constData());
+        refused(run({"experiment", "corridor", "--out", path(), "--force"}), 2, "--log");
     }
     void realCapture() {
-        const QString capture = realData("hdl32e-outdoor.pcap");
-        if (capture.isEmpty())
-            QSKIP("no real capture here");
-        const Result r = run({"experiment", "laboratory", "--log", capture, "--out", path()});
-        QVERIFY2(r.status == 0, r.err.constData());
+        REAL_DATA(capture, "hdl32e-outdoor.pcap");
+        ran({"experiment", "laboratory", "--log", capture, "--out", path()});
         QVERIFY(table(path("laboratory.csv"))[0]["lines_reference"].toInt() > 0);
     }
 
     void cloudsAndTablesStandBesideThePlots() {
-        QCOMPARE(run({"experiment", "semicircle", "--max-points", "20", "--out", path()}).status, 0);
-        QVERIFY(contents(path("semicircle-cloud.svg")).endsWith("</svg>\n"));
-        QCOMPARE(run({"experiment", "edges", "--runs", "2", "--max-points", "200", "--noise", "0.002",
-                      "--out", path()})
-                     .status,
-                 0);
-        QVERIFY(contents(path("edges-cloud.svg")).contains("noise 2 mm"));
-        QVERIFY(contents(path("edges.tex")).contains("200 & 4 & +0.0 & +0.0"));
+        ran({"experiment", "semicircle", "--max-points", "20", "--out", path()});
+        QVERIFY(contentOf(path("semicircle-cloud.svg")).endsWith("</svg>\n"));
+        ran({"experiment", "edges", "--runs", "2", "--max-points", "200", "--noise", "0.002", "--out",
+             path()});
+        QVERIFY(contentOf(path("edges-cloud.svg")).contains("noise 2 mm"));
+        QVERIFY(contentOf(path("edges.tex")).contains("200 & 4 & +0.0 & +0.0"));
         QByteArrayList algorithms;
         for (const auto &row : table(path("edges.csv"))) {
             algorithms << row["algorithm"];
@@ -206,9 +179,7 @@ private Q_SLOTS:
         QCOMPARE(simplex.status, 0);
         QCOMPARE(same.out, descent.out);
         QVERIFY(simplex.out != descent.out);
-        const Result wrong = run({"vectorize", room, "--search", "nelder-mead"});
-        QCOMPARE(wrong.status, 2);
-        QVERIFY2(wrong.err.contains("expected aftls"), wrong.err.constData());
+        refused(run({"vectorize", room, "--search", "nelder-mead"}), 2, "expected aftls");
         const Result cartesian = run({"segment", room, "--k", "2"}),
                      polar = run({"segment", room, "--k", "2", "--coordinates", "polar"});
         QCOMPARE(polar.status, 0);

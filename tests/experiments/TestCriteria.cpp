@@ -50,18 +50,18 @@ void TestCriteria::criterionLooksAsInItsFigures() {
 }
 
 void TestCriteria::otherCriteriaLackWhatTheAreaHolds_data() { // thesis 7.1.4
-    QTest::addColumn<QByteArray>("holders"); // a sign for each of segmentCriteria(): + always, - not
-    QTest::newRow("zero for any two segments on one line") << QByteArray("++-++");
-    QTest::newRow("above zero for all others") << QByteArray("+++-+");
-    QTest::newRow("sliding along the static line changes nothing") << QByteArray("+--+-");
-    QTest::newRow("moving both segments changes nothing") << QByteArray("+++++");
-    QTest::newRow("a shift aside, a turn and a length change it") << QByteArray("+----");
-    QTest::newRow("grows with the angle") << QByteArray("+++++");
-    QTest::newRow("grows with the length") << QByteArray("+----");
-    QTest::newRow("keeps its shape at small lengths") << QByteArray("+--++");
-    QTest::newRow("smooth, without conditions") << QByteArray("+----");
-    QTest::newRow("a set of pairs takes constant time, by sums") << QByteArray("+--+-");
-    QTest::newRow("the same when the two are exchanged") << QByteArray("-++++");
+    const Rows<QByteArray> row("holders"); // a sign for each of segmentCriteria(): + always, - not
+    row("zero for any two segments on one line", "++-++");
+    row("above zero for all others", "+++-+");
+    row("sliding along the static line changes nothing", "+--+-");
+    row("moving both segments changes nothing", "+++++");
+    row("a shift aside, a turn and a length change it", "+----");
+    row("grows with the angle", "+++++");
+    row("grows with the length", "+----");
+    row("keeps its shape at small lengths", "+--++");
+    row("smooth, without conditions", "+----");
+    row("a set of pairs takes constant time, by sums", "+--+-");
+    row("the same when the two are exchanged", "-++++");
 }
 
 void TestCriteria::otherCriteriaLackWhatTheAreaHolds() {

@@ -4,6 +4,7 @@
 #include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
 #include "tests/support/Latex.h"
+#include "vectorlib/experiments/Commands.h"
 #include "vectorlib/experiments/ExperimentCommand.h"
 
 #include <vectorlib/mapping/MapAligner.h>
@@ -94,10 +95,10 @@ private Q_SLOTS:
     }
 
     void isToldToTheEnd_data() {
-        QTest::addColumn<bool>("isShort");
+        const Rows<bool> row("isShort");
         QVERIFY(names().size() > 35);
         for (const QString &name : names())
-            QTest::newRow(qPrintable(name)) << short_.contains(name);
+            row(qPrintable(name), short_.contains(name));
     }
     void isToldToTheEnd() {
         QFETCH(bool, isShort);

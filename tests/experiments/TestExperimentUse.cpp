@@ -8,7 +8,7 @@ class TestExperimentUse : public QObject {
 
     QString path(const char *name) const { return folder_.filePath(QLatin1String(name)); }
     static QString log() { return data("corrected.log"); }
-    static QByteArray firstLine(const QString &file) { return contents(file).split('\n').first(); }
+    static QByteArray firstLine(const QString &file) { return contentOf(file).split('\n').first(); }
 
 private Q_SLOTS:
     void initTestCase() { QVERIFY(folder_.isValid()); }
@@ -35,9 +35,7 @@ private Q_SLOTS:
         row({"pairs", "--log", log(), "--every", "1", "--every", "2"}, "--every", "one for each --log");
     }
     void refusesOptionsItDoesNotUse() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QByteArray, option);
-        QFETCH(QByteArray, taker);
+        FETCH(QStringList, arguments, QByteArray, option, QByteArray, taker);
         const Result r = run(QStringList{"experiment"} + arguments + QStringList{"--out", path("refused")});
         QCOMPARE(r.status, 2);
         QVERIFY2(r.err.contains(option) && r.err.contains(taker), r.err.constData());
@@ -76,9 +74,8 @@ private Q_SLOTS:
     }
 
     void failureLeavesNoFolder() {
-        const Result r = run({"experiment", "accuracy", "--worlds", folder_.path(), "--out", path("a/b/c")});
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("cutsquare.json"), r.err.constData());
+        refused(run({"experiment", "accuracy", "--worlds", folder_.path(), "--out", path("a/b/c")}), 1,
+                "cutsquare.json");
         QVERIFY(!QFileInfo::exists(path("a")));
         QVERIFY(QDir(folder_.path()).mkdir("there"));
         QCOMPARE(run({"experiment", "log", "--out", path("there")}).status, 2);
@@ -95,17 +92,15 @@ private Q_SLOTS:
         QVERIFY(!QFileInfo::exists(path("new")));
     }
     void folderThatIsAFileIsRefused() {
-        write(path("file"), "precious");
-        const Result r = run({"experiment", "criterion", "--out", path("file/folder")});
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("file/folder: cannot be made"), r.err.constData());
-        QCOMPARE(contents(path("file")), QByteArray("precious"));
+        put(path("file"), "precious");
+        refused(run({"experiment", "criterion", "--out", path("file/folder")}), 1,
+                "file/folder: cannot be made");
+        QCOMPARE(contentOf(path("file")), QByteArray("precious"));
     }
 
     // What is published is of one log, which nobody else has.
     void anyLogHasNoPublishedFigures() {
-        const Result r = run({"experiment", "free-log", "--log", log(), "--out", path("free-log")});
-        QCOMPARE(r.status, 0);
+        const Result r = ran({"experiment", "free-log", "--log", log(), "--out", path("free-log")});
         QVERIFY(json(r.out)["scans"].toInt() > 1);
         QVERIFY2(!r.out.contains("published"), r.out.constData());
         const Result home = run({"experiment", "free-leaps", "--out", path("free-leaps")});
@@ -113,42 +108,38 @@ private Q_SLOTS:
     }
 
     void copyPrintsASummary() {
-        const Result r = run({"experiment", "free-copy", "--out", path("free-copy")});
-        QCOMPARE(r.status, 0);
+        const Result r = ran({"experiment", "free-copy", "--out", path("free-copy")});
         QVERIFY2(json(r.out)["area_at_10_deg_m2"].toDouble() > 1, r.out.constData());
         QVERIFY(json(r.out)["area_at_50_cm_m2"].toDouble() > 1);
         QVERIFY(json(r.out)["grows_throughout"].toBool());
-        QCOMPARE(contents(path("free-copy/free-copy.json")), r.out);
+        QCOMPARE(contentOf(path("free-copy/free-copy.json")), r.out);
     }
 
     // There is no right place in another building, and so no error.
     void scansOfAnotherBuildingHaveNoErrors() {
-        QCOMPARE(run({"experiment", "places", "--log", log(), "--out", path("own")}).status, 0);
+        ran({"experiment", "places", "--log", log(), "--out", path("own")});
         QCOMPARE(firstLine(path("own/places.csv")),
                  QByteArray("scan,found,right,places,score,probability,error_m,error_deg,time_ms"));
         const Result r =
-            run({"experiment", "places", "--log", log(), "--other", log(), "--out", path("other")});
-        QCOMPARE(r.status, 0);
+            ran({"experiment", "places", "--log", log(), "--other", log(), "--out", path("other")});
         QCOMPARE(firstLine(path("other/places.csv")),
                  QByteArray("scan,accepted,places,score,probability,time_ms"));
-        for (const QByteArray &row : contents(path("other/places.csv")).trimmed().split('\n'))
+        for (const QByteArray &row : contentOf(path("other/places.csv")).trimmed().split('\n'))
             QCOMPARE(row.count(','), 5);
         QVERIFY(!json(r.out).contains("first_right"));
         QVERIFY(json(r.out).contains("found_wrong"));
     }
 
     void drawnPlacesNeedNoLog() {
-        const Result r = run({"experiment", "drawn-places", "--runs", "1", "--out", path("drawn")});
-        QVERIFY2(r.status == 0, r.err.constData());
+        const Result r = ran({"experiment", "drawn-places", "--runs", "1", "--out", path("drawn")});
         QCOMPARE(json(r.out)["sets"].toObject()["home"].toObject()["scans"].toInt(), 50);
         QVERIFY(json(r.out)["slope_of_time"].toDouble() > 0);
-        QCOMPARE(contents(path("drawn/drawn-places.json")), r.out);
+        QCOMPARE(contentOf(path("drawn/drawn-places.json")), r.out);
         QVERIFY(firstLine(path("drawn/drawn-places.csv")).startsWith("set,has_place,outcome,"));
     }
     void trustIsFittedToLogsAndDrawnBuildings() {
-        const Result r = run({"experiment", "place-trust", "--log", log(), "--log", log(), "--other", log(),
+        const Result r = ran({"experiment", "place-trust", "--log", log(), "--log", log(), "--other", log(),
                               "--runs", "1", "--out", path("trust")});
-        QVERIFY2(r.status == 0, r.err.constData());
         for (const char *weights : {"present", "fitted"}) {
             const QJsonObject of = json(r.out)[QLatin1String(weights)].toObject();
             QVERIFY(of["weights"].toObject()["rival"].toDouble() > 0);
@@ -156,13 +147,12 @@ private Q_SLOTS:
         }
         for (const char *set :
              {"\"logs\"", "\"logs, map with drift\"", "\"logs, other building\"", "\"worlds\""})
-            QVERIFY2(contents(path("trust/place-trust.csv")).contains(set), set);
+            QVERIFY2(contentOf(path("trust/place-trust.csv")).contains(set), set);
     }
     void trustOfPosesIsFittedToOneHalf() {
         QVERIFY(QFile::copy(log(), path("copy.log")));
-        const Result r = run({"experiment", "pose-trust", "--log", log(), "--other", log(), "--other",
+        const Result r = ran({"experiment", "pose-trust", "--log", log(), "--other", log(), "--other",
                               path("copy.log"), "--runs", "4", "--out", path("poses")});
-        QVERIFY2(r.status == 0, r.err.constData());
         for (const char *weights : {"present", "fitted"}) {
             const QJsonObject of = json(r.out)[QLatin1String(weights)].toObject();
             QCOMPARE(of["weights"].toArray().size(), 6);
@@ -172,7 +162,7 @@ private Q_SLOTS:
                 QVERIFY2(result["poses"].toInt() > 0, part);
             }
         }
-        QVERIFY(contents(path("poses/pose-trust.csv")).contains("\"drawn "));
+        QVERIFY(contentOf(path("poses/pose-trust.csv")).contains("\"drawn "));
         QCOMPARE(run({"experiment", "places", "--log", log(), "--other", log(), "--other", log(), "--out",
                       path("two")})
                      .status,

@@ -100,16 +100,14 @@ void TestQuality::polygons() {
 }
 
 void TestQuality::realScans_data() {
-    QTest::addColumn<QString>("name");
+    const Rows<QString> row("name");
     for (const char *name : {"intel", "freiburg-079", "fhw", "belgioioso", "orebro"})
-        QTest::newRow(name) << QString("%1-corrected.log.gz").arg(name);
+        row(name, QString("%1-corrected.log.gz").arg(name));
 }
 
 void TestQuality::realScans() {
     QFETCH(QString, name);
-    const QString path = realData(name);
-    if (path.isEmpty())
-        QSKIP(qPrintable(name + " is absent"));
+    REAL_DATA(path, name);
     const auto rows = sorted(ofLog(path));
     QVERIFY(!rows.empty());
     for (const auto &[key, row] : rows) {

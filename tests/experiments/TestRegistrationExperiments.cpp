@@ -1,3 +1,4 @@
+#include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
 #include "vectorlib/experiments/RangeFit.h"
 #include "vectorlib/experiments/ScanPairs.h"
@@ -12,19 +13,6 @@ namespace {
 using Point = vectorlib::Vector2D<double>;
 using Segment = vectorlib::LineSegment2D<double>;
 using Row = QMap<QByteArray, QByteArray>;
-
-/// The rows of a CSV file by the names of its columns.
-QVector<Row> table(const QString &path) {
-    QVector<Row> rows;
-    const QList<QByteArray> text = contents(path).trimmed().split('\n'), names = text.value(0).split(',');
-    for (const QByteArray &line : text.mid(1)) {
-        const QList<QByteArray> fields = line.split(',');
-        rows.resize(rows.size() + 1);
-        for (int i = 0; i < names.size(); ++i)
-            rows.last()[names[i]] = fields.value(i);
-    }
-    return rows;
-}
 
 /// A room of 6 m x 4 m with a step in one corner; free space inside.
 World room() {
@@ -72,7 +60,7 @@ private Q_SLOTS:
 };
 
 void TestRegistrationExperiments::everyPairLiesOnItsEdge_data() {
-    QTest::addColumn<int>("pairing");
+    const Rows<int> row("pairing");
     for (const auto &[name, pairing] : {std::pair{"extracted", Pairing::Extracted},
                                         {"tight", Pairing::ExtractedTight},
                                         {"ftls", Pairing::ExtractedFtls},
@@ -80,7 +68,7 @@ void TestRegistrationExperiments::everyPairLiesOnItsEdge_data() {
                                         {"known", Pairing::KnownEdges},
                                         {"across", Pairing::AcrossEdges},
                                         {"fitted", Pairing::FittedRanges}})
-        QTest::newRow(name) << int(pairing);
+        row(name, int(pairing));
 }
 
 void TestRegistrationExperiments::everyPairLiesOnItsEdge() {
@@ -172,7 +160,7 @@ void TestRegistrationExperiments::spaceOfTransformations() { // paper figures 2 
         QVERIFY(std::abs(std::sin(2 * epsilon) - one["reliability"].toDouble()) < 1e-9);
     }
     QCOMPARE(table(path("space/registration-space.csv")).size(), 3 * (5 + 2 + 7));
-    const QByteArray latex = contents(path("space/registration-space.tex"));
+    const QByteArray latex = contentOf(path("space/registration-space.tex"));
     QVERIFY(latex.contains("\\includegraphics") && latex.endsWith("\\end{document}\n"));
     if (hasMatplotlib())
         QCOMPARE(QDir(path("space")).entryList({"*.svg"}).size(), 4);
@@ -228,16 +216,16 @@ void TestRegistrationExperiments::noiseAlongTheEdgeIsTheBias() {
 }
 
 void TestRegistrationExperiments::weightingHelpsMostAmongPillars_data() {
-    QTest::addColumn<QStringList>("options");
-    QTest::newRow("extracted") << QStringList();
-    QTest::newRow("known edges") << QStringList("--known-edges");
+    const Rows<QStringList> row("options");
+    row("extracted", QStringList());
+    row("known edges", QStringList("--known-edges"));
 }
 
 void TestRegistrationExperiments::weightingHelpsMostAmongPillars() { // paper tables 1 and 2
     QFETCH(QStringList, options);
     const QByteArray out = options.isEmpty() ? "weighting" : "weighting-known";
     QVERIFY(!experiment(QStringList{"weighting", "--runs", "20"} + options, out).isEmpty());
-    const QByteArray latex = contents(path(out) + "/weighting.tex");
+    const QByteArray latex = contentOf(path(out) + "/weighting.tex");
     QVERIFY(latex.endsWith("\\end{document}\n") && latex.contains("published"));
     const auto rows = table(path(out) + "/weighting-tables.csv");
     QCOMPARE(rows.size(), 3);
@@ -262,8 +250,8 @@ void TestRegistrationExperiments::weightsNarrowTheScatter() { // paper figure 8 
     if (!hasMatplotlib())
         return;
     QCOMPARE(QDir(path("dispersion")).entryList({"*.svg"}).size(), 14);
-    QVERIFY(contents(path("dispersion/dispersion-a.svg")).contains("to scale"));
-    QVERIFY(contents(path("dispersion/dispersion-a-enlarged.svg")).contains("enlarged 5 times"));
+    QVERIFY(contentOf(path("dispersion/dispersion-a.svg")).contains("to scale"));
+    QVERIFY(contentOf(path("dispersion/dispersion-a-enlarged.svg")).contains("enlarged 5 times"));
 }
 
 void TestRegistrationExperiments::reliabilityFallsWhereWallsAreHidden() { // paper figure 9
@@ -276,7 +264,7 @@ void TestRegistrationExperiments::reliabilityFallsWhereWallsAreHidden() { // pap
     QVERIFY2(least >= 0 && least < 0.9, qPrintable(QString::number(least)));
     QVERIFY2(most > 0.95 && most <= 1, qPrintable(QString::number(most)));
     if (hasMatplotlib())
-        QVERIFY(contents(path("reliability/reliability-circles.svg")).contains("lowest single scan, R = "));
+        QVERIFY(contentOf(path("reliability/reliability-circles.svg")).contains("lowest single scan, R = "));
 }
 
 QTEST_GUILESS_MAIN(TestRegistrationExperiments)

@@ -23,9 +23,9 @@ private Q_SLOTS:
 
 private:
     void scenes() const {
-        QTest::addColumn<QString>("scene");
+        const Rows<QString> row("scene");
         for (const auto &scene : results_)
-            QTest::newRow(scene.first.c_str()) << QString::fromStdString(scene.first);
+            row(scene.first.c_str(), QString::fromStdString(scene.first));
     }
     std::map<std::string, std::map<std::string, std::vector<ResultRow>>> results_; // by scene and algorithm
 };

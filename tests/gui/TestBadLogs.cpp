@@ -2,10 +2,9 @@
 #include "tests/gui/VectorProgram.h"
 
 /// hermes-vector map with logs that are spoiled: what is wrong is counted and told, and the map stays good.
-class TestBadLogs : public QObject {
+class TestBadLogs : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
     std::mt19937 random_;
 
     std::size_t any(std::size_t count) { return random_() % count; }
@@ -53,24 +52,23 @@ class TestBadLogs : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void isToldAndDoesNoHarm_data() {
-        QTest::addColumn<QStringList>("kinds");
+        const Rows<QStringList> row("kinds");
         const QStringList all{"duplicated", "empty", "stamps_back", "odometry_refused", "odometry_leaps"};
-        QTest::newRow("good") << QStringList();
+        row("good", QStringList());
         for (const QString &kind : all)
-            QTest::newRow(qPrintable(kind)) << QStringList{kind};
+            row(qPrintable(kind), {kind});
         std::mt19937 random(7);
         for (int i = 0; i < 4; ++i) {
             QStringList some;
             for (const QString &kind : all)
                 if (random() % 3 > 0)
                     some << kind;
-            QTest::newRow(qPrintable("drawn " + some.join(", "))) << some;
+            row(qPrintable("drawn " + some.join(", ")), some);
         }
-        QTest::newRow("all") << all;
+        row("all", all);
     }
     void isToldAndDoesNoHarm() {
         QFETCH(QStringList, kinds);
@@ -81,10 +79,9 @@ private Q_SLOTS:
             std::map<QString, int> least;
             for (const QString &kind : kinds)
                 least[kind] = spoil(log, kind);
-            write(folder_.path("log"), log.text());
-            const Result r = run({"map", folder_.path("log"), "--out-trajectory", folder_.path("tum"),
-                                  "--out-map", folder_.path("map.csv"), "--force"});
-            QVERIFY2(r.status == 0, r.err.constData());
+            put(path("log"), log.text());
+            const Result r = ran({"map", path("log"), "--out-trajectory", path("tum"), "--out-map",
+                                  path("map.csv"), "--force"});
             const QJsonObject told = json(r.out);
             for (const char *kind :
                  {"duplicated", "empty", "stamps_back", "odometry_refused", "odometry_leaps"}) {
@@ -96,7 +93,7 @@ private Q_SLOTS:
             if (kinds.isEmpty())
                 QCOMPARE(r.err, QByteArray());
             QCOMPARE(told["scans"].toInt(), int(log.lines.size()));
-            const std::vector<vectorlib::Pose2D> found = posesOfTum(contents(folder_.path("tum")));
+            const std::vector<vectorlib::Pose2D> found = posesOfTum(contentOf(path("tum")));
             QCOMPARE(found.size(), log.truth().size());
             const RevisitErrors errors(found, log.truth());
             const QString text =
@@ -111,10 +108,9 @@ private Q_SLOTS:
         SimulatedLog log(building.world, building.drive(1), random_);
         log.lines.resize(4);
         log.lines[2] = log.lines[1];
-        write(folder_.path("log"), log.text());
-        const Result scan = run({"map", folder_.path("log"), "--scan", "2"});
-        QCOMPARE(scan.status, 0);
-        QCOMPARE(scan.out, run({"map", folder_.path("log"), "--scan", "1"}).out);
+        put(path("log"), log.text());
+        const Result scan = ran({"map", path("log"), "--scan", "2"});
+        QCOMPARE(scan.out, run({"map", path("log"), "--scan", "1"}).out);
         QVERIFY(scan.err.contains("1 scan(s) left out that repeat"));
     }
 };

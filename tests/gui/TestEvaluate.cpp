@@ -10,13 +10,11 @@ using vectorlib::Pose2D;
 using vectorlib::Transformation2D;
 
 /// hermes-vector evaluate: a trajectory beside the reference poses of a log.
-class TestEvaluate : public QObject {
+class TestEvaluate : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
     using Drive = std::vector<Pose2D>;
 
-    QString path(const char *name) const { return folder_.path(name); }
     /// A log of the poses, a tenth of a second apart, and a trajectory of some of them.
     void writeLog(const Drive &drive) const {
         QByteArray text;
@@ -25,7 +23,7 @@ class TestEvaluate : public QObject {
             text += "FLASER 3 1 1 1 " + pose + ' ' + pose + ' ' + numbers({stampOf(i)}) + " host " +
                     numbers({stampOf(i)}) + '\n';
         }
-        write(path("a.log"), text);
+        put(path("a.log"), text);
     }
     void writeTrajectory(const Drive &drive, std::size_t every = 1) const {
         QByteArray text = "# stamp x y z qx qy qz qw\n";
@@ -33,7 +31,7 @@ class TestEvaluate : public QObject {
             text += numbers({stampOf(i), drive[i].x, drive[i].y, 0, 0, 0, std::sin(drive[i].theta / 2),
                              std::cos(drive[i].theta / 2)}) +
                     '\n';
-        write(path("a.tum"), text);
+        put(path("a.tum"), text);
     }
     static double stampOf(std::size_t scan) { return 1000 + 0.1 * double(scan); }
     static QByteArray numbers(const std::vector<double> &values) {
@@ -68,14 +66,11 @@ class TestEvaluate : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     // Against all pairs, one by one, as the rule says.
     void findsEveryPlaceMetAgain() {
-        const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-        qInfo("seed %u", seed);
-        std::mt19937 random(seed);
+        std::mt19937 random(newSeed());
         const Drive drive = wandering(random, 800);
         std::vector<double> way{0};
         for (std::size_t i = 1; i < drive.size(); ++i)
@@ -127,7 +122,7 @@ private Q_SLOTS:
         QCOMPARE(next["motions"].toInt(), 159);
         QVERIFY(next["median_m"].toDouble() < 1e-6);
         QVERIFY(std::abs(next["mean_m"].toDouble() - 0.3 / 159) < 1e-6);
-        const QByteArray svg = contents(path("a.svg"));
+        const QByteArray svg = contentOf(path("a.svg"));
         QXmlStreamReader xml(svg);
         while (!xml.atEnd())
             xml.readNext();
@@ -163,7 +158,7 @@ private Q_SLOTS:
                                 std::cos(p.theta / 2)}) +
                        '\n';
             }
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const QJsonObject found = json(evaluate().out);
         QCOMPARE(found["compared"].toInt(), 199);
         QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
@@ -175,7 +170,7 @@ private Q_SLOTS:
         QByteArray tum;
         for (std::size_t i = 0; i < drive.size(); ++i)
             tum += numbers({1e6 + stampOf(i), drive[i].x, drive[i].y, 0, 0, 0, 0, 1}) + '\n';
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const Result r = evaluate();
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("0 of them at the time"), r.err.constData());
@@ -214,18 +209,14 @@ private Q_SLOTS:
         QVERIFY(json(r.out)["revisits"].toObject()["mean_deg"].toDouble() > 3);
     }
     void fewPosesWithAScanMustTurnAsTheLogDoes_data() {
-        QTest::addColumn<int>("some");
-        QTest::addColumn<int>("status");
-        QTest::addColumn<QByteArray>("message");
-        QTest::newRow("too few to tell") << 10 << 1 << QByteArray("found only 10 of 299 poses");
-        QTest::newRow("a part of them") << 60 << 0 << QByteArray("only 60 of 299 poses");
-        QTest::newRow("most of them") << 200 << 0 << QByteArray();
+        const Rows<int, int, QByteArray> row("some", "status", "message");
+        row("too few to tell", 10, 1, "found only 10 of 299 poses");
+        row("a part of them", 60, 0, "only 60 of 299 poses");
+        row("most of them", 200, 0, QByteArray());
     }
     // The others are between two scans, and one is missing, so that they are not taken one by one.
     void fewPosesWithAScanMustTurnAsTheLogDoes() {
-        QFETCH(int, some);
-        QFETCH(int, status);
-        QFETCH(QByteArray, message);
+        FETCH(int, some, int, status, QByteArray, message);
         std::mt19937 random(10);
         const Drive drive = wandering(random, 300);
         writeLog(drive);
@@ -236,7 +227,7 @@ private Q_SLOTS:
                             std::sin(p.theta / 2), std::cos(p.theta / 2)}) +
                    '\n';
         }
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const Result r = evaluate();
         QVERIFY2(r.status == status && r.err.contains(message), r.err.constData());
         QCOMPARE(r.err.isEmpty(), message.isEmpty());
@@ -250,32 +241,29 @@ private Q_SLOTS:
         for (const Pose2D &p : drive)
             log += "FLASER 3 1 1 1 " + numbers({p.x, p.y, p.theta}) + ' ' + numbers({p.x, p.y, p.theta}) +
                    " 1000 host 1000\n";
-        write(path("a.log"), log);
+        put(path("a.log"), log);
         for (std::size_t i = 0; i < drive.size(); i += 2)
             tum += numbers({1000 + 1e-6 * double(i), drive[i].x, drive[i].y, 0, 0, 0, 0, 1}) + '\n';
-        write(path("a.tum"), tum);
+        put(path("a.tum"), tum);
         const Result r = evaluate();
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("25 of 25 poses at the time of several scans"), r.err.constData());
     }
 
     void saysWhatIsWrong_data() {
-        QTest::addColumn<QByteArray>("trajectory");
-        QTest::addColumn<QByteArray>("message");
-        QTest::newRow("empty") << QByteArray() << QByteArray("found 0 poses");
-        QTest::newRow("other times") << QByteArray("1 0 0 0 0 0 0 1\n")
-                                     << QByteArray("0 of them at the time");
-        QTest::newRow("seven fields") << QByteArray("1 0 0 0 0 0 1\n") << QByteArray("7 fields");
-        QTest::newRow("a word") << QByteArray("1 x 0 0 0 0 0 1\n") << QByteArray("\"x\"");
-        QTest::newRow("not a number") << QByteArray("1 0 nan 0 0 0 0 1\n") << QByteArray("\"nan\"");
-        QTest::newRow("no heading") << QByteArray("1 0 0 0 0 0 0 0\n") << QByteArray("quaternion");
-        QTest::newRow("far away") << QByteArray("1 1e300 0 0 0 0 0 1\n") << QByteArray("beyond all measure");
+        const Rows<QByteArray, QByteArray> row("trajectory", "message");
+        row("empty", QByteArray(), "found 0 poses");
+        row("other times", "1 0 0 0 0 0 0 1\n", "0 of them at the time");
+        row("seven fields", "1 0 0 0 0 0 1\n", "7 fields");
+        row("a word", "1 x 0 0 0 0 0 1\n", "\"x\"");
+        row("not a number", "1 0 nan 0 0 0 0 1\n", "\"nan\"");
+        row("no heading", "1 0 0 0 0 0 0 0\n", "quaternion");
+        row("far away", "1 1e300 0 0 0 0 0 1\n", "beyond all measure");
     }
     void saysWhatIsWrong() {
-        QFETCH(QByteArray, trajectory);
-        QFETCH(QByteArray, message);
+        FETCH(QByteArray, trajectory, QByteArray, message);
         writeLog({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
-        write(path("a.tum"), trajectory);
+        put(path("a.tum"), trajectory);
         const Result r = evaluate({"--svg", path("a.svg")});
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("a.tum") && r.err.contains(message), r.err.constData());
@@ -284,19 +272,15 @@ private Q_SLOTS:
 
     /// Of real buildings: with loops closed the places met again lie on each other.
     void loopsOfRealLogsAreClosed_data() {
-        QTest::addColumn<double>("tracked");
-        QTest::addColumn<double>("closed");
-        QTest::newRow("intel") << 0.5 << 0.05;
-        QTest::newRow("fhw") << 0.3 << 0.055;
-        QTest::newRow("belgioioso") << 0.05 << 0.035;
-        QTest::newRow("orebro") << 1.0 << 0.15; // has no odometry
+        const Rows<double, double> row("tracked", "closed");
+        row("intel", 0.5, 0.05);
+        row("fhw", 0.3, 0.055);
+        row("belgioioso", 0.05, 0.035);
+        row("orebro", 1.0, 0.15); // has no odometry
     }
     void loopsOfRealLogsAreClosed() {
-        QFETCH(double, tracked);
-        QFETCH(double, closed);
-        const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
-        if (log.isEmpty())
-            QSKIP("the logs of real robots are not here; HERMES_DATA names their folder");
+        FETCH(double, tracked, double, closed);
+        REAL_DATA(log, QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
         const auto errorOf = [&](const char *loops) {
             const QString tum = path("real.tum");
             const Result r =

@@ -2,23 +2,21 @@
 #include "tests/gui/VectorProgram.h"
 
 /// hermes-vector map --localize: the poses of a drive in a finished map.
-class TestLocalize : public QObject {
+class TestLocalize : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
     std::mt19937 random_{4};
     RingBuilding building_{random_};
     std::vector<vectorlib::Pose2D> way_ = building_.drive(1);
     QString map_;
 
     QString logOf(const SimulatedLog &log, const char *name) const {
-        write(folder_.path(name), log.text());
-        return folder_.path(name);
+        put(path(name), log.text());
+        return path(name);
     }
     Result localize(const QString &log, const QStringList &more = {}) const {
-        return run(
-            QStringList{"map", log, "--localize", map_, "--out-trajectory", folder_.path("tum"), "--force"} +
-            more);
+        return run(QStringList{"map", log, "--localize", map_, "--out-trajectory", path("tum"), "--force"} +
+                   more);
     }
     /// The farthest pose from where it truly is in the map, which has the first pose as its origin; metres.
     static double farthest(const std::vector<vectorlib::Pose2D> &found,
@@ -33,17 +31,15 @@ class TestLocalize : public QObject {
 
 private Q_SLOTS:
     void initTestCase() {
-        QVERIFY(folder_.isValid());
         const QString log = logOf(SimulatedLog(building_.world, way_, random_), "first");
-        map_ = folder_.path("map.csv");
-        const Result r = run({"map", log, "--out-map", map_});
-        QVERIFY2(r.status == 0, r.err.constData());
+        map_ = path("map.csv");
+        ran({"map", log, "--out-map", map_});
     }
 
     void findsADriveFromItsMiddle() {
         const std::vector<vectorlib::Pose2D> part(way_.begin() + std::ptrdiff_t(way_.size() / 3), way_.end());
         const SimulatedLog log(building_.world, part, random_);
-        const QByteArray before = contents(map_);
+        const QByteArray before = contentOf(map_);
         const Result r = localize(logOf(log, "second"));
         QVERIFY2(r.status == 0, r.err.constData());
         const QJsonObject told = json(r.out);
@@ -51,14 +47,14 @@ private Q_SLOTS:
         QCOMPARE(told["relocalized"].toInt(), 1);
         QCOMPARE(told["matched"].toInt() + told["lost"].toInt() + told["without_pose"].toInt(),
                  told["scans"].toInt());
-        const auto found = posesOfTum(contents(folder_.path("tum")));
+        const auto found = posesOfTum(contentOf(path("tum")));
         QCOMPARE(found.size(), part.size());
         const double off = farthest(found, part, way_[0]);
         QVERIFY2(off < 0.1, qPrintable(QString::number(off)));
-        QCOMPARE(contents(map_), before);
-        const QByteArray first = contents(folder_.path("tum"));
-        QCOMPARE(localize(folder_.path("second")).status, 0);
-        QCOMPARE(contents(folder_.path("tum")), first); // no clock has a say
+        QCOMPARE(contentOf(map_), before);
+        const QByteArray first = contentOf(path("tum"));
+        QCOMPARE(localize(path("second")).status, 0);
+        QCOMPARE(contentOf(path("tum")), first); // no clock has a say
     }
 
     /// The robot is lifted and set down elsewhere.
@@ -72,7 +68,7 @@ private Q_SLOTS:
         const Result r = localize(logOf(log, "second"));
         QVERIFY2(r.status == 0, r.err.constData());
         QVERIFY2(json(r.out)["with_pose_share"].toDouble() > 0.95, r.out.constData());
-        const auto found = posesOfTum(contents(folder_.path("tum")));
+        const auto found = posesOfTum(contentOf(path("tum")));
         QCOMPARE(found.size(), ways.size());
         const double off = farthest(found, ways, way_[0]);
         QVERIFY2(off < 0.1, qPrintable(QString::number(off)));
@@ -83,23 +79,23 @@ private Q_SLOTS:
             std::mt19937 random(seed);
             RingBuilding other(random);
             const SimulatedLog log(other.world, other.drive(1), random);
-            QFile::remove(folder_.path("tum"));
+            QFile::remove(path("tum"));
             const Result r = localize(logOf(log, "foreign"));
             QVERIFY2(r.status == 1, r.out.constData());
             QVERIFY2(r.err.contains("foreign: not found in the map"), r.err.constData());
-            QVERIFY(!QFile::exists(folder_.path("tum")));
+            QVERIFY(!QFile::exists(path("tum")));
             QCOMPARE(r.out, QByteArray());
         }
     }
 
     void takesNothingThatBuildsAMap() {
-        const QString log = folder_.path("first");
+        const QString log = path("first");
         for (const QStringList &more :
-             {QStringList{"--out-map", folder_.path("m.csv")}, QStringList{"--out-graph", folder_.path("g")},
+             {QStringList{"--out-map", path("m.csv")}, QStringList{"--out-graph", path("g")},
               QStringList{"--loops", "leave"}, QStringList{"--scan", "1"}})
             QCOMPARE(localize(log, more).status, 2);
-        write(folder_.path("empty.csv"), "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n");
-        const Result r = run({"map", log, "--localize", folder_.path("empty.csv")});
+        put(path("empty.csv"), "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n");
+        const Result r = run({"map", log, "--localize", path("empty.csv")});
         QVERIFY2(r.status == 1 && r.err.contains("empty.csv: found a map without a wall"), r.err.constData());
     }
 };

@@ -6,13 +6,12 @@
 #include <fstream>
 
 /// hermes-vector map-merge: two maps become one where they show the same place.
-class TestMapMerge : public QObject {
+class TestMapMerge : public QObject, protected TestFolder {
     Q_OBJECT
 
     using Wall = vectorlib::LineSegment2D<double>;
     using Map = std::vector<vectorlib::MapEdge>;
 
-    TestFolder folder_;
     const vectorlib::Transformation2D motion_{3, -4, 2}; // from the second map to the first
 
     static Map mapOf(const std::vector<Wall> &walls, double from, double to,
@@ -31,9 +30,9 @@ class TestMapMerge : public QObject {
         return map;
     }
     QString file(const char *name, const Map &map) const {
-        std::ofstream out(folder_.path(name).toStdString());
+        std::ofstream out(path(name).toStdString());
         vectorlib::writeMapCsv(out, map);
-        return folder_.path(name);
+        return path(name);
     }
     static double right(const std::vector<Wall> &walls) {
         double most = 0;
@@ -46,8 +45,8 @@ class TestMapMerge : public QObject {
         const double width = right(walls);
         const QString first = file("a.csv", mapOf(walls, -1, a * width, {}));
         const QString second = file("b.csv", mapOf(walls, (1 - b) * width, 2 * width, motion_.inverse()));
-        QFile::remove(folder_.path("both.csv"));
-        return run(QStringList{"map-merge", first, second, "--out", folder_.path("both.csv")} + more);
+        QFile::remove(path("both.csv"));
+        return run(QStringList{"map-merge", first, second, "--out", path("both.csv")} + more);
     }
     bool isRight(const Result &r) const {
         const QJsonObject t = json(r.out)["transformation"].toObject();
@@ -56,8 +55,7 @@ class TestMapMerge : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void joinsWhereTheyOverlap() {
         for (const unsigned seed : {1u, 2u, 3u}) {
@@ -68,7 +66,7 @@ private Q_SLOTS:
             const QJsonObject told = json(r.out);
             QVERIFY(told["places_agree"].toInt() >= 3 && told["overlap_m"].toDouble() > 10);
             QVERIFY2(told["residual_rms_m"].toDouble() < 0.1, r.out.constData());
-            std::istringstream text(contents(folder_.path("both.csv")).toStdString());
+            std::istringstream text(contentOf(path("both.csv")).toStdString());
             const auto both = vectorlib::readMapCsv(text, "both");
             QVERIFY(bool(both));
             const std::size_t all = mapOf(walls, -1, 1e9, {}).size();
@@ -86,12 +84,11 @@ private Q_SLOTS:
         for (const unsigned seed : {4u, 5u}) {
             const std::vector<Wall> one = vectorlib::FloorPlan(seed, 12).walls(),
                                     other = vectorlib::FloorPlan(seed + 10, 12).walls();
-            const Result r =
-                run({"map-merge", file("a.csv", mapOf(one, -1, 1e9, {})),
-                     file("b.csv", mapOf(other, -1, 1e9, {})), "--out", folder_.path("both.csv")});
+            const Result r = run({"map-merge", file("a.csv", mapOf(one, -1, 1e9, {})),
+                                  file("b.csv", mapOf(other, -1, 1e9, {})), "--out", path("both.csv")});
             QVERIFY2(r.status == 1 && r.err.contains("not joined"), r.err.constData());
             QCOMPARE(r.out, QByteArray());
-            QVERIFY(!QFile::exists(folder_.path("both.csv")));
+            QVERIFY(!QFile::exists(path("both.csv")));
         }
     }
 
@@ -120,10 +117,9 @@ private Q_SLOTS:
     void saysWhatIsWrong() {
         const QString map = file("a.csv", mapOf(vectorlib::FloorPlan(1, 4).walls(), -1, 1e9, {}));
         QCOMPARE(run({"map-merge", map, map}).status, 2); // where to
-        QCOMPARE(run({"map-merge", map, map, "--out", folder_.path("both.txt")}).status, 2);
-        QCOMPARE(run({"map-merge", map, folder_.path("none.csv"), "--out", folder_.path("both.csv")}).status,
-                 1);
-        QCOMPARE(folder_.files(), QStringList{"a.csv"});
+        QCOMPARE(run({"map-merge", map, map, "--out", path("both.txt")}).status, 2);
+        QCOMPARE(run({"map-merge", map, path("none.csv"), "--out", path("both.csv")}).status, 1);
+        QCOMPARE(files(), QStringList{"a.csv"});
     }
 };
 

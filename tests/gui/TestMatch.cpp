@@ -6,19 +6,11 @@
 #include <random>
 
 /// hermes-vector match: scans of a room from two places, as points, as segments and against a map.
-class TestMatch : public QObject {
+class TestMatch : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QString seen(const char *name, const char *pose, bool points) const {
-        return ::seen(folder_, name, pose, points);
-    }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
     void findsTheMotion_data();
     void findsTheMotion();
     void pointsMayComeInAnyOrder_data();
@@ -38,40 +30,32 @@ private Q_SLOTS:
 };
 
 void TestMatch::findsTheMotion_data() {
-    QTest::addColumn<QStringList>("options");
-    QTest::addColumn<bool>("staticPoints");
-    QTest::addColumn<bool>("dynamicPoints");
-    QTest::addColumn<double>("most");
-    QTest::addColumn<QString>("method");
+    const Rows<QStringList, bool, bool, double, QString> row("options", "staticPoints", "dynamicPoints",
+                                                             "most", "method");
     const QString global = "global", finder = "finder", tracking = "tracking", relations = "relations";
     const QStringList byRelations{"--method", "relations"};
     const QStringList byFinder{"--method", "finder"}, expected{"--expected", "0.6,-0.2,0.45"};
-    QTest::newRow("points") << QStringList() << true << true << 0.02 << global;
-    QTest::newRow("segments") << QStringList() << false << false << 1e-9 << global;
-    QTest::newRow("points on segments") << QStringList() << false << true << 0.02 << global;
-    QTest::newRow("segments on points") << QStringList() << true << false << 0.02 << global;
-    QTest::newRow("points, finder") << byFinder << true << true << 0.02 << finder;
-    QTest::newRow("segments, finder") << byFinder << false << false << 1e-9 << finder;
-    QTest::newRow("points on segments, finder") << byFinder << false << true << 0.02 << finder;
-    QTest::newRow("segments on points, finder") << byFinder << true << false << 0.02 << finder;
-    QTest::newRow("points, relations") << byRelations << true << true << 0.02 << relations;
-    QTest::newRow("segments, relations") << byRelations << false << false << 1e-9 << relations;
-    QTest::newRow("points on segments, relations") << byRelations << false << true << 0.02 << relations;
-    QTest::newRow("options of the search") << QStringList{"--max-dx", "1"} << true << true << 0.02 << finder;
-    QTest::newRow("points, expected") << expected << true << true << 0.02 << tracking;
-    QTest::newRow("segments, expected") << expected << false << false << 1e-9 << finder;
+    row("points", QStringList(), true, true, 0.02, global);
+    row("segments", QStringList(), false, false, 1e-9, global);
+    row("points on segments", QStringList(), false, true, 0.02, global);
+    row("segments on points", QStringList(), true, false, 0.02, global);
+    row("points, finder", byFinder, true, true, 0.02, finder);
+    row("segments, finder", byFinder, false, false, 1e-9, finder);
+    row("points on segments, finder", byFinder, false, true, 0.02, finder);
+    row("segments on points, finder", byFinder, true, false, 0.02, finder);
+    row("points, relations", byRelations, true, true, 0.02, relations);
+    row("segments, relations", byRelations, false, false, 1e-9, relations);
+    row("points on segments, relations", byRelations, false, true, 0.02, relations);
+    row("options of the search", {"--max-dx", "1"}, true, true, 0.02, finder);
+    row("points, expected", expected, true, true, 0.02, tracking);
+    row("segments, expected", expected, false, false, 1e-9, finder);
 }
 
 void TestMatch::findsTheMotion() {
-    QFETCH(QStringList, options);
-    QFETCH(bool, staticPoints);
-    QFETCH(bool, dynamicPoints);
-    QFETCH(double, most);
-    QFETCH(QString, method);
-    const Result r = run(QStringList{"match", seen("a.csv", "0,0,0", staticPoints),
+    FETCH(QStringList, options, bool, staticPoints, bool, dynamicPoints, double, most, QString, method);
+    const Result r = ran(QStringList{"match", seen("a.csv", "0,0,0", staticPoints),
                                      seen("b.csv", "0.7,-0.3,0.5", dynamicPoints)} +
                          options);
-    QCOMPARE(r.status, 0);
     QCOMPARE(r.err, QByteArray());
     const QJsonObject result = json(r.out), best = result["solutions"].toArray()[0].toObject();
     QCOMPARE(result["method"].toString(), method);
@@ -105,26 +89,24 @@ void TestMatch::findsTheMotion() {
 }
 
 void TestMatch::pointsMayComeInAnyOrder_data() {
-    QTest::addColumn<bool>("isShuffled");
-    QTest::addColumn<QStringList>("options");
+    const Rows<bool, QStringList> row("isShuffled", "options");
     for (const char *method : {"global", "finder", "relations"}) {
         QTest::addRow("clockwise, %s", method) << false << QStringList{"--method", method};
         QTest::addRow("shuffled, %s", method) << true << QStringList{"--method", method};
     }
-    QTest::newRow("shuffled, expected") << true << QStringList{"--expected", "0.1,0,0"};
+    row("shuffled, expected", true, {"--expected", "0.1,0,0"});
 }
 
 void TestMatch::pointsMayComeInAnyOrder() {
-    QFETCH(bool, isShuffled);
-    QFETCH(QStringList, options);
+    FETCH(bool, isShuffled, QStringList, options);
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
-    QList<QByteArray> rows = contents(a).trimmed().split('\n').mid(1);
+    QList<QByteArray> rows = contentOf(a).trimmed().split('\n').mid(1);
     std::mt19937 random(1);
     if (isShuffled)
         std::shuffle(rows.begin(), rows.end(), random);
     else
         std::reverse(rows.begin(), rows.end());
-    write(path("other.csv"), rows.join('\n') + '\n');
+    put(path("other.csv"), rows.join('\n') + '\n');
     const auto poseOf = [&](const QString &fixed) {
         const QJsonObject found = json(run(QStringList{"match", fixed, b} + options).out);
         return found["outcome"].toString() == "found"
@@ -139,7 +121,7 @@ void TestMatch::pointsMayComeInAnyOrder() {
 
 // The second sensor stands where the first one has not looked: two walls of the room are all that it saw.
 void TestMatch::mapHidesNothing() {
-    write(path("part.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n4,-1.5,4,1\n");
+    put(path("part.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n4,-1.5,4,1\n");
     seen("b.csv", "0.3,0.2,0.1", false);
     const auto best = [&](const QStringList &more) {
         const Result r =
@@ -152,10 +134,9 @@ void TestMatch::mapHidesNothing() {
 }
 
 void TestMatch::mapFileIsAMap() {
-    QCOMPARE(run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv")}).status, 0);
+    ran({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv")});
     seen("b.csv", "0.4,0.1,0.2", true); // the log is of the same room, from (0, 0) on
-    const Result r = run({"match", path("m.csv"), path("b.csv"), "--expected", "0.5,0,0"});
-    QCOMPARE(r.status, 0);
+    const Result r = ran({"match", path("m.csv"), path("b.csv"), "--expected", "0.5,0,0"});
     const QJsonObject best = json(r.out)["solutions"].toArray()[0].toObject();
     QVERIFY2(best["accepted"].toBool(), r.out.constData());
     QVERIFY(!best["covariance"].toArray().isEmpty());
@@ -176,7 +157,7 @@ void TestMatch::expectedPoseMovesTheSearch() {
 
 void TestMatch::anyMotionNeedsNoEstimate() {
     for (const bool points : {true, false}) {
-        folder_.empty();
+        empty();
         const QString a = seen("a.csv", "-1,0,0", points), b = seen("b.csv", "1.5,0.3,2.9", points);
         const QJsonObject best = json(run({"match", a, b}).out)["solutions"].toArray()[0].toObject();
         QVERIFY(best["accepted"].toBool());
@@ -197,9 +178,9 @@ void TestMatch::estimateTracks() {
 }
 
 void TestMatch::covarianceFollowsTheNoise_data() {
-    QTest::addColumn<bool>("arePoints");
-    QTest::newRow("segments") << false;
-    QTest::newRow("points") << true;
+    const Rows<bool> row("arePoints");
+    row("segments", false);
+    row("points", true);
 }
 
 void TestMatch::covarianceFollowsTheNoise() {
@@ -215,71 +196,59 @@ void TestMatch::covarianceFollowsTheNoise() {
 
 void TestMatch::pictureIsWellFormed() {
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
-    write(path("wall.csv"), "1,-2,1,2\n");
+    put(path("wall.csv"), "1,-2,1,2\n");
     for (const QString &fixed : {a, path("wall.csv")}) {
-        QCOMPARE(run({"match", fixed, b, "--svg", path("m.svg"), "--out", path("m.json"), "--force"}).status,
-                 0);
-        QXmlStreamReader xml(contents(path("m.svg")));
+        ran({"match", fixed, b, "--svg", path("m.svg"), "--out", path("m.json"), "--force"});
+        QXmlStreamReader xml(contentOf(path("m.svg")));
         while (!xml.atEnd())
             xml.readNext();
         QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
-        QVERIFY(contents(path("m.svg")).contains("static set"));
-        QVERIFY(!contents(path("m.svg")).contains("nan"));
+        QVERIFY(contentOf(path("m.svg")).contains("static set"));
+        QVERIFY(!contentOf(path("m.svg")).contains("nan"));
     }
 }
 
 void TestMatch::wrongUse_data() {
-    QTest::addColumn<QStringList>("arguments");
-    QTest::addColumn<QByteArray>("named");
+    const Rows<QStringList, QByteArray> row("arguments", "named");
     const QString room = data("room.csv");
-    QTest::newRow("nothing") << QStringList{} << QByteArray("STATIC");
-    QTest::newRow("one scan") << QStringList{room} << QByteArray("DYNAMIC");
-    QTest::newRow("half a pose") << QStringList{room, room, "--expected", "1,2"} << QByteArray("--expected");
-    QTest::newRow("NaN") << QStringList{room, room, "--max-dx", "nan"} << QByteArray("--max-dx");
-    QTest::newRow("no noise") << QStringList{room, room, "--noise", "0"} << QByteArray("--noise");
-    QTest::newRow("deviation of nothing")
-        << QStringList{room, room, "--deviation-xy", "1"} << QByteArray("--expected");
-    QTest::newRow("no such method") << QStringList{room, room, "--method", "best"} << QByteArray("--method");
-    QTest::newRow("global with an estimate")
-        << QStringList{room, room, "--method", "global", "--expected", "0,0,0"} << QByteArray("--method");
-    QTest::newRow("global with the options of another")
-        << QStringList{room, room, "--method", "global", "--max-dx", "1"} << QByteArray("--method");
-    QTest::newRow("relations in a map")
-        << QStringList{room, room, "--method", "relations", "--map"} << QByteArray("--m");
-    QTest::newRow("points are no map") << QStringList{room, room, "--map"} << QByteArray("--map");
+    row("nothing", {}, "STATIC");
+    row("one scan", {room}, "DYNAMIC");
+    row("half a pose", {room, room, "--expected", "1,2"}, "--expected");
+    row("NaN", {room, room, "--max-dx", "nan"}, "--max-dx");
+    row("no noise", {room, room, "--noise", "0"}, "--noise");
+    row("deviation of nothing", {room, room, "--deviation-xy", "1"}, "--expected");
+    row("no such method", {room, room, "--method", "best"}, "--method");
+    row("global with an estimate", {room, room, "--method", "global", "--expected", "0,0,0"}, "--method");
+    row("global with the options of another", {room, room, "--method", "global", "--max-dx", "1"},
+        "--method");
+    row("relations in a map", {room, room, "--method", "relations", "--map"}, "--m");
+    row("points are no map", {room, room, "--map"}, "--map");
 }
 
 void TestMatch::wrongUse() {
-    QFETCH(QStringList, arguments);
-    QFETCH(QByteArray, named);
+    FETCH(QStringList, arguments, QByteArray, named);
     const Result r = run(QStringList{"match"} + arguments);
-    QCOMPARE(r.status, 2);
-    QVERIFY2(r.err.contains(named), r.err.constData());
+    refused(r, 2, named);
     QCOMPARE(r.out, QByteArray());
 }
 
 void TestMatch::badInput_data() {
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<QByteArray>("message");
-    QTest::newRow("empty") << QByteArray() << QByteArray("in.csv: found an empty file");
-    QTest::newRow("NaN point") << QByteArray("x,y\n1,nan\n") << QByteArray("in.csv:2:");
-    QTest::newRow("NaN segment") << QByteArray("1,2,3,nan\n") << QByteArray("in.csv:1:");
-    QTest::newRow("three columns") << QByteArray("1,2,3\n") << QByteArray("in.csv:1:");
-    QTest::newRow("map without sums")
-        << QByteArray("id,x1,y1,x2,y2,mean_x\n0,1,2,3,4,5\n") << QByteArray("in.csv:1:");
-    QTest::newRow("cut short") << QByteArray("x1,y1,x2,y2\n1,2,3,4\n1,2,3") << QByteArray("in.csv:3:");
+    const Rows<QByteArray, QByteArray> row("text", "message");
+    row("empty", QByteArray(), "in.csv: found an empty file");
+    row("NaN point", "x,y\n1,nan\n", "in.csv:2:");
+    row("NaN segment", "1,2,3,nan\n", "in.csv:1:");
+    row("three columns", "1,2,3\n", "in.csv:1:");
+    row("map without sums", "id,x1,y1,x2,y2,mean_x\n0,1,2,3,4,5\n", "in.csv:1:");
+    row("cut short", "x1,y1,x2,y2\n1,2,3,4\n1,2,3", "in.csv:3:");
 }
 
 void TestMatch::badInput() {
-    QFETCH(QByteArray, text);
-    QFETCH(QByteArray, message);
-    write(path("in.csv"), text);
-    for (const QStringList &files :
+    FETCH(QByteArray, text, QByteArray, message);
+    put(path("in.csv"), text);
+    for (const QStringList &pair :
          {QStringList{path("in.csv"), data("room.csv")}, QStringList{data("room.csv"), path("in.csv")}}) {
-        const Result r = run(QStringList{"match", "--out", path("out")} + files);
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains(message), r.err.constData());
-        QCOMPARE(folder_.files(), QStringList{"in.csv"});
+        refused(run(QStringList{"match", "--out", path("out")} + pair), 1, message);
+        QCOMPARE(files(), QStringList{"in.csv"});
     }
 }
 

@@ -3,19 +3,11 @@
 #include <QJsonArray>
 
 /// How hermes-vector match ends, in the same keys and words whatever the method.
-class TestMatchOutcomes : public QObject {
+class TestMatchOutcomes : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QString seen(const char *name, const char *pose, bool points) const {
-        return ::seen(folder_, name, pose, points);
-    }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
     void keysAreTheSameForAllMethods();
     void outcomeIsTheSameForAllMethods_data();
     void outcomeIsTheSameForAllMethods();
@@ -42,20 +34,20 @@ void TestMatchOutcomes::keysAreTheSameForAllMethods() {
 }
 
 void TestMatchOutcomes::outcomeIsTheSameForAllMethods_data() {
-    QTest::addColumn<QStringList>("options");
-    QTest::newRow("global") << QStringList{"--method", "global"};
-    QTest::newRow("finder") << QStringList{"--method", "finder",       "--expected",
-                                           "0,0,1.57", "--max-dalpha", "1.6"}; // half a turn is permitted
-    QTest::newRow("relations") << QStringList{"--method", "relations"};
+    const Rows<QStringList> row("options");
+    row("global", {"--method", "global"});
+    row("finder",
+        {"--method", "finder", "--expected", "0,0,1.57", "--max-dalpha", "1.6"}); // half a turn is permitted
+    row("relations", {"--method", "relations"});
 }
 
 void TestMatchOutcomes::outcomeIsTheSameForAllMethods() {
     QFETCH(QStringList, options);
-    write(path("rectangle"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
-    write(path("corridor"), "-3,-1,3,-1\n3,1,-3,1\n");
-    write(path("corner"), "1,-1,1,1\n1,1,-3,1\n");
-    write(path("crumbs"), "2,-0.2,2,0.2\n0.2,2,-0.3,1.8\n");
-    write(path("dots"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
+    put(path("rectangle"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
+    put(path("corridor"), "-3,-1,3,-1\n3,1,-3,1\n");
+    put(path("corner"), "1,-1,1,1\n1,1,-3,1\n");
+    put(path("crumbs"), "2,-0.2,2,0.2\n0.2,2,-0.3,1.8\n");
+    put(path("dots"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
     const struct {
         const char *fixed, *moving, *outcome;
     } cases[] = {{"rectangle", "rectangle", "ambiguous"},
@@ -76,20 +68,18 @@ void TestMatchOutcomes::outcomeIsTheSameForAllMethods() {
 
 void TestMatchOutcomes::tellsWhyNothingIsAccepted() {
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
-    const Result strict = run({"match", a, b, "--ambiguity", "0.00000001"});
-    QCOMPARE(strict.status, 0);
+    const Result strict = ran({"match", a, b, "--ambiguity", "0.00000001"});
     for (const QJsonValue &s : json(strict.out)["solutions"].toArray()) {
         QVERIFY(!s.toObject()["accepted"].toBool());
         QVERIFY(s.toObject()["verdict"].toString() != QLatin1String("accepted"));
     }
-    write(path("wall.csv"), "1,-2,1,2\n");
-    const Result corridor = run({"match", path("wall.csv"), path("wall.csv"), "--method", "finder"});
-    QCOMPARE(corridor.status, 0);
+    put(path("wall.csv"), "1,-2,1,2\n");
+    const Result corridor = ran({"match", path("wall.csv"), path("wall.csv"), "--method", "finder"});
     QVERIFY(json(corridor.out)["solutions"].toArray().isEmpty());
     QCOMPARE(json(corridor.out)["outcome"].toString(), QString("open_direction"));
     QVERIFY(json(corridor.out)["text"].toString().contains("parallel"));
     QVERIFY2(corridor.err.contains("parallel"), corridor.err.constData());
-    write(path("dots.csv"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
+    put(path("dots.csv"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
     const QJsonObject dots = json(run({"match", path("dots.csv"), b}).out);
     QCOMPARE(dots["outcome"].toString(), QString("too_little"));
     QVERIFY(dots["text"].toString().contains("static set"));
@@ -97,7 +87,7 @@ void TestMatchOutcomes::tellsWhyNothingIsAccepted() {
 
 // A rectangle looks the same from two places; a single wall slides along itself.
 void TestMatchOutcomes::ambiguityIsTold() {
-    write(path("rectangle.csv"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
+    put(path("rectangle.csv"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
     const QJsonObject two = json(run({"match", path("rectangle.csv"), path("rectangle.csv")}).out);
     QCOMPARE(two["outcome"].toString(), QString("ambiguous"));
     const QJsonArray solutions = two["solutions"].toArray();
@@ -106,7 +96,7 @@ void TestMatchOutcomes::ambiguityIsTold() {
         QVERIFY(!solutions[i].toObject()["accepted"].toBool());
         QVERIFY(solutions[i].toObject()["probability"].toDouble() > 0.2);
     }
-    write(path("wall.csv"), "1,-2,1,2\n");
+    put(path("wall.csv"), "1,-2,1,2\n");
     const QJsonObject wall = json(run({"match", path("wall.csv"), path("wall.csv")}).out);
     QVERIFY(!wall["outcome"].toString().isEmpty() && wall["outcome"].toString() != "found");
     for (const QJsonValue &solution : wall["solutions"].toArray())

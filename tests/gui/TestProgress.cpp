@@ -42,7 +42,7 @@ private Q_SLOTS:
         QVERIFY(folder_.isValid());
         QFile log(path("long.log"));
         QVERIFY(log.open(QIODevice::WriteOnly));
-        const QList<QByteArray> drive = contents(data("corrected.log")).split('\n');
+        const QList<QByteArray> drive = contentOf(data("corrected.log")).split('\n');
         for (int stamp = 1; stamp <= 120000; ++stamp) {
             QList<QByteArray> scan = drive[stamp % drive.size()].split(' ');
             if (scan[0] != "FLASER")
@@ -81,8 +81,7 @@ private Q_SLOTS:
         QVERIFY2(told().endsWith("\r\033[K"), told().right(100).constData()); // the line is gone
     }
     void elsewhereItIsSilent() {
-        const Result r = run(longWork("silent"));
-        QCOMPARE(r.status, 0);
+        const Result r = ran(longWork("silent"));
         QCOMPARE(r.err, QByteArray());
     }
 
@@ -120,7 +119,7 @@ private Q_SLOTS:
         QVERIFY2(told().startsWith("{\"progress\":"), told().constData());
     }
     void eachCommandTakesTheOption_data() {
-        QTest::addColumn<QString>("command");
+        const Rows<QString> row("command");
         const QString help = QString::fromUtf8(run({"--help"}).out);
         QRegularExpressionMatchIterator commands =
             QRegularExpression("^  ([a-z-]+) ", QRegularExpression::MultilineOption)
@@ -128,7 +127,7 @@ private Q_SLOTS:
         while (commands.hasNext()) {
             const QString name = commands.next().captured(1);
             if (name != "experiment" && name != "report") // of another program
-                QTest::newRow(qPrintable(name)) << name;
+                row(qPrintable(name), name);
         }
     }
     void eachCommandTakesTheOption() {
@@ -141,14 +140,14 @@ private Q_SLOTS:
         QCOMPARE(shell("{ \"$@\" --json 2>&1 >/dev/null; echo $? >" + path("status") + "; } | true",
                        longWork("unread")),
                  0);
-        QCOMPARE(contents(path("status")), QByteArray("0\n"));
-        QVERIFY(!json(contents(path("unread"))).isEmpty());
+        QCOMPARE(contentOf(path("status")), QByteArray("0\n"));
+        QVERIFY(!json(contentOf(path("unread"))).isEmpty());
     }
     // The first file that is opened would be standard error.
     void closedStandardErrorIsNoFile() {
         QCOMPARE(shell("\"$@\" --json >/dev/null 2>&-", longWork("closed")), 0);
-        QVERIFY(!json(contents(path("closed"))).isEmpty());
-        QVERIFY(!contents(path("closed")).contains("progress"));
+        QVERIFY(!json(contentOf(path("closed"))).isEmpty());
+        QVERIFY(!contentOf(path("closed")).contains("progress"));
     }
 };
 

@@ -4,15 +4,9 @@
 #include <QXmlStreamReader>
 
 /// hermes-vector relocalize: the place of a scan in a map, its picture, and a scan out of a log.
-class TestRelocalize : public QObject {
+class TestRelocalize : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QString seen(const char *name, const char *pose, bool points) const {
-        return ::seen(folder_, name, pose, points);
-    }
     /// Two rooms of the same shape as a map.
     QString twins() const {
         QByteArray walls = "x1,y1,x2,y2\n";
@@ -22,7 +16,7 @@ class TestRelocalize : public QObject {
                 const auto &a = corners[i], &b = corners[(i + 1) % 6];
                 walls += QString("%1,%2,%3,%4\n").arg(a[0] + x).arg(a[1]).arg(b[0] + x).arg(b[1]).toUtf8();
             }
-        write(path("twins.csv"), walls);
+        put(path("twins.csv"), walls);
         return path("twins.csv");
     }
     static void isWellFormed(const QByteArray &svg) {
@@ -34,15 +28,13 @@ class TestRelocalize : public QObject {
     }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void needsNoExpectation() {
         seen("a.csv", "0,0,0", false);
         for (const bool points : {true, false}) {
             const QString scan = seen(points ? "b.csv" : "c.csv", "0.4,0.1,2.5", points);
-            const Result r = run({"relocalize", path("a.csv"), scan});
-            QCOMPARE(r.status, 0);
+            const Result r = ran({"relocalize", path("a.csv"), scan});
             const QJsonObject found = json(r.out);
             QVERIFY2(found["outcome"].toString() == "found", r.out.constData());
             const QJsonObject best = found["places"].toArray()[0].toObject(), pose = best["pose"].toObject();
@@ -57,23 +49,22 @@ private Q_SLOTS:
         const QString b = seen("b.csv", "0.4,0.1,0.2", true);
         QCOMPARE(run({"relocalize", b, b}).status, 2); // a scan is no map
         QCOMPARE(run({"relocalize", path("none.csv"), b}).status, 1);
-        write(path("wall.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n");
-        const Result r = run({"relocalize", path("wall.csv"), path("wall.csv"), "--svg", path("wall.svg")});
-        QCOMPARE(r.status, 0);
+        put(path("wall.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n");
+        const Result r = ran({"relocalize", path("wall.csv"), path("wall.csv"), "--svg", path("wall.svg")});
         QCOMPARE(json(r.out)["outcome"].toString(), QString("too_little"));
         QVERIFY(json(r.out)["text"].toString().contains("fewer than two"));
         QVERIFY(json(r.out)["places"].toArray().isEmpty());
-        isWellFormed(contents(path("wall.svg")));
-        QVERIFY(contents(path("wall.svg")).contains("Not found"));
-        QVERIFY(!contents(path("wall.svg")).contains("scan and sensor"));
+        isWellFormed(contentOf(path("wall.svg")));
+        QVERIFY(contentOf(path("wall.svg")).contains("Not found"));
+        QVERIFY(!contentOf(path("wall.svg")).contains("scan and sensor"));
     }
 
     void pictureShowsThePlace() {
         seen("a.csv", "0,0,0", false);
         for (const bool points : {true, false}) {
             const QString scan = seen("b.csv", "0.4,0.1,2.5", points);
-            QCOMPARE(run({"relocalize", path("a.csv"), scan, "--svg", path("p.svg"), "--force"}).status, 0);
-            const QByteArray svg = contents(path("p.svg"));
+            ran({"relocalize", path("a.csv"), scan, "--svg", path("p.svg"), "--force"});
+            const QByteArray svg = contentOf(path("p.svg"));
             isWellFormed(svg);
             QVERIFY2(svg.contains(">Found<") && svg.contains(">map<"), svg.left(500).constData());
             QVERIFY(svg.contains("probable at 0.4"));
@@ -85,16 +76,13 @@ private Q_SLOTS:
     }
 
     void pictureNumbersPlacesThatAreAlike() {
-        write(path("w.json"),
-              "{\"name\": \"room\", \"edges\": [[0,0,4,0],[4,0,4,3],[4,3,2.5,3],[2.5,3,2.5,2],"
-              "[2.5,2,0,2],[0,2,0,0]]}");
-        QCOMPARE(run({"observe", path("w.json"), "--pose", "2.8,1,0.4", "--scan", "720", "--noise", "0.01",
-                      "--out", path("s.csv")})
-                     .status,
-                 0);
+        put(path("w.json"), "{\"name\": \"room\", \"edges\": [[0,0,4,0],[4,0,4,3],[4,3,2.5,3],[2.5,3,2.5,2],"
+                            "[2.5,2,0,2],[0,2,0,0]]}");
+        ran({"observe", path("w.json"), "--pose", "2.8,1,0.4", "--scan", "720", "--noise", "0.01", "--out",
+             path("s.csv")});
         const Result r = run({"relocalize", twins(), path("s.csv"), "--svg", path("p.svg")});
         QVERIFY2(json(r.out)["outcome"].toString() == "ambiguous", r.out.constData());
-        const QByteArray svg = contents(path("p.svg"));
+        const QByteArray svg = contentOf(path("p.svg"));
         isWellFormed(svg);
         QVERIFY(svg.contains(">1: scan and sensor") && svg.contains(">2: scan and sensor"));
         QCOMPARE(svg.count("<circle"), 4);
@@ -102,9 +90,9 @@ private Q_SLOTS:
     }
 
     void logIsNoScan_data() {
-        QTest::addColumn<QString>("command");
+        const Rows<QString> row("command");
         for (const char *command : {"relocalize", "match"})
-            QTest::newRow(command) << QString(command);
+            row(command, QString(command));
     }
     /// What the message says to do does it.
     void logIsNoScan() {
@@ -117,7 +105,7 @@ private Q_SLOTS:
             const QByteArray advice = "hermes-vector map " + file.toUtf8() + " --scan N --out scan.csv";
             QVERIFY2(r.err.contains(advice), r.err.constData());
         }
-        QCOMPARE(run({"map", log, "--scan", "0", "--out", path("scan.csv")}).status, 0);
+        ran({"map", log, "--scan", "0", "--out", path("scan.csv")});
         const QByteArray name = command == "match" ? "solutions" : "places";
         QCOMPARE(run({"segment", log}).status, 1);
         const QJsonObject best =
@@ -132,18 +120,16 @@ private Q_SLOTS:
         QVERIFY(first.out.startsWith("x,y\n"));
         QVERIFY(first.out.count('\n') > 150 && first.out.count('\n') < 183); // 181 rays, some without return
         QVERIFY(first.out != second.out);
-        const Result none = run({"map", log, "--scan", "1000", "--out", path("scan.csv")});
-        QCOMPARE(none.status, 1);
-        QVERIFY2(none.err.contains("expected a scan 1000 (they count from 0)"), none.err.constData());
-        QVERIFY(folder_.files().isEmpty());
+        refused(run({"map", log, "--scan", "1000", "--out", path("scan.csv")}), 1,
+                "expected a scan 1000 (they count from 0)");
+        QVERIFY(files().isEmpty());
         const Result map = run({"map", log, "--scan", "1", "--out-map", path("m.csv")});
         QCOMPARE(map.status, 2);
         QVERIFY2(map.err.contains("--scan") && map.err.contains("--out-map"), map.err.constData());
     }
     void scanOfACapture() {
         writeCapture(path("c.pcap"), 600); // over three turns, a wall at 5 m
-        const Result r = run({"map", path("c.pcap"), "--scan", "1"});
-        QCOMPARE(r.status, 0);
+        const Result r = ran({"map", path("c.pcap"), "--scan", "1"});
         const QList<QByteArray> rows = r.out.trimmed().split('\n').mid(1);
         QVERIFY(rows.size() > 1000);
         for (const QByteArray &row : rows) {

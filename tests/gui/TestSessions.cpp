@@ -28,8 +28,8 @@ private Q_SLOTS:
     void aReplayThatFailsEndsForAll_data();
     void aReplayThatFailsEndsForAll();
     void aReplayEndsWhenItIsTold();
+    void aReplayFollowsAnother_data();
     void aReplayFollowsAnother();
-    void anEndIsForTheNextReplayToo();
     void allGoLiveWhenALaterPassFails();
     void ordersGoToAll();
     void whoHasEndedBeginsAnew();
@@ -192,9 +192,7 @@ void TestSessions::aListSaysWhatASessionHolds() {
     record("run1");
     QVERIFY(start("run2").ok());
     QVERIFY(QDir(robot_->root.path()).mkpath("odd"));
-    QFile odd(robot_->root.path() + "/odd/c.json");
-    QVERIFY(odd.open(QIODevice::WriteOnly) && odd.write("{}") == 2);
-    odd.close();
+    put(robot_->root.path() + "/odd/c.json", "{}");
     robot_->clients[0]->close(); // a took part, but does not answer
     SessionRecorder recorder(members());
     const auto list = [&](int most) {
@@ -250,21 +248,15 @@ void TestSessions::allAreReleasedTogether() {
 }
 
 void TestSessions::aReplayThatFailsEndsForAll_data() {
-    QTest::addColumn<QString>("how");
-    QTest::addColumn<QString>("told");
-    QTest::newRow("not opened") << "error"
-                                << "b: no such file";
-    QTest::newRow("opened late") << "late"
-                                 << "b: source.open: no reply within";
-    QTest::newRow("recording") << "recording"
-                               << "a is recording \"run2\"; record stop ends it";
-    QTest::newRow("changed by others") << "changed"
-                                       << "b: its source was changed to \"live\" meanwhile";
+    const Rows<QString, QString> row("how", "told");
+    row("not opened", "error", "b: no such file");
+    row("opened late", "late", "b: source.open: no reply within");
+    row("recording", "recording", "a is recording \"run2\"; record stop ends it");
+    row("changed by others", "changed", "b: its source was changed to \"live\" meanwhile");
 }
 
 void TestSessions::aReplayThatFailsEndsForAll() {
-    QFETCH(QString, how);
-    QFETCH(QString, told);
+    FETCH(QString, how, QString, told);
     const RecordedSession session = record("run1");
     SessionPlayer::Options options;
     options.loop = true;
@@ -305,22 +297,14 @@ void TestSessions::aReplayEndsWhenItIsTold() {
     QVERIFY(a_->source == "live" && b_->source == "live");
 }
 
-void TestSessions::aReplayFollowsAnother() {
-    const RecordedSession first = record("run1"), second = record("run2");
-    SessionPlayer player;
-    int ends = 0;
-    connect(&player, &SessionPlayer::ended, [&] { ++ends; });
-    a_->positionsToEnd = 1000;
-    player.play(first, {});
-    QTRY_COMPARE(robot_->asked.count("a: is released"), 1);
-    a_->positionsToEnd = 3;
-    player.play(second, {});
-    QTRY_COMPARE(robot_->asked.count("a: is released"), 2);
-    QTRY_COMPARE(ends, 2);
-    QVERIFY(!player.isPlaying());
+void TestSessions::aReplayFollowsAnother_data() {
+    const Rows<bool> row("isEnded"); // both, before the second has begun
+    row("to its end", false);
+    row("and is ended", true);
 }
 
-void TestSessions::anEndIsForTheNextReplayToo() {
+void TestSessions::aReplayFollowsAnother() {
+    QFETCH(bool, isEnded);
     const RecordedSession first = record("run1"), second = record("run2");
     SessionPlayer player;
     int ends = 0;
@@ -328,10 +312,15 @@ void TestSessions::anEndIsForTheNextReplayToo() {
     a_->positionsToEnd = 1000;
     player.play(first, {});
     QTRY_COMPARE(robot_->asked.count("a: is released"), 1);
+    a_->positionsToEnd = isEnded ? 1000 : 3;
     player.play(second, {});
-    player.end();
-    QTRY_COMPARE(ends, 1);
-    QVERIFY(!player.isPlaying() && a_->source == "live" && b_->source == "live");
+    if (isEnded)
+        player.end();
+    else
+        QTRY_COMPARE(robot_->asked.count("a: is released"), 2);
+    QTRY_COMPARE(ends, isEnded ? 1 : 2);
+    QVERIFY(!player.isPlaying());
+    QVERIFY(!isEnded || (a_->source == "live" && b_->source == "live"));
 }
 
 void TestSessions::allGoLiveWhenALaterPassFails() {

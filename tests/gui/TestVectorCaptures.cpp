@@ -28,21 +28,18 @@ void appendForeign(const QString &path, quint16 port) {
     d.size = std::size_t(payload.size());
     if (!writer.open(copy.toStdString()) || !writer.write(d) || !writer.close())
         qFatal("%s cannot be written", qPrintable(copy));
-    const QByteArray record = contents(copy).mid(int(PcapWriter::fileHeaderBytes));
+    const QByteArray record = contentOf(copy).mid(int(PcapWriter::fileHeaderBytes));
     QFile::remove(copy);
-    write(path, contents(path) + record);
+    put(path, contentOf(path) + record);
 }
 
 } // namespace
 
-class TestVectorCaptures : public QObject {
+class TestVectorCaptures : public QObject, protected TestFolder {
     Q_OBJECT
-    TestFolder folder_;
-    QString path(const char *name) const { return folder_.path(name); }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void anyPortIsRead() {
         writeCapture(path("usual.pcap"), 400);
@@ -52,31 +49,24 @@ private Q_SLOTS:
         QCOMPARE(other.err, QByteArray());
         QCOMPARE(other.status, 0);
         QCOMPARE(other.out, usual.out);
-        const Result map = run({"map", path("other.pcap")});
-        QVERIFY2(map.status == 0, map.err.constData());
+        const Result map = ran({"map", path("other.pcap")});
         QCOMPARE(json(map.out)["scans"].toInt(), 3);
     }
 
     // A pipe can be read only once: what tells its kind must not be lost.
     void pipesAreReadFromTheirBeginning_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QString>("file");
-        QTest::newRow("points") << QStringList{"segment", "FILE"} << QString(data("room.csv"));
-        QTest::newRow("log") << QStringList{"map", "FILE",      "--corrected", "--out-trajectory",
-                                            "-",   "--summary", path("s")}
-                             << QString(data("corrected.log"));
-        QTest::newRow("capture") << QStringList{"ring", "FILE"} << path("capture.pcap");
-        QTest::newRow("capture to map")
-            << QStringList{"map", "FILE", "--out-trajectory", "-", "--summary", path("s")}
-            << path("capture.pcap");
+        const Rows<QStringList, QString> row("arguments", "file");
+        row("points", {"segment", "FILE"}, QString(data("room.csv")));
+        row("log", {"map", "FILE", "--corrected", "--out-trajectory", "-", "--summary", path("s")},
+            QString(data("corrected.log")));
+        row("capture", {"ring", "FILE"}, path("capture.pcap"));
+        row("capture to map", {"map", "FILE", "--out-trajectory", "-", "--summary", path("s")},
+            path("capture.pcap"));
     }
     void pipesAreReadFromTheirBeginning() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QString, file);
+        FETCH(QStringList, arguments, QString, file);
         writeCapture(path("capture.pcap"), 800);
-        QFile content(file);
-        QVERIFY(content.open(QIODevice::ReadOnly));
-        const QByteArray bytes = content.readAll();
+        const QByteArray bytes = contentOf(file);
         const auto of = [&](const QString &name) {
             QFile::remove(path("s"));
             return run(QStringList(arguments).replaceInStrings("FILE", name), bytes);
@@ -91,31 +81,27 @@ private Q_SLOTS:
     }
 
     void oneSensorOfSeveralIsTaken_data() {
-        QTest::addColumn<QStringList>("options");
-        QTest::addColumn<double>("range");
-        QTest::newRow("the first") << QStringList() << 5.0;
-        QTest::newRow("by its port") << QStringList{"--port", "2369"} << 6.0;
-        QTest::newRow("by its address") << QStringList{"--sender", "192.168.1.203"} << 7.0;
-        QTest::newRow("by both") << QStringList{"--port", "2368", "--sender", "192.168.1.203"} << 7.0;
+        const Rows<QStringList, double> row("options", "range");
+        row("the first", QStringList(), 5.0);
+        row("by its port", {"--port", "2369"}, 6.0);
+        row("by its address", {"--sender", "192.168.1.203"}, 7.0);
+        row("by both", {"--port", "2368", "--sender", "192.168.1.203"}, 7.0);
     }
     void oneSensorOfSeveralIsTaken() {
-        QFETCH(QStringList, options);
-        QFETCH(double, range);
+        FETCH(QStringList, options, double, range);
         writeCapture(path("c.pcap"), 400,
                      {{0xC0A801C9, 2368, 5}, {0xC0A801CA, 2369, 6}, {0xC0A801CB, 2368, 7}});
-        const Result ring = run(QStringList{"ring", path("c.pcap")} + options);
-        QCOMPARE(ring.status, 0);
+        const Result ring = ran(QStringList{"ring", path("c.pcap")} + options);
         QCOMPARE(rangesOf(ring.out), QSet<double>{range});
         QCOMPARE(ring.out.count('\n'), 4801);
         for (const char *told :
              {"192.168.1.201 to port 2368 (400 packets)", "192.168.1.202 to port 2369 (400 packets)",
               "192.168.1.203 to port 2368 (400 packets)", "--port", "--sender"})
             QVERIFY2(ring.err.contains(told), ring.err.constData());
-        const Result map = run(QStringList{"map", path("c.pcap"), "--out-map", path("m.csv")} + options);
-        QVERIFY2(map.status == 0, map.err.constData());
+        const Result map = ran(QStringList{"map", path("c.pcap"), "--out-map", path("m.csv")} + options);
         QCOMPARE(json(map.out)["scans"].toInt(), 3);
         QVERIFY2(map.err.contains("read 192.168.1.20"), map.err.constData());
-        for (const QByteArray &line : contents(path("m.csv")).trimmed().split('\n').mid(1)) {
+        for (const QByteArray &line : contentOf(path("m.csv")).trimmed().split('\n').mid(1)) {
             const QList<QByteArray> edge = line.split(',');
             QVERIFY2(std::abs(std::hypot(edge[1].toDouble(), edge[2].toDouble()) - range) < 0.1, line);
         }
@@ -129,23 +115,18 @@ private Q_SLOTS:
     }
 
     void whatIsMissingIsTold_data() {
-        QTest::addColumn<QStringList>("options");
-        QTest::addColumn<QByteArray>("told");
-        QTest::newRow("port") << QStringList{"--port", "2370"}
-                              << QByteArray("found data packets of 192.168.1.201 to port 4711 (400 packets) "
-                                            "only, expected some to port 2370");
-        QTest::newRow("sender") << QStringList{"--sender", "10.0.0.1"}
-                                << QByteArray("only, expected some from 10.0.0.1");
+        const Rows<QStringList, QByteArray> row("options", "told");
+        row("port", {"--port", "2370"},
+            "found data packets of 192.168.1.201 to port 4711 (400 packets) "
+            "only, expected some to port 2370");
+        row("sender", {"--sender", "10.0.0.1"}, "only, expected some from 10.0.0.1");
     }
     void whatIsMissingIsTold() {
-        QFETCH(QStringList, options);
-        QFETCH(QByteArray, told);
+        FETCH(QStringList, options, QByteArray, told);
         writeCapture(path("c.pcap"), 400, {{0xC0A801C9, 4711}});
         for (const char *command : {"ring", "map"}) {
-            const Result r = run(QStringList{command, path("c.pcap"), "--out", path("out")} + options);
-            QCOMPARE(r.status, 1);
-            QVERIFY2(r.err.contains(told), r.err.constData());
-            QCOMPARE(folder_.files(), QStringList{"c.pcap"});
+            refused(run(QStringList{command, path("c.pcap"), "--out", path("out")} + options), 1, told);
+            QCOMPARE(files(), QStringList{"c.pcap"});
         }
     }
 
@@ -153,9 +134,7 @@ private Q_SLOTS:
         writeCapture(path("c.pcap"), 0);
         appendForeign(path("c.pcap"), 2368);
         for (const char *command : {"ring", "map"}) {
-            const Result r = run({command, path("c.pcap")});
-            QCOMPARE(r.status, 1);
-            QVERIFY2(r.err.contains("1206 bytes whose blocks begin with FF EE"), r.err.constData());
+            refused(run({command, path("c.pcap")}), 1, "1206 bytes whose blocks begin with FF EE");
         }
     }
 };

@@ -5,25 +5,15 @@
 #include <unistd.h>
 
 /// hermes-vector when something is wrong: exit status, message, and no trace of a file.
-class TestVectorFailures : public QObject {
+class TestVectorFailures : public QObject, protected TestFolder {
     Q_OBJECT
 
-    TestFolder folder_;
-
-    QString path(const char *name) const { return folder_.path(name); }
-    QStringList files() const { return folder_.files(); }
-
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(folder_.isValid()); }
-    void init() { folder_.empty(); }
+    void init() { empty(); }
 
     void wrongUsage_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QByteArray>("named");
+        const Rows<QStringList, QByteArray> row("arguments", "named");
         const QString room = data("room.csv"), world = data("world.json"), log = data("raw.log");
-        const auto row = [](const char *name, const QStringList &arguments, const char *named) {
-            QTest::newRow(name) << arguments << QByteArray(named);
-        };
         row("nothing", {}, "subcommand");
         row("no such command", {"draw"}, "draw");
         row("no file", {"segment"}, "IN");
@@ -67,54 +57,35 @@ private Q_SLOTS:
         row("offsets without z", {"ring", "x.pcap", "--no-vertical-offsets"}, "--all");
     }
     void wrongUsage() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QByteArray, named);
+        FETCH(QStringList, arguments, QByteArray, named);
         const Result r = run(arguments);
-        QCOMPARE(r.status, 2);
-        QVERIFY2(r.err.contains(named), r.err.constData());
+        refused(r, 2, named);
         QCOMPARE(r.out, QByteArray());
     }
 
     void badInput_data() {
-        QTest::addColumn<QString>("command");
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("place");
-        QTest::addColumn<QByteArray>("expected");
-        const QByteArray log = contents(data("raw.log"));
-        QTest::newRow("nan in points") << "segment" << QByteArray("x,y\n1,2\nnan,3\n") << QByteArray("in:3:")
-                                       << QByteArray("a finite number");
-        QTest::newRow("one column") << "vectorize" << QByteArray("1,2\n3\n") << QByteArray("in:2:")
-                                    << QByteArray("2 fields");
-        QTest::newRow("no pairs") << "register" << QByteArray("1,2,3,4\n") << QByteArray("in:1:")
-                                  << QByteArray("dx1");
-        QTest::newRow("empty pairs") << "register" << QByteArray() << QByteArray("in")
-                                     << QByteArray("an empty file");
-        QTest::newRow("pair of no length")
-            << "register" << QByteArray("0,0,1,0,2,2,2,2\n") << QByteArray("in:1:") << QByteArray("distinct");
-        QTest::newRow("weight 0") << "register"
-                                  << QByteArray("sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2,weight\n0,0,1,0,0,0,1,0,0\n")
-                                  << QByteArray("in:2:") << QByteArray("above 0");
-        QTest::newRow("pairs beyond measure")
-            << "register" << QByteArray("0,0,1,0,0,0,1,0\n0,1e160,1,1e160,0,0,1,0\n") << QByteArray("in:")
-            << QByteArray("far too large");
-        QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
-                                             << QByteArray("in") << QByteArray("x1");
-        QTest::newRow("world that is none")
-            << "observe" << QByteArray("{\"edges\": [\n[0,0,1]]}") << QByteArray("in:2") << QByteArray();
-        QTest::newRow("log cut short")
-            << "map" << log.left(log.size() / 2) << QByteArray("in:8:") << QByteArray("of FLASER");
-        QTest::newRow("no log") << "map" << QByteArray("hello\n") << QByteArray("in:1:")
-                                << QByteArray("CARMEN");
-        QTest::newRow("no capture") << "ring" << QByteArray("hello\n") << QByteArray("in") << QByteArray();
-        QTest::newRow("empty file") << "map" << QByteArray() << QByteArray("in") << QByteArray("FLASER");
+        const Rows<QString, QByteArray, QByteArray, QByteArray> row("command", "text", "place", "expected");
+        const QByteArray log = contentOf(data("raw.log"));
+        row("nan in points", "segment", "x,y\n1,2\nnan,3\n", "in:3:", "a finite number");
+        row("one column", "vectorize", "1,2\n3\n", "in:2:", "2 fields");
+        row("no pairs", "register", "1,2,3,4\n", "in:1:", "dx1");
+        row("empty pairs", "register", QByteArray(), "in", "an empty file");
+        row("pair of no length", "register", "0,0,1,0,2,2,2,2\n", "in:1:", "distinct");
+        row("weight 0", "register", "sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2,weight\n0,0,1,0,0,0,1,0,0\n",
+            "in:2:", "above 0");
+        row("pairs beyond measure", "register", "0,0,1,0,0,0,1,0\n0,1e160,1,1e160,0,0,1,0\n",
+            "in:", "far too large");
+        row("world without edges", "observe", "{\"name\": \"x\", \"edges\": []}", "in", "x1");
+        row("world that is none", "observe", "{\"edges\": [\n[0,0,1]]}", "in:2", QByteArray());
+        row("log cut short", "map", log.left(log.size() / 2), "in:8:", "of FLASER");
+        row("no log", "map", "hello\n", "in:1:", "CARMEN");
+        row("no capture", "ring", "hello\n", "in", QByteArray());
+        row("empty file", "map", QByteArray(), "in", "FLASER");
     }
     /// Status 1, a message that names the place, and not a trace of any output file.
     void badInput() {
-        QFETCH(QString, command);
-        QFETCH(QByteArray, text);
-        QFETCH(QByteArray, place);
-        QFETCH(QByteArray, expected);
-        write(path("in"), text);
+        FETCH(QString, command, QByteArray, text, QByteArray, place, QByteArray, expected);
+        put(path("in"), text);
         QStringList arguments{command, path("in"), "--out", path("out")};
         if (command == QLatin1String("observe"))
             arguments += {"--pose", "0,0,0"};
@@ -130,83 +101,74 @@ private Q_SLOTS:
 
     void captureCutInMidRecord() {
         writeCapture(path("whole.pcap"), 250);
-        write(path("c.pcap"), contents(path("whole.pcap")).left(200 * 1264 + 500));
+        put(path("c.pcap"), contentOf(path("whole.pcap")).left(200 * 1264 + 500));
         QFile::remove(path("whole.pcap"));
         for (const char *command : {"ring", "map"}) {
-            const Result r = run({command, path("c.pcap"), "--out", path("out")});
-            QCOMPARE(r.status, 1);
-            QVERIFY2(r.err.contains("c.pcap: record 2"), r.err.constData());
+            refused(run({command, path("c.pcap"), "--out", path("out")}), 1, "c.pcap: record 2");
             QCOMPARE(files(), QStringList{"c.pcap"});
         }
     }
 
     void damagedLinesAreCountedOnDemand() {
-        QByteArray log = contents(data("raw.log"));
-        write(path("in"), log.left(log.size() / 2));
-        const Result r = run({"map", path("in"), "--skip-damaged"});
-        QCOMPARE(r.status, 0);
+        QByteArray log = contentOf(data("raw.log"));
+        put(path("in"), log.left(log.size() / 2));
+        const Result r = ran({"map", path("in"), "--skip-damaged"});
         QCOMPARE(json(r.out)["damaged_lines"].toInt(), 1);
         QVERIFY2(r.err.contains("in:8: found a line cut short"), r.err.constData());
     }
 
     void nothingIsOverwritten() {
-        write(path("out"), "precious");
-        const Result refused =
-            run({"segment", data("room.csv"), "--out", path("out"), "--svg", path("new.svg")});
-        QCOMPARE(refused.status, 1);
-        QVERIFY2(refused.err.contains("--force"), refused.err.constData());
-        QCOMPARE(contents(path("out")), QByteArray("precious"));
+        put(path("out"), "precious");
+        refused(run({"segment", data("room.csv"), "--out", path("out"), "--svg", path("new.svg")}), 1,
+                "--force");
+        QCOMPARE(contentOf(path("out")), QByteArray("precious"));
         QCOMPARE(files(), QStringList{"out"});
-        QCOMPARE(run({"segment", data("room.csv"), "--out", path("out"), "--force"}).status, 0);
-        QVERIFY(contents(path("out")).startsWith("index,cluster\n"));
+        ran({"segment", data("room.csv"), "--out", path("out"), "--force"});
+        QVERIFY(contentOf(path("out")).startsWith("index,cluster\n"));
         QCOMPARE(run({"segment", data("room.csv"), "--out", path("a"), "--svg", path("a")}).status, 1);
         QCOMPARE(run({"segment", data("room.csv"), "--out", path("no/such/folder")}).status, 1);
         QCOMPARE(files(), QStringList{"out"});
     }
 
     void picturesAreNamedAsWhatTheyAre_data() {
-        QTest::addColumn<QString>("name");
-        QTest::newRow("png") << "a.png";
-        QTest::newRow("compressed") << "a.svg.gz";
-        QTest::newRow("capitals") << "a.PNG";
+        const Rows<QString> row("name");
+        row("png", "a.png");
+        row("compressed", "a.svg.gz");
+        row("capitals", "a.PNG");
     }
     void picturesAreNamedAsWhatTheyAre() {
         QFETCH(QString, name);
         const QString picture = path(qPrintable(name));
         for (const QStringList &command :
              {QStringList{"segment", data("room.csv")}, QStringList{"map", data("corrected.log")}}) {
-            const Result r = run(command + QStringList{"--svg", picture});
-            QCOMPARE(r.status, 2);
-            QVERIFY2(
-                r.err.contains("--svg: found " + picture.toUtf8() + ", expected a name that ends with .svg"),
-                r.err.constData());
+            refused(run(command + QStringList{"--svg", picture}), 2,
+                    "--svg: found " + picture.toUtf8() + ", expected a name that ends with .svg");
             QVERIFY(files().isEmpty());
         }
     }
     void latexIsAPictureToo_data() {
-        QTest::addColumn<QStringList>("command");
+        const Rows<QStringList> row("command");
         const QString room = data("room.csv");
-        QTest::newRow("segment") << QStringList{"segment", room};
-        QTest::newRow("vectorize") << QStringList{"vectorize", room};
-        QTest::newRow("match") << QStringList{"match", room, room};
-        QTest::newRow("register") << QStringList{"register", data("pairs.csv")};
-        QTest::newRow("observe") << QStringList{"observe", data("world.json"), "--pose", "0,0,0"};
+        row("segment", {"segment", room});
+        row("vectorize", {"vectorize", room});
+        row("match", {"match", room, room});
+        row("register", {"register", data("pairs.csv")});
+        row("observe", {"observe", data("world.json"), "--pose", "0,0,0"});
     }
     /// --latex has the rules of --svg.
     void latexIsAPictureToo() {
         QFETCH(QStringList, command);
         const QStringList whole = command + QStringList{"--out", path("o"), "--latex", path("p.tex")};
-        const Result refused = run(command + QStringList{"--latex", path("p.svg")});
-        QCOMPARE(refused.status, 2);
-        QVERIFY2(refused.err.contains("p.svg, expected a name that ends with .tex"), refused.err.constData());
+        refused(run(command + QStringList{"--latex", path("p.svg")}), 2,
+                "p.svg, expected a name that ends with .tex");
         QVERIFY(files().isEmpty());
-        write(path("p.tex"), "precious");
+        put(path("p.tex"), "precious");
         QCOMPARE(run(whole).status, 1);
-        QCOMPARE(contents(path("p.tex")), QByteArray("precious"));
+        QCOMPARE(contentOf(path("p.tex")), QByteArray("precious"));
         QCOMPARE(files(), QStringList{"p.tex"});
-        QCOMPARE(run(whole + QStringList{"--svg", path("p.svg"), "--force"}).status, 0);
+        ran(whole + QStringList{"--svg", path("p.svg"), "--force"});
         QCOMPARE(files(), (QStringList{"o", "p.svg", "p.tex"}));
-        const QByteArray text = contents(path("p.tex"));
+        const QByteArray text = contentOf(path("p.tex"));
         QVERIFY(text.startsWith("\\documentclass") && text.endsWith("\\end{document}\n"));
         QVERIFY(text.contains("{x [m]}") && text.contains("\\mbox{\\tikz"));
         const hermes::Latex latex;
@@ -216,34 +178,33 @@ private Q_SLOTS:
         QVERIFY2(fault.isEmpty(), fault.constData());
     }
     void longNamesAreToldBeforeTheWork() {
-        const QString name = folder_.path(QByteArray(300, 'n').constData());
-        const Result r = run({"segment", path("missing.csv"), "--out", name});
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("nnn: cannot be written: File name too long"), r.err.constData());
+        const QString name = path(QByteArray(300, 'n').constData());
+        refused(run({"segment", path("missing.csv"), "--out", name}), 1,
+                "nnn: cannot be written: File name too long");
     }
 
     void killLeavesNoFile_data() {
-        QTest::addColumn<bool>("isThere");
-        QTest::newRow("new file") << false;
-        QTest::newRow("instead of another") << true;
+        const Rows<bool> row("isThere");
+        row("new file", false);
+        row("instead of another", true);
     }
     /// The program waits for the rest of its input when it is killed: nothing it could do about its files.
     void killLeavesNoFile() {
         QFETCH(bool, isThere);
-        const int probe = ::open(qPrintable(folder_.path()), O_TMPFILE | O_WRONLY, 0600);
+        const int probe = ::open(qPrintable(path()), O_TMPFILE | O_WRONLY, 0600);
         if (probe < 0)
             QSKIP("this file system knows no files without a name");
         ::close(probe);
         if (isThere)
-            write(path("scan.csv"), "precious");
+            put(path("scan.csv"), "precious");
         QProcess process;
         process.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-vector",
                       {"map", "-", "--scan", "1", "--out", path("scan.csv"), "--force"});
-        process.write(contents(data("corrected.log")));
+        process.write(contentOf(data("corrected.log")));
         const QString handles = QStringLiteral("/proc/%1/fd").arg(process.processId());
         const auto holds = [&] { // the file that it writes
             for (const QFileInfo &file : QDir(handles).entryInfoList(QDir::AllEntries | QDir::System))
-                if (file.symLinkTarget().startsWith(folder_.path()))
+                if (file.symLinkTarget().startsWith(path()))
                     return true;
             return false;
         };
@@ -251,30 +212,28 @@ private Q_SLOTS:
         process.kill();
         QVERIFY(process.waitForFinished(30000));
         QCOMPARE(files(), isThere ? QStringList{"scan.csv"} : QStringList());
-        QCOMPARE(contents(path("scan.csv")), isThere ? QByteArray("precious") : QByteArray());
+        if (isThere)
+            QCOMPARE(contentOf(path("scan.csv")), QByteArray("precious"));
     }
 
     void closedPipe_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QStringList>("complete");
+        const Rows<QStringList, QStringList> row("arguments", "complete");
         const QString room = data("room.csv");
         const QStringList match{"match", room, room, "--force"};
-        QTest::newRow("table") << QStringList{"segment", room} << QStringList();
-        QTest::newRow("picture beside it")
-            << match + QStringList{"--svg", path("m.svg")} << QStringList{"m.svg"};
-        QTest::newRow("file beside the picture")
-            << match + QStringList{"--svg", "-", "--out", path("m.json")} << QStringList{"m.json"};
-        QTest::newRow("picture to another pipe")
-            << match + QStringList{"--svg", "/dev/stdout", "--out", path("m.json")} << QStringList{"m.json"};
-        QTest::newRow("map beside the summary")
-            << QStringList{"map", data("corrected.log"), "--out-map", path("m.csv"), "--svg", path("m.svg")}
-            << QStringList{"m.csv", "m.svg"};
+        row("table", {"segment", room}, QStringList());
+        row("picture beside it", match + QStringList{"--svg", path("m.svg")}, {"m.svg"});
+        row("file beside the picture", match + QStringList{"--svg", "-", "--out", path("m.json")},
+            {"m.json"});
+        row("picture to another pipe", match + QStringList{"--svg", "/dev/stdout", "--out", path("m.json")},
+            {"m.json"});
+        row("map beside the summary",
+            {"map", data("corrected.log"), "--out-map", path("m.csv"), "--svg", path("m.svg")},
+            {"m.csv", "m.svg"});
     }
     /// The reader of the pipe has gone before the program starts: the files are complete, and what is missing
     /// is told.
     void closedPipe() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QStringList, complete);
+        FETCH(QStringList, arguments, QStringList, complete);
         QProcess shell;
         shell.start("bash", QStringList{"-c", "exec 3> >(true); wait $!; \"$@\" >&3", "bash",
                                         qEnvironmentVariable("HERMES_BIN") + "/hermes-vector"} +
@@ -285,13 +244,12 @@ private Q_SLOTS:
         QVERIFY2(said.contains("cannot be written to its end: its reader has gone"), said.constData());
         QCOMPARE(files(), complete);
         for (const QString &name : complete)
-            QVERIFY(contents(folder_.path(qPrintable(name))).size() > 100);
+            QVERIFY(contentOf(path(qPrintable(name))).size() > 100);
     }
     void fullDevice() {
         const Result r =
             run({"match", data("room.csv"), data("room.csv"), "--out", "/dev/full", "--svg", path("m.svg")});
-        QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("/dev/full: cannot be written to its end: "), r.err.constData());
+        refused(r, 1, "/dev/full: cannot be written to its end: ");
         QVERIFY2(r.err.toLower().contains("no space left"), r.err.constData());
         QCOMPARE(files(), QStringList{"m.svg"});
     }

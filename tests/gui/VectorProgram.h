@@ -3,6 +3,7 @@
 #include "common/capture/PcapWriter.h"
 #include "protocol/velodyne/DataPacket.h"
 #include "protocol/velodyne/Hdl32e.h"
+#include "tests/support/Files.h"
 
 #include <QDir>
 #include <QJsonDocument>
@@ -31,20 +32,24 @@ inline Result run(const QStringList &arguments, const QByteArray &input = QByteA
     return r;
 }
 
+/// The same where it must succeed.
+inline Result ran(const QStringList &arguments, const char *file = __builtin_FILE(),
+                  int line = __builtin_LINE()) {
+    const Result r = run(arguments);
+    QTest::qVerify(r.status == 0, "it succeeds", r.err.constData(), file, line);
+    return r;
+}
+
+/// It ended with that status and said so.
+inline void refused(const Result &r, int status, const QByteArray &words, const char *file = __builtin_FILE(),
+                    int line = __builtin_LINE()) {
+    QTest::qCompare(r.status, status, "status", "expected", file, line);
+    QTest::qVerify(r.err.contains(words), words.constData(), r.err.constData(), file, line);
+}
+
 /// A file of tests/data/vector.
 inline QString data(const char *name) {
     return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
-}
-
-inline QByteArray contents(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
-inline void write(const QString &path, const QByteArray &text) {
-    QFile file(path);
-    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size())
-        qFatal("cannot write a file of the test");
 }
 
 inline QJsonObject json(const QByteArray &text) {
@@ -90,10 +95,13 @@ inline void writeCapture(const QString &path, int packets,
         qFatal("%s", done.error().c_str());
 }
 
-/// A folder whose files are removed before every test.
+/// A folder of the test class that inherits it; empty() removes its files.
 class TestFolder {
-public:
-    bool isValid() const { return folder_.isValid(); }
+protected:
+    TestFolder() {
+        if (!folder_.isValid())
+            qFatal("no temporary folder: %s", qPrintable(folder_.errorString()));
+    }
     QString path(const char *name = "") const { return folder_.filePath(QLatin1String(name)); }
     /// What is left in it, temporary files too.
     QStringList files() const {
@@ -103,20 +111,17 @@ public:
         for (const QString &name : files())
             QFile::remove(folder_.filePath(name));
     }
+    /// What a sensor at the pose sees of world.json, as a file of the folder: a scan of points, or exact
+    /// segments. The noise of points differs with the first letter of the name.
+    QString seen(const char *name, const char *pose, bool points) const {
+        QStringList arguments{"observe", data("world.json"), QStringLiteral("--pose=") + QLatin1String(pose),
+                              "--out", path(name)};
+        if (points)
+            arguments += {"--scan", "1000", "--noise", "0.01", "--seed", QString::number(name[0])};
+        ran(arguments);
+        return path(name);
+    }
 
 private:
     QTemporaryDir folder_;
 };
-
-/// What a sensor at the pose sees of world.json, as a file of the folder: a scan of points, or exact
-/// segments. The noise of points differs with the first letter of the name.
-inline QString seen(const TestFolder &folder, const char *name, const char *pose, bool points) {
-    QStringList arguments{"observe", data("world.json"), QStringLiteral("--pose=") + QLatin1String(pose),
-                          "--out", folder.path(name)};
-    if (points)
-        arguments += {"--scan", "1000", "--noise", "0.01", "--seed", QString::number(name[0])};
-    const Result r = run(arguments);
-    if (r.status != 0)
-        qFatal("%s", r.err.constData());
-    return folder.path(name);
-}

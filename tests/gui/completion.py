@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from ctl_support import BUILD, PROGRAM, SOURCE, Thermometer, ctl
+from ctl_support import BUILD, PROGRAM, SOURCE, ThermometerCase, ctl
 
 BEGIN_ZSH = "autoload -U compinit; compinit -u; "
 # How each is started, and what makes it complete: the script that is printed, or the file that is installed.
@@ -74,18 +74,13 @@ class Shell:
         os.waitpid(self.child, 0)
 
 
-class Completion(unittest.TestCase):
+class Completion(ThermometerCase):
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()  # pylint: disable=consider-using-with
         cls.addClassCleanup(folder.cleanup)
         os.environ.update(XDG_CACHE_HOME=os.path.join(folder.name, "cache"), HERMES_KEYS=os.path.join(folder.name, "keys"))
-        cls.daemon = Thermometer()
-        cls.address = cls.daemon.address
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.stop()
+        super().setUpClass()
 
     def test_candidates(self):
         self.assertEqual(candidates("re"), ["record", "replay"])

@@ -5,6 +5,7 @@ import pty
 import socket
 import subprocess
 import threading
+import unittest
 
 BUILD = os.environ["HERMES_BUILD"]
 SOURCE = os.environ["HERMES_SOURCE"]
@@ -45,6 +46,16 @@ class Thermometer:
         self.process.terminate()
         self.process.stderr.close()
         assert self.process.wait(20) == 0
+
+
+class ThermometerCase(unittest.TestCase):
+    """Tests with one such daemon."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Thermometer()
+        cls.addClassCleanup(cls.daemon.stop)
+        cls.address = cls.daemon.address
 
 
 class MadeUpDaemon:

@@ -8,31 +8,10 @@ import subprocess
 import tempfile
 import unittest
 
-from ctl_support import MadeUpDaemon, at_terminal
-
-BUILD = os.environ["HERMES_BUILD"]
-PROGRAM = os.path.join(BUILD, "bin", "hermesctl")
-DAEMON = os.path.join(BUILD, "tests", "common", "hermes-thermometer")
+from ctl_support import DAEMON, PROGRAM, MadeUpDaemon, ThermometerCase, at_terminal, ctl
 
 
-def ctl(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=30)
-
-
-class Hermesctl(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.daemon = subprocess.Popen([DAEMON, "--listen", "tcp://127.0.0.1:0", "--set", "period_s=0.01"],
-                                      stderr=subprocess.PIPE, text=True)
-        line = cls.daemon.stderr.readline()
-        cls.address = "127.0.0.1:" + line.split("tcp://127.0.0.1:")[1].split(",")[0]
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.terminate()
-        cls.daemon.stderr.close()
-        assert cls.daemon.wait(20) == 0
-
+class Hermesctl(ThermometerCase):
     def ok(self, *arguments):
         shown = ctl(*arguments)
         self.assertEqual(shown.returncode, 0, shown.stderr)

@@ -8,7 +8,7 @@ import tempfile
 import time
 import unittest
 
-from ctl_support import PROGRAM, MadeUpDaemon, Thermometer, at_terminal, ctl
+from ctl_support import PROGRAM, MadeUpDaemon, Thermometer, ThermometerCase, at_terminal, ctl
 
 # A command with an object, and a setting, as their daemon describes them.
 WHEN = {"type": "object", "additionalProperties": False, "properties": {
@@ -20,15 +20,7 @@ SETTINGS = {"properties": {"sensor": {"properties": {"theta_rad": {"type": "numb
                            "ports": {"type": "array", "items": {"properties": {"url": {"type": "string"}, "name": {"type": "string"}}}}}}
 
 
-class Advice(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.daemon = Thermometer()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.stop()
-
+class Advice(ThermometerCase):
     def fails(self, *arguments, status=1):
         shown = ctl(*arguments)
         self.assertEqual((shown.returncode, shown.stdout), (status, ""), shown.stderr)
@@ -75,7 +67,7 @@ class Advice(unittest.TestCase):
             self.assertIn(text, self.fails(*words, status=2))
 
     def test_commands_that_people_try(self):
-        self.assertIn("hermesctl call motorcontrol motor.stop", self.fails("stop", status=2))
+        self.assertIn("no robot is there", self.fails("estop", self.daemon.address))
         self.assertEqual(ctl("help").stdout, ctl("--help").stdout)
         text = self.fails("call", "127.0.0.1:99999", "daemon.info", status=2)
         self.assertIn("the port is 99999, at most 65535", text)
@@ -153,16 +145,8 @@ class Advice(unittest.TestCase):
         self.assertIn("take_over=true", text)
 
 
-class Patience(unittest.TestCase):
+class Patience(ThermometerCase):
     """A call takes as long as it takes, while the daemon answers other requests."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.daemon = Thermometer()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.stop()
 
     def calibrate(self, settle_ms, *options):
         return ("call", self.daemon.address, "thermometer.calibrate", "offset_k=0", f"settle_ms={settle_ms}", *options)
@@ -199,15 +183,7 @@ class Patience(unittest.TestCase):
             self.assertLess(time.monotonic() - begun, 20)
 
 
-class Json(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.daemon = Thermometer()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.stop()
-
+class Json(ThermometerCase):
     def value(self, *arguments):
         shown = ctl(*arguments, "--json")
         self.assertEqual((shown.returncode, shown.stderr), (0, ""))

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from ctl_support import PROGRAM, MadeUpDaemon, Thermometer, ctl
+from ctl_support import PROGRAM, MadeUpDaemon, ThermometerCase, ctl
 
 POSE = {"type": "object", "additionalProperties": False, "properties": {
     "x": {"type": "number", "unit": "m"}, "text": {"type": "string"}, "stamp": {"type": "number", "unit": "s"},
@@ -81,15 +81,7 @@ class Csv(unittest.TestCase):
             self.assertIn("cannot be written", nowhere.stderr)
 
 
-class Ends(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.daemon = Thermometer()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.stop()
-
+class Ends(ThermometerCase):
     def start(self, topic, *options):
         return subprocess.Popen([PROGRAM, "watch", self.daemon.address, topic, *options], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True)

@@ -48,7 +48,9 @@ class Known:
         self.headers = {os.path.basename(path) for path in files_below(HEADERS, ".h")}
         self.tests = set()
         for path in files_below("tests", ".cpp"):
-            self.tests.update(f"{a}::{b}" for a, b in re.findall(r"^void (Test\w+)::(\w+)\(", read(path), re.M))
+            text = read(path)
+            functions = re.findall(r"^(?:    void |void Test\w+::)(\w+)\(", text, re.M)
+            self.tests.update(f"{name}::{function}" for name in re.findall(r"^class (Test\w+)", text, re.M) for function in functions)
 
     def exists(self, path):
         return os.path.exists(os.path.join(ROOT, path))

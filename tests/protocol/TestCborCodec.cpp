@@ -105,8 +105,7 @@ void TestCborCodec::reads_data() {
 }
 
 void TestCborCodec::reads() {
-    QFETCH(QByteArray, item);
-    QFETCH(QJsonValue, value);
+    FETCH(QByteArray, item, QJsonValue, value);
     CborCodec codec;
     const auto items = codec.feed(framed(item));
     QCOMPARE(items.size(), size_t(1));
@@ -118,11 +117,7 @@ void TestCborCodec::reads() {
 }
 
 void TestCborCodec::refuses_data() {
-    QTest::addColumn<QByteArray>("item");
-    QTest::addColumn<QString>("why");
-    const auto row = [](const char *name, const QByteArray &item, const char *why) {
-        QTest::newRow(name) << item << why;
-    };
+    const Rows<QByteArray, QString> row("item", "why");
     row("nothing", "", "");
     row("cut off number", hex("1903"), "");
     row("cut off text", hex("6449"), "4 bytes of text expected, there are 2");
@@ -160,8 +155,7 @@ void TestCborCodec::refuses_data() {
 }
 
 void TestCborCodec::refuses() {
-    QFETCH(QByteArray, item);
-    QFETCH(QString, why);
+    FETCH(QByteArray, item, QString, why);
     CborCodec codec;
     const auto items = codec.feed(framed(item) + framed("\x80"));
     QCOMPARE(items.size(), size_t(2)); // in step again at once
@@ -202,8 +196,7 @@ void TestCborCodec::readsTypedArrays_data() {
 }
 
 void TestCborCodec::readsTypedArrays() {
-    QFETCH(QByteArray, item);
-    QFETCH(QJsonArray, values);
+    FETCH(QByteArray, item, QJsonArray, values);
     CborCodec codec;
     const auto items = codec.feed(framed(item));
     QVERIFY2(!items[0].error, items[0].error ? qPrintable(items[0].error->message) : "");

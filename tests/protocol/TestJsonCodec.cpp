@@ -32,28 +32,23 @@ private Q_SLOTS:
 };
 
 void TestJsonCodec::accepts_data() {
-    QTest::addColumn<QByteArray>("line");
-    QTest::addColumn<QJsonValue>("value");
-    QTest::newRow("object") << QByteArray("{\"a\":1}") << QJsonValue(QJsonObject{{"a", 1}});
-    QTest::newRow("array") << QByteArray(" [1,2]") << QJsonValue(QJsonArray{1, 2});
-    QTest::newRow("number") << QByteArray("-2.5e3") << QJsonValue(-2500);
-    QTest::newRow("string") << QByteArray("\"x\"") << QJsonValue("x");
-    QTest::newRow("null") << QByteArray("null") << QJsonValue();
-    QTest::newRow("carriage return") << QByteArray("{\"a\":true}\r") << QJsonValue(QJsonObject{{"a", true}});
-    QTest::newRow("same key in two objects")
-        << QByteArray("[{\"a\":1},{\"a\":1}]")
-        << QJsonValue(QJsonArray{QJsonObject{{"a", 1}}, QJsonObject{{"a", 1}}});
-    QTest::newRow("key as value") << QByteArray("{\"a\":\"a\",\"b\":\"a\"}")
-                                  << QJsonValue(QJsonObject{{"a", "a"}, {"b", "a"}});
-    QTest::newRow("braces in a string")
-        << QByteArray("[\"{\\\"a\\\":[[[\"]") << QJsonValue(QJsonArray{"{\"a\":[[["});
-    QTest::newRow("UTF-8") << QByteArray("\"\xc3\xa4\"") << QJsonValue(QString::fromUtf8("\xc3\xa4"));
-    QTest::newRow("2^53") << QByteArray("9007199254740992") << QJsonValue(9007199254740992.0);
+    const Rows<QByteArray, QJsonValue> row("line", "value");
+    row("object", "{\"a\":1}", QJsonValue(QJsonObject{{"a", 1}}));
+    row("array", " [1,2]", QJsonValue(QJsonArray{1, 2}));
+    row("number", "-2.5e3", QJsonValue(-2500));
+    row("string", "\"x\"", QJsonValue("x"));
+    row("null", "null", QJsonValue());
+    row("carriage return", "{\"a\":true}\r", QJsonValue(QJsonObject{{"a", true}}));
+    row("same key in two objects", "[{\"a\":1},{\"a\":1}]",
+        QJsonValue(QJsonArray{QJsonObject{{"a", 1}}, QJsonObject{{"a", 1}}}));
+    row("key as value", "{\"a\":\"a\",\"b\":\"a\"}", QJsonValue(QJsonObject{{"a", "a"}, {"b", "a"}}));
+    row("braces in a string", "[\"{\\\"a\\\":[[[\"]", QJsonValue(QJsonArray{"{\"a\":[[["}));
+    row("UTF-8", "\"\xc3\xa4\"", QJsonValue(QString::fromUtf8("\xc3\xa4")));
+    row("2^53", "9007199254740992", QJsonValue(9007199254740992.0));
 }
 
 void TestJsonCodec::accepts() {
-    QFETCH(QByteArray, line);
-    QFETCH(QJsonValue, value);
+    FETCH(QByteArray, line, QJsonValue, value);
     JsonCodec codec;
     const auto items = codec.feed(line + '\n');
     QCOMPARE(items.size(), size_t(1));
@@ -63,31 +58,31 @@ void TestJsonCodec::accepts() {
 }
 
 void TestJsonCodec::refuses_data() {
-    QTest::addColumn<QByteArray>("line");
-    QTest::newRow("not JSON") << QByteArray("hello");
-    QTest::newRow("cut object") << QByteArray("{\"a\":1");
-    QTest::newRow("cut string") << QByteArray("{\"a");
-    QTest::newRow("cut escape") << QByteArray("\"\\");
-    QTest::newRow("two values") << QByteArray("1 2");
-    QTest::newRow("two values, comma") << QByteArray("1,2");
-    QTest::newRow("closes the wrapping array") << QByteArray("1],[2");
-    QTest::newRow("garbage behind") << QByteArray("{} x");
-    QTest::newRow("trailing comma") << QByteArray("{\"a\":1,}");
-    QTest::newRow("repeated key") << QByteArray("{\"a\":1,\"b\":{\"a\":2},\"a\":3}");
-    QTest::newRow("repeated key, escaped") << QByteArray("{\"a\":1,\"\\u0061\":3}");
-    QTest::newRow("overlong UTF-8") << QByteArray("\"\xc0\xaf\"");
-    QTest::newRow("lone continuation") << QByteArray("\"\x80\"");
-    QTest::newRow("bare byte") << QByteArray("\xff");
-    QTest::newRow("NUL") << QByteArray("{\"a\":\0}", 7);
-    QTest::newRow("NaN") << QByteArray("[NaN]");
-    QTest::newRow("number too large") << QByteArray("[1e999]");
-    QTest::newRow("control character in a string") << QByteArray("\"a\tb\"");
-    QTest::newRow("unknown escape") << QByteArray("\"a\\x\"");
-    QTest::newRow("no digit before the point") << QByteArray(".5");
-    QTest::newRow("no digit after the point") << QByteArray("[1.]");
-    QTest::newRow("nested 101") << QByteArray(101, '[') + QByteArray(101, ']');
-    QTest::newRow("nested 100000") << QByteArray(100000, '[');
-    QTest::newRow("closing only") << QByteArray("]]]]");
+    const Rows<QByteArray> row("line");
+    row("not JSON", "hello");
+    row("cut object", "{\"a\":1");
+    row("cut string", "{\"a");
+    row("cut escape", "\"\\");
+    row("two values", "1 2");
+    row("two values, comma", "1,2");
+    row("closes the wrapping array", "1],[2");
+    row("garbage behind", "{} x");
+    row("trailing comma", "{\"a\":1,}");
+    row("repeated key", "{\"a\":1,\"b\":{\"a\":2},\"a\":3}");
+    row("repeated key, escaped", "{\"a\":1,\"\\u0061\":3}");
+    row("overlong UTF-8", "\"\xc0\xaf\"");
+    row("lone continuation", "\"\x80\"");
+    row("bare byte", "\xff");
+    row("NUL", QByteArray("{\"a\":\0}", 7));
+    row("NaN", "[NaN]");
+    row("number too large", "[1e999]");
+    row("control character in a string", "\"a\tb\"");
+    row("unknown escape", "\"a\\x\"");
+    row("no digit before the point", ".5");
+    row("no digit after the point", "[1.]");
+    row("nested 101", QByteArray(101, '[') + QByteArray(101, ']'));
+    row("nested 100000", QByteArray(100000, '['));
+    row("closing only", "]]]]");
 }
 
 void TestJsonCodec::refuses() {
@@ -130,17 +125,15 @@ void TestJsonCodec::oversizedLineIsSkippedOnce() {
 }
 
 void TestJsonCodec::limitIsExact_data() {
-    QTest::addColumn<QByteArray>("line");
-    QTest::addColumn<bool>("fits");
-    QTest::newRow("at the limit") << QByteArray("[111,2222]\n") << true;
-    QTest::newRow("at the limit with CR") << QByteArray("[111,2222]\r\n") << true;
-    QTest::newRow("one more") << QByteArray("[1111,2222]\n") << false;
-    QTest::newRow("one more with CR") << QByteArray("[1111,2222]\r\n") << false;
+    const Rows<QByteArray, bool> row("line", "fits");
+    row("at the limit", "[111,2222]\n", true);
+    row("at the limit with CR", "[111,2222]\r\n", true);
+    row("one more", "[1111,2222]\n", false);
+    row("one more with CR", "[1111,2222]\r\n", false);
 }
 
 void TestJsonCodec::limitIsExact() {
-    QFETCH(QByteArray, line);
-    QFETCH(bool, fits);
+    FETCH(QByteArray, line, bool, fits);
     JsonCodec codec;
     codec.setFrameLimit(10);
     const auto items = codec.feed(line + "[1]\n");
@@ -218,11 +211,7 @@ void TestJsonCodec::unknownCodecIsNull() {
 
 void TestJsonCodec::knowsWhoSpeaks_data() {
     using Speaker = Greeting::Speaker;
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<Greeting::Speaker>("speaker");
-    const auto row = [](const char *name, const QByteArray &text, Speaker speaker) {
-        QTest::newRow(name) << text << speaker;
-    };
+    const Rows<QByteArray, Greeting::Speaker> row("text", "speaker");
     const QByteArray body = "Host: x\r\n\r\n{\"jsonrpc\":\"2.0\",\"method\":\"a\"}\n";
     row("POST", "POST / HTTP/1.1\r\n" + body, Speaker::Http);
     row("GET of a WebSocket", "GET /chat HTTP/1.1\r\n" + body, Speaker::Http);
@@ -252,8 +241,7 @@ void TestJsonCodec::knowsWhoSpeaks_data() {
 }
 
 void TestJsonCodec::knowsWhoSpeaks() {
-    QFETCH(QByteArray, text);
-    QFETCH(Greeting::Speaker, speaker);
+    FETCH(QByteArray, text, Greeting::Speaker, speaker);
     for (const int piece : {text.size() + 1, 1, 3}) {
         JsonCodec codec;
         codec.watchForStrangers();

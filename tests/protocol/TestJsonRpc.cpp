@@ -49,8 +49,7 @@ void TestJsonRpc::reads_data() {
 }
 
 void TestJsonRpc::reads() {
-    QFETCH(QByteArray, text);
-    QFETCH(int, kind);
+    FETCH(QByteArray, text, int, kind);
     const RpcFrame frame = readFrame(*parseJson(text, nullptr));
     QVERIFY(!frame.batch);
     QCOMPARE(frame.messages.size(), size_t(1));
@@ -60,23 +59,19 @@ void TestJsonRpc::reads() {
 }
 
 void TestJsonRpc::invalidKeepsIdWhereReadable_data() {
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<QJsonValue>("id");
-    QTest::newRow("number") << QByteArray(R"({"id":7,"method":"a"})") << QJsonValue(7);
-    QTest::newRow("string") << QByteArray(R"({"jsonrpc":"2.0","id":"k","method":2})") << QJsonValue("k");
-    QTest::newRow("large") << QByteArray(R"({"jsonrpc":"2.0","id":9007199254740991,"method":5})")
-                           << QJsonValue(9007199254740991.0);
+    const Rows<QByteArray, QJsonValue> row("text", "id");
+    row("number", R"({"id":7,"method":"a"})", QJsonValue(7));
+    row("string", R"({"jsonrpc":"2.0","id":"k","method":2})", QJsonValue("k"));
+    row("large", R"({"jsonrpc":"2.0","id":9007199254740991,"method":5})", QJsonValue(9007199254740991.0));
     for (const char *number :
          {"9007199254740992", "9007199254740993", "-9007199254740993", "123456789012345678901234567890"})
-        QTest::newRow(number) << QByteArray(R"({"jsonrpc":"2.0","method":"a","id":)") + number + '}'
-                              << QJsonValue();
-    QTest::newRow("object") << QByteArray(R"({"jsonrpc":"2.0","id":{},"method":"a"})") << QJsonValue();
-    QTest::newRow("none") << QByteArray(R"({"jsonrpc":"2.0","params":[]})") << QJsonValue();
+        row(number, QByteArray(R"({"jsonrpc":"2.0","method":"a","id":)") + number + '}', QJsonValue());
+    row("object", R"({"jsonrpc":"2.0","id":{},"method":"a"})", QJsonValue());
+    row("none", R"({"jsonrpc":"2.0","params":[]})", QJsonValue());
 }
 
 void TestJsonRpc::invalidKeepsIdWhereReadable() {
-    QFETCH(QByteArray, text);
-    QFETCH(QJsonValue, id);
+    FETCH(QByteArray, text, QJsonValue, id);
     const RpcFrame frame = readFrame(*parseJson(text, nullptr));
     QCOMPARE(std::get<RpcInvalid>(frame.messages[0]).id, id);
 }

@@ -13,20 +13,16 @@ private Q_SLOTS:
 };
 
 void TestNmeaDates::stampsOfDates_data() {
-    QTest::addColumn<int>("year");
-    QTest::addColumn<int>("month");
-    QTest::addColumn<int>("day");
+    const Rows<int, int, int> row("year", "month", "day");
     for (const int year : {1970, 1972, 1999, 2000, 2001, 2024, 2026, 2079, 2100, 2400, 9999}) {
         for (const auto &[month, day] : {std::pair(1, 1), {2, 28}, {3, 1}, {12, 31}})
             QTest::addRow("%d-%d-%d", year, month, day) << year << month << day;
     }
-    QTest::newRow("leap day") << 2000 << 2 << 29;
+    row("leap day", 2000, 2, 29);
 }
 
 void TestNmeaDates::stampsOfDates() {
-    QFETCH(int, year);
-    QFETCH(int, month);
-    QFETCH(int, day);
+    FETCH(int, year, int, month, int, day);
     const double expected =
         double(QDateTime(QDate(year, month, day), QTime(1, 2, 3), Qt::UTC).toSecsSinceEpoch());
     const double stamp = toStamp({year, month, day}, {1, 2, 3.5}).value();

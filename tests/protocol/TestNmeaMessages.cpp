@@ -48,6 +48,10 @@ private Q_SLOTS:
     void wrongFieldsAreNamed();
     void fieldsThatAreNotUsedRefuseNothing_data();
     void fieldsThatAreNotUsedRefuseNothing();
+    void whatIsOddIsUnknown_data();
+    void whatIsOddIsUnknown();
+    void zerosAtTheBeginningMayBeMissing_data();
+    void zerosAtTheBeginningMayBeMissing();
     void anyTalkerIsRead();
     void roundingStaysInTheField();
     void doesNotWriteWhatDoesNotFit();
@@ -55,34 +59,18 @@ private Q_SLOTS:
 };
 
 void TestNmeaMessages::workedRmcIsReadAndWritten_data() {
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<int>("minuteDecimals");
-    QTest::addColumn<double>("latitude");
-    QTest::addColumn<double>("longitude");
-    QTest::addColumn<double>("speed");
-    QTest::addColumn<double>("course");
-    QTest::addColumn<double>("variation");
-    QTest::addColumn<double>("stamp");
-    QTest::newRow("real") << realRmc << 4 << 37 + 7.8178 / 60 << -121 - 39.269 / 60 << 10.3 * 0.514444
-                          << 188.2 << 13.8 << 1437687666.0;
-    QTest::newRow("south of London")
-        << QByteArray("$GPRMC,220516,A,5133.82,N,00042.24,W,173.8,231.8,130694,004.2,W*70\r\n") << 2
-        << 51 + 33.82 / 60 << -42.24 / 60 << 173.8 * 0.514444 << 231.8 << -4.2 << 771545116.0;
-    QTest::newRow("Munich") << QByteArray(
-                                   "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n")
-                            << 3 << 48 + 7.038 / 60 << 11 + 31.0 / 60 << 22.4 * 0.514444 << 84.4 << -3.1
-                            << 764426119.0;
+    const Rows<QByteArray, int, double, double, double, double, double, double> row(
+        "text", "minuteDecimals", "latitude", "longitude", "speed", "course", "variation", "stamp");
+    row("real", realRmc, 4, 37 + 7.8178 / 60, -121 - 39.269 / 60, 10.3 * 0.514444, 188.2, 13.8, 1437687666.0);
+    row("south of London", "$GPRMC,220516,A,5133.82,N,00042.24,W,173.8,231.8,130694,004.2,W*70\r\n", 2,
+        51 + 33.82 / 60, -42.24 / 60, 173.8 * 0.514444, 231.8, -4.2, 771545116.0);
+    row("Munich", "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n", 3,
+        48 + 7.038 / 60, 11 + 31.0 / 60, 22.4 * 0.514444, 84.4, -3.1, 764426119.0);
 }
 
 void TestNmeaMessages::workedRmcIsReadAndWritten() {
-    QFETCH(QByteArray, text);
-    QFETCH(int, minuteDecimals);
-    QFETCH(double, latitude);
-    QFETCH(double, longitude);
-    QFETCH(double, speed);
-    QFETCH(double, course);
-    QFETCH(double, variation);
-    QFETCH(double, stamp);
+    FETCH(QByteArray, text, int, minuteDecimals, double, latitude, double, longitude, double, speed, double,
+          course, double, variation, double, stamp);
     Rmc rmc;
     const FieldFault fault = decodeText(text, rmc);
     QVERIFY2(!fault, fault.expected);
@@ -147,41 +135,28 @@ void TestNmeaMessages::emptyFieldsAreUnknown() {
 }
 
 void TestNmeaMessages::wrongFieldsAreNamed_data() {
-    QTest::addColumn<QByteArray>("body");
-    QTest::addColumn<int>("field");
-    const auto rmc = [](const char *name, int field, const char *value) {
+    const Rows<QByteArray, int> row("body", "field");
+    const auto rmc = [&](const char *name, int field, const char *value) {
         QList<QByteArray> fields =
             QByteArray("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D").split(',');
         fields[field] = value;
-        QTest::newRow(name) << fields.join(',') << field;
+        row(name, fields.join(','), field);
     };
-    for (const char *time : {"24", "240000", "126000", "120061", "12000", "1200000", "1200.0", "12000x",
-                             "-10000", "120000.-5", "120000.5.5", "nan", " 20000"})
+    for (const char *time : {"240000", "126000", "120061", "1200000", "12000x", "-10000", "120000.-5",
+                             "120000.5.5", "nan", " 20000"})
         rmc(QByteArray("time ").append(time).constData(), 1, time);
     rmc("status", 2, "X");
     rmc("no status", 2, "");
-    for (const char *latitude : {"9000.001", "3760.0", "-707.8", "37", "037.8178", "3707.81e1", "inf"})
+    for (const char *latitude : {"9000.001", "3760.0", "-707.8", "003707.8", "3707.81e1", "inf", "."})
         rmc(QByteArray("latitude ").append(latitude).constData(), 3, latitude);
     rmc("no latitude", 3, "");
     rmc("longitude", 5, "18000.1");
-    rmc("negative speed", 7, "-1");
-    rmc("speed in hexadecimal", 7, "0x10");
-    rmc("speed with exponent", 7, "1e3");
-    rmc("speed with sign", 7, "+1");
-    rmc("no number", 7, "nan");
-    rmc("point", 7, ".");
-    rmc("course", 8, "360.1");
-    rmc("February", 9, "290215");
-    rmc("day 0", 9, "000715");
-    rmc("month 13", 9, "011315");
-    rmc("short date", 9, "23071");
-    QTest::newRow("too few fields") << QByteArray("GPRMC,214106,A") << 0;
-    QTest::newRow("another type") << QByteArray("GPGGA,,,,,,0,,,,M,,M,,") << 0;
+    row("too few fields", "GPRMC,214106,A", 0);
+    row("another type", "GPGGA,,,,,,0,,,,M,,M,,", 0);
 }
 
 void TestNmeaMessages::wrongFieldsAreNamed() {
-    QFETCH(QByteArray, body);
-    QFETCH(int, field);
+    FETCH(QByteArray, body, int, field);
     Rmc rmc;
     const FieldFault fault = decode(Sentence({body.constData(), std::size_t(body.size())}), rmc);
     QVERIFY(fault);
@@ -191,11 +166,11 @@ void TestNmeaMessages::wrongFieldsAreNamed() {
 
 /// As receivers send them: no variation is 999.9 or 0.0 without a side.
 void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing_data() {
-    QTest::addColumn<QByteArray>("tail");
+    const Rows<QByteArray> row("tail");
     for (const char *tail :
          {"999.9,E,A", "999.9,,D", "13.8,,A", ",W,A", "181,E,A", "-1.0,E,A", "13.8,N,A", "x,E,A", "13.8,E,d",
           "13.8,E,A,V", "13.8,E,A,", "13.8,E", "13.8", "", "a,b,c,d,e,f"})
-        QTest::newRow(tail) << QByteArray(tail);
+        row(tail, QByteArray(tail));
 }
 
 void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing() {
@@ -216,6 +191,70 @@ void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing() {
         QVERIFY(gga.position && gga.quality == 4 && *gga.altitude == 545.4);
         QVERIFY(!encoded(gga).isEmpty());
     }
+}
+
+void TestNmeaMessages::whatIsOddIsUnknown_data() {
+    QTest::addColumn<int>("field");
+    QTest::addColumn<QByteArray>("value");
+    const auto row = [](int field, const char *value) {
+        QTest::addRow("field %d: %s", field, value) << field << QByteArray(value);
+    };
+    for (const char *speed : {"-0.1", "0x10", "1e3", "+-1", "+", "nan", ".", "10000"})
+        row(7, speed);
+    for (const char *course : {"360.01", "-90", "x"})
+        row(8, course);
+    for (const char *date : {"000000", "290215", "000715", "011315", "23071", "nan"})
+        row(9, date);
+}
+
+/// The position is as good as before. Without a fix receivers write anything, also in the fields of the
+/// position.
+void TestNmeaMessages::whatIsOddIsUnknown() {
+    QFETCH(int, field);
+    QFETCH(QByteArray, value);
+    QByteArrayList fields =
+        QByteArray("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D").split(',');
+    fields[field] = value;
+    Rmc rmc;
+    const FieldFault fault = decodeText(summed(fields.join(',')), rmc);
+    QVERIFY2(!fault, fault.expected);
+    QVERIFY(rmc.valid && rmc.position && rmc.time);
+    QCOMPARE(rmc.speed.has_value(), field != 7);
+    QCOMPARE(rmc.course_deg.has_value(), field != 8);
+    QCOMPARE(rmc.date.has_value(), field != 9);
+    fields[2] = "V";
+    fields[3] = value;
+    QVERIFY(!decodeText(summed(fields.join(',')), rmc));
+    QVERIFY(!rmc.valid);
+    Gga gga;
+    QVERIFY(!decodeText(summed("GPGGA,214106,3707.8178,N,12139.2690,W,2," + value + ",1,1,M"), gga));
+    QVERIFY(gga.position && gga.quality == 2);
+    QVERIFY(!decodeText(summed("GPGGA,214106,3707.8178,N,12139.2690,W,2,08,x,+240.3,M"), gga));
+    QVERIFY(gga.position && gga.altitude == 240.3 && !gga.hdop);
+    QVERIFY(!decodeText(summed("GPGGA,------,3707.8178,N," + value + ",W,0,00,99.9,,M"), gga));
+    QCOMPARE(gga.quality, 0);
+}
+
+void TestNmeaMessages::zerosAtTheBeginningMayBeMissing_data() {
+    QTest::addColumn<QByteArray>("position");
+    QTest::addColumn<double>("latitude");
+    QTest::addColumn<double>("longitude");
+    QTest::newRow("one degree") << QByteArray("4426.291992,N,159.931976,W") << 44.4381999 << -1.9988663;
+    QTest::newRow("two degrees") << QByteArray("407.5,S,1026.6634,E") << -4.125 << 10.4443900;
+    QTest::newRow("no degree") << QByteArray("59.5,N,9.3,E") << 0.9916667 << 0.155;
+    QTest::newRow("nothing but zero") << QByteArray("0,N,0.0,E") << 0.0 << 0.0;
+}
+
+void TestNmeaMessages::zerosAtTheBeginningMayBeMissing() {
+    QFETCH(QByteArray, position);
+    Rmc rmc;
+    const FieldFault fault = decodeText(summed("GPRMC,92738.00,A," + position + ",0,0,100724"), rmc);
+    QVERIFY2(!fault, fault.expected);
+    QTEST(std::round(rmc.position->latitude_deg * 1e7) / 1e7, "latitude");
+    QTEST(std::round(rmc.position->longitude_deg * 1e7) / 1e7, "longitude");
+    QVERIFY(rmc.time->hour == 9 && rmc.time->minute == 27 && rmc.time->second == 38);
+    QVERIFY(!decodeText(summed("GPRMC,738,A," + position + ",0,0,100724"), rmc));
+    QVERIFY(rmc.time->hour == 0 && rmc.time->minute == 7 && rmc.time->second == 38);
 }
 
 void TestNmeaMessages::anyTalkerIsRead() {

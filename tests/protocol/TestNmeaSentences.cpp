@@ -66,12 +66,12 @@ void TestNmeaSentences::gnsIsRead() {
 }
 
 void TestNmeaSentences::modesOfGns_data() {
-    QTest::addColumn<int>("quality");
+    const Rows<int> row("quality");
     const std::pair<const char *, int> modes[] = {
         {"A", 1},  {"NA", 1}, {"AD", 2}, {"DA", 2}, {"NNR", 4},  {"RF", 4}, {"F", 5},     {"P", 3},
         {"EN", 6}, {"M", 7},  {"S", 8},  {"N", 0},  {"NNNN", 0}, {"AE", 1}, {"AAAAAA", 1}};
     for (const auto &[mode, quality] : modes)
-        QTest::newRow(mode) << quality;
+        row(mode, quality);
 }
 
 void TestNmeaSentences::modesOfGns() {
@@ -94,6 +94,8 @@ void TestNmeaSentences::vtgIsRead() {
     QCOMPARE(*vtg.speed, 5.0);
     vtg = read<Vtg>("GPVTG,,,,,,,,,N", fault);
     QVERIFY(!fault && !vtg.course_deg && !vtg.speed);
+    vtg = read<Vtg>("GPVTG,-90.0,T,-95.2,M,5.0,N,9.3,K", fault); // one does not cost the other
+    QVERIFY(!fault && !vtg.course_deg && vtg.speed);
     vtg = read<Vtg>("GPVTG,5.0,T,999.9,,0.0,N,0.0,K,x", fault); // what is not used
     QVERIFY(!fault && vtg.speed == 0.0);
 }
@@ -121,25 +123,27 @@ void TestNmeaSentences::wrongFieldsAreNamed_data() {
     row("GPGLL,4812.3,N,01130.6,E,081530,,A", 6);
     row("GPGLL,4812.3,N,01130.6,E,081530,X,A", 6);
     row("GPGLL,4812.3,N,01130.6,E", 0);
-    row("GPGNS,2400,4812.3,N,01130.6,E,A,14,0.7,520.1,46.9,,", 1);
+    row("GPGLL,nan,N,01130.6,E,xx,V,N", -1); // without a fix
+    row("GPGNS,081530,-,-,-,-,NN,14,0.7,520.1,46.9,,", -1);
+    row("GPGNS,240000,4812.3,N,01130.6,E,A,14,0.7,520.1,46.9,,", 1);
     row("GPGNS,081530,9100.0,N,01130.6,E,A,14,0.7,520.1,46.9,,", 2);
     row("GPGNS,081530,4812.3,N,01130.6,E,AX,14,0.7,520.1,46.9,,", 6);
     row("GPGNS,081530,4812.3,N,01130.6,E,,14,0.7,520.1,46.9,,", 6);
-    row("GPGNS,081530,4812.3,N,01130.6,E,A,1.5,0.7,520.1,46.9,,", 7);
-    row("GPGNS,081530,4812.3,N,01130.6,E,A,14,-1,520.1,46.9,,", 8);
-    row("GPGNS,081530,4812.3,N,01130.6,E,A,14,0.7,inf,46.9,,", 9);
+    row("GPGNS,081530,4812.3,N,01130.6,E,A,1.5,0.7,520.1,46.9,,", -1);
+    row("GPGNS,081530,4812.3,N,01130.6,E,A,14,-1,520.1,46.9,,", -1);
+    row("GPGNS,081530,4812.3,N,01130.6,E,A,14,0.7,inf,46.9,,", -1);
     row("GPGNS,081530,4812.3,N,01130.6,E,A", 0);
-    row("GPVTG,361,T,,M,1.0,N,1.9,K", 1);
-    row("GPVTG,36.1,M,,M,1.0,N,1.9,K", 2);
-    row("GPVTG,36.1,T,,M,-1.0,N,1.9,K", 5);
-    row("GPVTG,36.1,T,,M,1.0,,1.9,K", 6);
-    row("GPVTG,36.1,T,,M,,N,1.9,N", 8);
+    row("GPVTG,361,T,,M,1.0,N,1.9,K", -1);
+    row("GPVTG,36.1,M,,M,1.0,N,1.9,K", -1);
+    row("GPVTG,36.1,T,,M,-1.0,N,1.9,K", -1);
+    row("GPVTG,36.1,T,,M,1.0,,1.9,K", -1);
+    row("GPVTG,36.1,T,,M,,N,1.9,N", -1);
     row("GPVTG,36.1,T", 0);
     row("GPZDA,x,31,12,2016,00,00", 1);
-    row("GPZDA,235959,31,11,2016,00,00", 2);
-    row("GPZDA,235959,31,,2016,00,00", 2);
-    row("GPZDA,235959,31,13,2016,00,00", 3);
-    row("GPZDA,235959,31,12,16,00,00", 4);
+    row("GPZDA,235959,31,11,2016,00,00", -1);
+    row("GPZDA,235959,31,,2016,00,00", -1);
+    row("GPZDA,235959,31,13,2016,00,00", -1);
+    row("GPZDA,235959,31,12,16,00,00", -1);
     row("GPZDA,235959", 0);
 }
 

@@ -40,9 +40,7 @@ void TestPacketDecoder::elevationsAreMultiplesOfFourThirds() {
 }
 
 void TestPacketDecoder::packetsComeBackToTheLastBit() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     for (int round = 0; round < 50; ++round) {
         DataPacketWriter writer;
         std::vector<unsigned> written;
@@ -76,30 +74,24 @@ void TestPacketDecoder::packetsComeBackToTheLastBit() {
 }
 
 void TestPacketDecoder::faultsAreNamed_data() {
-    QTest::addColumn<int>("size");
-    QTest::addColumn<int>("offset");
-    QTest::addColumn<int>("value");
-    QTest::addColumn<int>("fault");
-    QTest::newRow("whole") << 1206 << -1 << 0 << int(PacketFault::None);
-    QTest::newRow("short") << 1205 << -1 << 0 << int(PacketFault::Size);
-    QTest::newRow("position packet") << 512 << -1 << 0 << int(PacketFault::Size);
-    QTest::newRow("empty") << 0 << -1 << 0 << int(PacketFault::Size);
-    QTest::newRow("first flag") << 1206 << 0 << 0xFE << int(PacketFault::Flag);
-    QTest::newRow("last flag") << 1206 << 1101 << 0 << int(PacketFault::Flag);
-    QTest::newRow("azimuth") << 1206 << 3 << 0x8D << int(PacketFault::Value);
-    QTest::newRow("stamp") << 1206 << 1203 << 0xFF << int(PacketFault::Value);
-    QTest::newRow("VLP-16") << 1206 << 1205 << 0x22 << int(PacketFault::None);
-    QTest::newRow("VLP-32C") << 1206 << 1205 << 0x28 << int(PacketFault::Model);
-    QTest::newRow("model without mode") << 1206 << 1204 << 0 << int(PacketFault::Model);
-    QTest::newRow("unknown mode") << 1206 << 1204 << 0x40 << int(PacketFault::Model);
-    QTest::newRow("dual") << 1206 << 1204 << 0x39 << int(PacketFault::None);
+    const Rows<int, int, int, int> row("size", "offset", "value", "fault");
+    row("whole", 1206, -1, 0, int(PacketFault::None));
+    row("short", 1205, -1, 0, int(PacketFault::Size));
+    row("position packet", 512, -1, 0, int(PacketFault::Size));
+    row("empty", 0, -1, 0, int(PacketFault::Size));
+    row("first flag", 1206, 0, 0xFE, int(PacketFault::Flag));
+    row("last flag", 1206, 1101, 0, int(PacketFault::Flag));
+    row("azimuth", 1206, 3, 0x8D, int(PacketFault::Value));
+    row("stamp", 1206, 1203, 0xFF, int(PacketFault::Value));
+    row("VLP-16", 1206, 1205, 0x22, int(PacketFault::None));
+    row("VLP-32C", 1206, 1205, 0x28, int(PacketFault::Model));
+    row("model without mode", 1206, 1204, 0, int(PacketFault::Model));
+    row("unknown mode", 1206, 1204, 0x40, int(PacketFault::Model));
+    row("dual", 1206, 1204, 0x39, int(PacketFault::None));
 }
 
 void TestPacketDecoder::faultsAreNamed() {
-    QFETCH(int, size);
-    QFETCH(int, offset);
-    QFETCH(int, value);
-    QFETCH(int, fault);
+    FETCH(int, size, int, offset, int, value, int, fault);
     auto bytes = Sensor().packet(0);
     if (offset >= 0)
         bytes[std::size_t(offset)] = std::uint8_t(value);
@@ -130,23 +122,19 @@ void TestPacketDecoder::pointsLieWhereTheFactSheetSays() {
 }
 
 void TestPacketDecoder::lasersLieAtTheirDocumentedHeights_data() {
-    QTest::addColumn<int>("model");
-    QTest::addColumn<int>("laser");
-    QTest::addColumn<double>("height_mm");
-    QTest::newRow("VLP-16, the lowest") << int(Model::Vlp16) << 0 << 11.2;
-    QTest::newRow("VLP-16, +1 degree") << int(Model::Vlp16) << 1 << -0.7;
-    QTest::newRow("VLP-16, -1 degree") << int(Model::Vlp16) << 14 << 0.7;
-    QTest::newRow("VLP-16, the highest") << int(Model::Vlp16) << 15 << -11.2;
-    QTest::newRow("HDL-32E, the lowest") << int(Model::Hdl32e) << 0 << 17.17;
-    QTest::newRow("HDL-32E, the horizon") << int(Model::Hdl32e) << 15 << 0.0;
-    QTest::newRow("HDL-32E, the highest") << int(Model::Hdl32e) << 31 << -5.45;
+    const Rows<int, int, double> row("model", "laser", "height_mm");
+    row("VLP-16, the lowest", int(Model::Vlp16), 0, 11.2);
+    row("VLP-16, +1 degree", int(Model::Vlp16), 1, -0.7);
+    row("VLP-16, -1 degree", int(Model::Vlp16), 14, 0.7);
+    row("VLP-16, the highest", int(Model::Vlp16), 15, -11.2);
+    row("HDL-32E, the lowest", int(Model::Hdl32e), 0, 17.17);
+    row("HDL-32E, the horizon", int(Model::Hdl32e), 15, 0.0);
+    row("HDL-32E, the highest", int(Model::Hdl32e), 31, -5.45);
 }
 
 /// The manual of the VLP-16: "After computing X,Y,Z, apply the vertical correction".
 void TestPacketDecoder::lasersLieAtTheirDocumentedHeights() {
-    QFETCH(int, model);
-    QFETCH(int, laser);
-    QFETCH(double, height_mm);
+    FETCH(int, model, int, laser, double, height_mm);
     Sensor sensor;
     sensor.model = findSensorModel(Model(model));
     const auto bytes = sensor.packet(0);
@@ -246,8 +234,7 @@ void TestPacketDecoder::modelsThatCannotBeReadAreRefused_data() {
 }
 
 void TestPacketDecoder::modelsThatCannotBeReadAreRefused() {
-    QFETCH(const std::function<void(SensorModel &)>, spoil);
-    QFETCH(const QString, fault);
+    FETCH(const std::function<void(SensorModel &)>, spoil, const QString, fault);
     SensorModel model = hdl32e;
     model.model = Model(0x28);
     model.key = "new";
@@ -264,19 +251,15 @@ void TestPacketDecoder::modelsThatCannotBeReadAreRefused() {
 }
 
 void TestPacketDecoder::dualReturns_data() {
-    QTest::addColumn<int>("returns");
-    QTest::addColumn<bool>("same");
-    QTest::addColumn<QVector<double>>("ranges");
-    QTest::newRow("strongest") << int(Returns::Strongest) << false << QVector<double>{5.0};
-    QTest::newRow("last") << int(Returns::Last) << false << QVector<double>{5.2};
-    QTest::newRow("both") << int(Returns::Both) << false << QVector<double>{5.2, 5.0};
-    QTest::newRow("both the same") << int(Returns::Both) << true << QVector<double>{5.0};
+    const Rows<int, bool, QVector<double>> row("returns", "same", "ranges");
+    row("strongest", int(Returns::Strongest), false, {5.0});
+    row("last", int(Returns::Last), false, {5.2});
+    row("both", int(Returns::Both), false, {5.2, 5.0});
+    row("both the same", int(Returns::Both), true, {5.0});
 }
 
 void TestPacketDecoder::dualReturns() {
-    QFETCH(int, returns);
-    QFETCH(bool, same);
-    QFETCH(QVector<double>, ranges);
+    FETCH(int, returns, bool, same, QVector<double>, ranges);
     Sensor sensor;
     sensor.dual = true;
     auto bytes = sensor.packet(0);

@@ -76,23 +76,17 @@ void TestPosition::wordsAreOf12Bits() {
 }
 
 void TestPosition::faultsAreNamed_data() {
-    QTest::addColumn<int>("size");
-    QTest::addColumn<int>("offset");
-    QTest::addColumn<int>("value");
-    QTest::addColumn<int>("fault");
-    QTest::newRow("whole") << 512 << 0 << 0 << int(PositionFault::None);
-    QTest::newRow("short") << 511 << 0 << 0 << int(PositionFault::Size);
-    QTest::newRow("data packet") << 1206 << 0 << 0 << int(PositionFault::Size);
-    QTest::newRow("empty") << 0 << 0 << 0 << int(PositionFault::Size);
-    QTest::newRow("stamp beyond the hour") << 512 << 0xC9 << 0xFF << int(PositionFault::Value);
-    QTest::newRow("pulse") << 512 << 0xCA << 4 << int(PositionFault::Value);
+    const Rows<int, int, int, int> row("size", "offset", "value", "fault");
+    row("whole", 512, 0, 0, int(PositionFault::None));
+    row("short", 511, 0, 0, int(PositionFault::Size));
+    row("data packet", 1206, 0, 0, int(PositionFault::Size));
+    row("empty", 0, 0, 0, int(PositionFault::Size));
+    row("stamp beyond the hour", 512, 0xC9, 0xFF, int(PositionFault::Value));
+    row("pulse", 512, 0xCA, 4, int(PositionFault::Value));
 }
 
 void TestPosition::faultsAreNamed() {
-    QFETCH(int, size);
-    QFETCH(int, offset);
-    QFETCH(int, value);
-    QFETCH(int, fault);
+    FETCH(int, size, int, offset, int, value, int, fault);
     std::vector<std::uint8_t> bytes(2000);
     bytes[std::size_t(offset)] = std::uint8_t(value);
     GpsReader gps;
@@ -103,30 +97,23 @@ void TestPosition::faultsAreNamed() {
 }
 
 void TestPosition::theHourIsTrusted_data() {
-    QTest::addColumn<int>("pps");
-    QTest::addColumn<QByteArray>("text");
-    QTest::addColumn<bool>("valid");
-    QTest::addColumn<bool>("trusted");
-    QTest::newRow("locked, valid") << 2 << QByteArray(::valid) << true << true;
-    QTest::newRow("no pulse") << 0 << QByteArray(::valid) << true << false;
-    QTest::newRow("synchronizing") << 1 << QByteArray(::valid) << true << false;
-    QTest::newRow("error") << 3 << QByteArray(::valid) << true << false;
-    QTest::newRow("warning")
-        << 2 << QByteArray("$GPRMC,214106,V,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*12")
-        << false << false;
-    QTest::newRow("no variation")
-        << 2 << summed("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,999.9,,D") << true << true;
-    QTest::newRow("no date") << 2 << QByteArray("$GPRMC,214106,A,,,,,,,,,*26") << true << false;
-    QTest::newRow("another sentence")
-        << 2 << QByteArray("$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47") << false
-        << false;
-    QTest::newRow("no GPS") << 2 << QByteArray() << false << false;
+    const Rows<int, QByteArray, bool, bool> row("pps", "text", "valid", "trusted");
+    row("locked, valid", 2, QByteArray(::valid), true, true);
+    row("no pulse", 0, QByteArray(::valid), true, false);
+    row("synchronizing", 1, QByteArray(::valid), true, false);
+    row("error", 3, QByteArray(::valid), true, false);
+    row("warning", 2, "$GPRMC,214106,V,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*12", false,
+        false);
+    row("no variation", 2, summed("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,999.9,,D"),
+        true, true);
+    row("no date", 2, "$GPRMC,214106,A,,,,,,,,,*26", true, false);
+    row("another sentence", 2, "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47", false,
+        false);
+    row("no GPS", 2, QByteArray(), false, false);
 }
 
 void TestPosition::theHourIsTrusted() {
-    QFETCH(int, pps);
-    QFETCH(QByteArray, text);
-    QFETCH(bool, trusted);
+    FETCH(int, pps, QByteArray, text, bool, trusted);
     const GpsReader gps = read(packet(2467110195, std::uint8_t(pps), text.constData()));
     QTEST(gps.state().valid, "valid");
     QCOMPARE(gps.state().utc_ns.has_value(), trusted);
@@ -134,20 +121,15 @@ void TestPosition::theHourIsTrusted() {
 }
 
 void TestPosition::theHourAtItsEdges_data() {
-    QTest::addColumn<QByteArray>("time");
-    QTest::addColumn<qint64>("stamp_us");
-    QTest::addColumn<qint64>("ofDay_s");
-    QTest::newRow("within the hour") << QByteArray("214106") << 2467110195LL << (21 * 3600 + 2467LL);
-    QTest::newRow("the counter is in the next hour") << QByteArray("215959") << 200000LL << 22 * 3600LL;
-    QTest::newRow("the sentence is in the next hour")
-        << QByteArray("220000") << 3599900000LL << 22 * 3600LL - 1;
-    QTest::newRow("and in the next day") << QByteArray("235959") << 100000LL << 24 * 3600LL;
+    const Rows<QByteArray, qint64, qint64> row("time", "stamp_us", "ofDay_s");
+    row("within the hour", "214106", 2467110195LL, (21 * 3600 + 2467LL));
+    row("the counter is in the next hour", "215959", 200000LL, 22 * 3600LL);
+    row("the sentence is in the next hour", "220000", 3599900000LL, 22 * 3600LL - 1);
+    row("and in the next day", "235959", 100000LL, 24 * 3600LL);
 }
 
 void TestPosition::theHourAtItsEdges() {
-    QFETCH(QByteArray, time);
-    QFETCH(qint64, stamp_us);
-    QFETCH(qint64, ofDay_s);
+    FETCH(QByteArray, time, qint64, stamp_us, qint64, ofDay_s);
     const QByteArray text =
         summed("GPRMC," + time + ",A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D");
     const GpsReader gps = read(packet(std::uint32_t(stamp_us), 2, text.constData()));
@@ -158,16 +140,14 @@ void TestPosition::theHourAtItsEdges() {
 }
 
 void TestPosition::badTextIsCounted_data() {
-    QTest::addColumn<QByteArray>("text");
-    QTest::newRow("checksum") << QByteArray(
-        "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*06");
-    QTest::newRow("cut") << QByteArray("$GPRMC,214106,A,3707.8178,N,12139.2690");
-    QTest::newRow("not ASCII") << QByteArray("$GPRMC,2141\xC3\xA4,A*00");
-    QTest::newRow("no sentence") << QByteArray("hello");
-    QTest::newRow("two sentences in one") << QByteArray("$GPRMC,2141$GPRMC,214106,A*00");
-    QTest::newRow("impossible date") << QByteArray(
-        "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,320715,013.8,E,D*05");
-    QTest::newRow("no end") << QByteArray(int(positionPacketSize) - 0xCE, 'A');
+    const Rows<QByteArray> row("text");
+    row("checksum", "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*06");
+    row("cut", "$GPRMC,214106,A,3707.8178,N,12139.2690");
+    row("not ASCII", "$GPRMC,2141\xC3\xA4,A*00");
+    row("no sentence", "hello");
+    row("two sentences in one", "$GPRMC,2141$GPRMC,214106,A*00");
+    row("impossible date", "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,320715,013.8,E,D*05");
+    row("no end", QByteArray(int(positionPacketSize) - 0xCE, 'A'));
 }
 
 void TestPosition::badTextIsCounted() {
@@ -189,9 +169,7 @@ void TestPosition::aFaultChangesNothing() {
 }
 
 void TestPosition::aRealPacket() {
-    const QString path = realData(QStringLiteral("velodyne-position-packet.pcap"));
-    if (path.isEmpty())
-        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    REAL_DATA(path, "velodyne-position-packet.pcap");
     PcapReader reader;
     Datagram datagram;
     QVERIFY(reader.open(path.toStdString()));
@@ -208,9 +186,7 @@ void TestPosition::aRealPacket() {
 }
 
 void TestPosition::randomBytesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     GpsReader gps;
     Bytes bytes;
     for (int round = 0; round < 20000; ++round) {

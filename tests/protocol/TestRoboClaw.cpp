@@ -33,14 +33,7 @@ void TestRoboClaw::crcHasItsCheckValue() {
 }
 
 void TestRoboClaw::writesAreEncoded_data() {
-    QTest::addColumn<int>("address");
-    QTest::addColumn<Command>("command");
-    QTest::addColumn<Values>("values");
-    QTest::addColumn<QByteArray>("bytes");
-    const auto row = [](const char *name, int address, Command command, const Values &values,
-                        const char *bytes) {
-        QTest::newRow(name) << address << command << values << QByteArray(bytes);
-    };
+    const Rows<int, Command, Values, QByteArray> row("address", "command", "values", "bytes");
     row("one speed", 0x80, Command::SpeedM1, {1000}, "80 23 00 00 03 E8 1B 33");
     row("both speeds", 0x80, Command::Speed, {1000, -1000}, "80 25 00 00 03 E8 FF FF FC 18 82 90");
     row("second controller", 0x81, Command::Speed, {-2500, 2500}, "81 25 FF FF F6 3C 00 00 09 C4 D2 B7");
@@ -57,10 +50,7 @@ void TestRoboClaw::writesAreEncoded_data() {
 }
 
 void TestRoboClaw::writesAreEncoded() {
-    QFETCH(int, address);
-    QFETCH(Command, command);
-    QFETCH(Values, values);
-    QFETCH(QByteArray, bytes);
+    FETCH(int, address, Command, command, Values, values, QByteArray, bytes);
     const auto request = Request::make(std::uint8_t(address), command, values);
     QVERIFY(request);
     QCOMPARE(text(request->bytes), bytes);
@@ -74,14 +64,7 @@ void TestRoboClaw::writesAreEncoded() {
 }
 
 void TestRoboClaw::readsAreEncodedAndAnswered_data() {
-    QTest::addColumn<Command>("command");
-    QTest::addColumn<Values>("values");
-    QTest::addColumn<QByteArray>("sent");
-    QTest::addColumn<QByteArray>("answer");
-    const auto row = [](const char *name, Command command, const Values &values, const char *sent,
-                        const char *answer) {
-        QTest::newRow(name) << command << values << QByteArray(sent) << QByteArray(answer);
-    };
+    const Rows<Command, Values, QByteArray, QByteArray> row("command", "values", "sent", "answer");
     row("battery", Command::ReadMainBattery, {240}, "80 18", "00 F0 D8 E5");
     row("encoder", Command::ReadEncoderM1, {1000, 0}, "80 10", "00 00 03 E8 00 71 36");
     row("speed", Command::ReadSpeedM1, {-1000, 1}, "80 12", "FF FF FC 18 01 27 F9");
@@ -95,10 +78,7 @@ void TestRoboClaw::readsAreEncodedAndAnswered_data() {
 }
 
 void TestRoboClaw::readsAreEncodedAndAnswered() {
-    QFETCH(Command, command);
-    QFETCH(Values, values);
-    QFETCH(QByteArray, sent);
-    QFETCH(QByteArray, answer);
+    FETCH(Command, command, Values, values, QByteArray, sent, QByteArray, answer);
     const auto request = Request::make(0x80, command);
     QVERIFY(request);
     QCOMPARE(text(request->bytes), sent);
@@ -112,35 +92,31 @@ void TestRoboClaw::readsAreEncodedAndAnswered() {
 }
 
 void TestRoboClaw::layoutsHaveTheirSizes_data() {
-    QTest::addColumn<QVector<int>>("commands");
-    QTest::addColumn<bool>("isRead");
-    QTest::addColumn<int>("size");
-    QTest::newRow("W 1") << QVector<int>{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,
-                                         10, 11, 12, 13, 14, 26, 27, 92, 93, 148}
-                         << false << 1;
-    QTest::newRow("W 0") << QVector<int>{20, 80, 95} << false << 0;
-    QTest::newRow("W 2") << QVector<int>{32, 33, 70, 71, 98} << false << 2;
-    QTest::newRow("W 3") << QVector<int>{74, 253} << false << 3;
-    QTest::newRow("W 4") << QVector<int>{22, 23, 34, 35, 36, 57, 58, 68, 69, 94} << false << 4;
-    QTest::newRow("W 6") << QVector<int>{52, 53} << false << 6;
-    QTest::newRow("W 8") << QVector<int>{37, 38, 39, 109, 112, 133, 134} << false << 8;
-    QTest::newRow("W 9") << QVector<int>{41, 42} << false << 9;
-    QTest::newRow("W 12") << QVector<int>{40, 54} << false << 12;
-    QTest::newRow("W 13") << QVector<int>{44, 45} << false << 13;
-    QTest::newRow("W 16") << QVector<int>{28, 29, 50} << false << 16;
-    QTest::newRow("W 17") << QVector<int>{43, 65, 66} << false << 17;
-    QTest::newRow("W 21") << QVector<int>{46} << false << 21;
-    QTest::newRow("W 25") << QVector<int>{51} << false << 25;
-    QTest::newRow("W 28") << QVector<int>{61, 62} << false << 28;
-    QTest::newRow("W 33") << QVector<int>{67} << false << 33;
-    QTest::newRow("R 1") << QVector<int>{15, 149} << true << 1;
-    QTest::newRow("R 2") << QVector<int>{24, 25, 47, 82, 83, 91, 99, 252} << true << 2;
-    QTest::newRow("R 3") << QVector<int>{75} << true << 3;
-    QTest::newRow("R 4") << QVector<int>{48, 49, 59, 60, 90} << true << 4;
-    QTest::newRow("R 5") << QVector<int>{16, 17, 18, 19, 30, 31} << true << 5;
-    QTest::newRow("R 8") << QVector<int>{78, 79, 81, 108, 110, 113, 135, 136} << true << 8;
-    QTest::newRow("R 16") << QVector<int>{55, 56} << true << 16;
-    QTest::newRow("R 28") << QVector<int>{63, 64} << true << 28;
+    const Rows<QVector<int>, bool, int> row("commands", "isRead", "size");
+    row("W 1", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 26, 27, 92, 93, 148}, false, 1);
+    row("W 0", {20, 80, 95}, false, 0);
+    row("W 2", {32, 33, 70, 71, 98}, false, 2);
+    row("W 3", {74, 253}, false, 3);
+    row("W 4", {22, 23, 34, 35, 36, 57, 58, 68, 69, 94}, false, 4);
+    row("W 6", {52, 53}, false, 6);
+    row("W 8", {37, 38, 39, 109, 112, 133, 134}, false, 8);
+    row("W 9", {41, 42}, false, 9);
+    row("W 12", {40, 54}, false, 12);
+    row("W 13", {44, 45}, false, 13);
+    row("W 16", {28, 29, 50}, false, 16);
+    row("W 17", {43, 65, 66}, false, 17);
+    row("W 21", {46}, false, 21);
+    row("W 25", {51}, false, 25);
+    row("W 28", {61, 62}, false, 28);
+    row("W 33", {67}, false, 33);
+    row("R 1", {15, 149}, true, 1);
+    row("R 2", {24, 25, 47, 82, 83, 91, 99, 252}, true, 2);
+    row("R 3", {75}, true, 3);
+    row("R 4", {48, 49, 59, 60, 90}, true, 4);
+    row("R 5", {16, 17, 18, 19, 30, 31}, true, 5);
+    row("R 8", {78, 79, 81, 108, 110, 113, 135, 136}, true, 8);
+    row("R 16", {55, 56}, true, 16);
+    row("R 28", {63, 64}, true, 28);
 }
 
 void TestRoboClaw::layoutsHaveTheirSizes() {
@@ -155,39 +131,34 @@ void TestRoboClaw::layoutsHaveTheirSizes() {
 }
 
 void TestRoboClaw::refusesWhatDoesNotFit_data() {
-    QTest::addColumn<int>("address");
-    QTest::addColumn<int>("command");
-    QTest::addColumn<Values>("values");
-    QTest::newRow("address below") << 0x7F << 37 << Values{0, 0};
-    QTest::newRow("address above") << 0x88 << 37 << Values{0, 0};
-    QTest::newRow("no command") << 0x80 << 73 << Values{};
-    QTest::newRow("too few") << 0x80 << 37 << Values{0};
-    QTest::newRow("too many") << 0x80 << 37 << Values{0, 0, 0};
-    QTest::newRow("far too many") << 0x80 << 37 << Values{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-    QTest::newRow("speed too large") << 0x80 << 35 << Values{std::int64_t(INT32_MAX) + 1};
-    QTest::newRow("speed too small") << 0x80 << 35 << Values{std::int64_t(INT32_MIN) - 1};
-    QTest::newRow("negative acceleration") << 0x80 << 38 << Values{-1, 0};
-    QTest::newRow("duty too large") << 0x80 << 32 << Values{32768};
-    QTest::newRow("byte too large") << 0x80 << 14 << Values{256};
-    QTest::newRow("read with a value") << 0x80 << 90 << Values{1};
-    QTest::newRow("EEPROM without address") << 0x80 << 252 << Values{};
+    const Rows<int, int, Values> row("address", "command", "values");
+    row("address below", 0x7F, 37, {0, 0});
+    row("address above", 0x88, 37, {0, 0});
+    row("no command", 0x80, 73, {});
+    row("too few", 0x80, 37, {0});
+    row("too many", 0x80, 37, {0, 0, 0});
+    row("far too many", 0x80, 37, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+    row("speed too large", 0x80, 35, {std::int64_t(INT32_MAX) + 1});
+    row("speed too small", 0x80, 35, {std::int64_t(INT32_MIN) - 1});
+    row("negative acceleration", 0x80, 38, {-1, 0});
+    row("duty too large", 0x80, 32, {32768});
+    row("byte too large", 0x80, 14, {256});
+    row("read with a value", 0x80, 90, {1});
+    row("EEPROM without address", 0x80, 252, {});
 }
 
 void TestRoboClaw::refusesWhatDoesNotFit() {
-    QFETCH(int, address);
-    QFETCH(int, command);
-    QFETCH(Values, values);
+    FETCH(int, address, int, command, Values, values);
     QVERIFY(!Request::make(std::uint8_t(address), Command(command), values));
 }
 
 void TestRoboClaw::speedsHaveTheirSign_data() {
-    QTest::addColumn<Values>("values");
-    QTest::addColumn<int>("speed");
-    QTest::newRow("forward") << Values{1000, 0} << 1000;
-    QTest::newRow("two's complement") << Values{-1000, 1} << -1000;
-    QTest::newRow("magnitude and direction") << Values{1000, 1} << -1000;
-    QTest::newRow("negative without direction") << Values{-1000, 0} << -1000;
-    QTest::newRow("smallest") << Values{INT32_MIN, 1} << INT32_MIN;
+    const Rows<Values, int> row("values", "speed");
+    row("forward", {1000, 0}, 1000);
+    row("two's complement", {-1000, 1}, -1000);
+    row("magnitude and direction", {1000, 1}, -1000);
+    row("negative without direction", {-1000, 0}, -1000);
+    row("smallest", {INT32_MIN, 1}, INT32_MIN);
 }
 
 void TestRoboClaw::speedsHaveTheirSign() {

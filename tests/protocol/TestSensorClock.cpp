@@ -22,19 +22,15 @@ private Q_SLOTS:
 };
 
 void TestSensorClock::stampsTakeTheHourOfTheReceiveTime_data() {
-    QTest::addColumn<qint64>("receive_s");
-    QTest::addColumn<qint64>("ofHour_s");
-    QTest::addColumn<qint64>("stamp_s");
+    const Rows<qint64, qint64, qint64> row("receive_s", "ofHour_s", "stamp_s");
     const qint64 hour = 400000 * 3600LL;
-    QTest::newRow("within the hour") << hour + 100 << 99LL << hour + 99;
-    QTest::newRow("before the hour, received after") << hour + 1 << 3599LL << hour - 1;
-    QTest::newRow("after the hour, received before") << hour - 1 << 1LL << hour + 1;
+    row("within the hour", hour + 100, 99LL, hour + 99);
+    row("before the hour, received after", hour + 1, 3599LL, hour - 1);
+    row("after the hour, received before", hour - 1, 1LL, hour + 1);
 }
 
 void TestSensorClock::stampsTakeTheHourOfTheReceiveTime() {
-    QFETCH(qint64, receive_s);
-    QFETCH(qint64, ofHour_s);
-    QFETCH(qint64, stamp_s);
+    FETCH(qint64, receive_s, qint64, ofHour_s, qint64, stamp_s);
     StampClock clock;
     QCOMPARE(qint64(clock.absolute(std::uint32_t(ofHour_s * 1000000), receive_s * second_ns)),
              stamp_s * second_ns);

@@ -24,6 +24,7 @@ class TestSentenceParser : public QObject {
 private Q_SLOTS:
     void findsSentences_data();
     void findsSentences();
+    void aPieceEndsASentence();
     void countsWhatItDrops();
     void isInStepWhereverItBegins();
     void withoutChecksumOnlyWhenLenient();
@@ -31,38 +32,57 @@ private Q_SLOTS:
 };
 
 void TestSentenceParser::findsSentences_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<QList<QByteArray>>("bodies");
+    const Rows<QByteArray, QList<QByteArray>> row("bytes", "bodies");
     const QList<QByteArray> one{"GPTXT,A"};
-    QTest::newRow("usual") << QByteArray("$GPTXT,A*22\r\n") << one;
-    QTest::newRow("lower case") << QByteArray("$GPTXT,o*0c\n") << QList<QByteArray>{"GPTXT,o"};
-    QTest::newRow("only LF") << QByteArray("$GPTXT,A*22\n") << one;
-    QTest::newRow("only CR") << QByteArray("$GPTXT,A*22\r") << one;
-    QTest::newRow("noise before") << QByteArray("xx\xff,4*1\r\n$GPTXT,A*22\r\n") << one;
-    QTest::newRow("cut short") << QByteArray("$GPTXT,$GPTXT,A*22\r\n") << one;
-    QTest::newRow("damaged") << QByteArray("$GPTXT,B*22\r\n$GPTXT,A*22\r\n") << one;
-    QTest::newRow("no end yet") << QByteArray("$GPTXT,A*22") << QList<QByteArray>();
-    QTest::newRow("one digit") << QByteArray("$GPTXT,A*2\r\n") << QList<QByteArray>();
-    QTest::newRow("three digits") << QByteArray("$GPTXT,A*220\r\n") << QList<QByteArray>();
-    QTest::newRow("no digits") << QByteArray("$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n")
-                               << QList<QByteArray>();
-    QTest::newRow("NUL inside") << QByteArray("$GPTXT,\0A*22\r\n", 14) << QList<QByteArray>();
-    QTest::newRow("encapsulated") << QByteArray("!AIVDM,A*3A\r\n") << QList<QByteArray>{"AIVDM,A"};
-    QTest::newRow("empty") << QByteArray("$*00\r\n$\r\n\r\n") << QList<QByteArray>{""};
+    row("usual", "$GPTXT,A*22\r\n", one);
+    row("lower case", "$GPTXT,o*0c\n", {"GPTXT,o"});
+    row("only LF", "$GPTXT,A*22\n", one);
+    row("only CR", "$GPTXT,A*22\r", one);
+    row("noise before", "xx\xff,4*1\r\n$GPTXT,A*22\r\n", one);
+    row("cut short", "$GPTXT,$GPTXT,A*22\r\n", one);
+    row("damaged", "$GPTXT,B*22\r\n$GPTXT,A*22\r\n", one);
+    row("no end yet", "$GPTXT,A*22", QList<QByteArray>());
+    row("no line end between", "$GPTXT,A*22$GPTXT,A*22\r", one + one);
+    row("binary behind", "$GPTXT,A*22\xb5\x62\r", one);
+    row("a star inside", "$GPTXT,A*220,1*22\r\n", QList<QByteArray>());
+    row("blank behind", "$GPTXT,A*22 \r\n", one);
+    row("doubled start", "$$GPTXT,A*22\r\n", one);
+    row("one digit", "$GPTXT,A*2\r\n", QList<QByteArray>());
+    row("three digits", "$GPTXT,A*220\r\n", QList<QByteArray>());
+    row("no digits", "$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n", QList<QByteArray>());
+    row("NUL inside", QByteArray("$GPTXT,\0A*22\r\n", 14), QList<QByteArray>());
+    row("encapsulated", "!AIVDM,A*3A\r\n", {"AIVDM,A"});
+    row("empty", "$*00\r\n$\r\n\r\n", {""});
 }
 
 void TestSentenceParser::findsSentences() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(QList<QByteArray>, bodies);
+    FETCH(QByteArray, bytes, QList<QByteArray>, bodies);
     SentenceParser parser;
     QCOMPARE(sentencesOf(parser, bytes), bodies);
     QCOMPARE(parser.counts().sentences, quint64(bodies.size()));
 }
 
+void TestSentenceParser::aPieceEndsASentence() {
+    SentenceParser parser;
+    QCOMPARE(sentencesOf(parser, "$GPTXT,A*22").size(), 0);
+    QCOMPARE(parser.endPiece(), SentenceParser::Result::Done);
+    QCOMPARE(toBytes(parser.sentence().body()), QByteArray("GPTXT,A"));
+    for (const char *begun :
+         {"\r\n", "$", "$GPTXT", "$GPTXT,A*", "$GPTXT,A*2", "$GPTXT,A*23"}) { // more may come
+        QCOMPARE(sentencesOf(parser, begun).size(), 0);
+        QCOMPARE(parser.endPiece(), SentenceParser::Result::Incomplete);
+    }
+    QCOMPARE(parser.counts().sentences, quint64(1));
+    parser.reset();
+    QCOMPARE(sentencesOf(parser, "$GPTXT,A*2").size(), 0);
+    parser.endPiece();
+    QCOMPARE(sentencesOf(parser, "2\n").size(), 1);
+}
+
 void TestSentenceParser::countsWhatItDrops() {
     SentenceParser parser;
-    const QByteArray endless = '$' + QByteArray(int(maxSentence) * 3, 'A');
-    QCOMPARE(sentencesOf(parser, endless + "\n$GPT\x80XT\n$GPT$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
+    const QByteArray endless = "$GPTXT," + QByteArray(int(maxSentence) * 3, 'A');
+    QCOMPARE(sentencesOf(parser, endless + "\n$GPTXT,\x80XT\n$GPTXT,$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
     const SentenceParser::Counts &counts = parser.counts();
     QCOMPARE(counts.tooLong, quint64(1));
     QCOMPARE(counts.badByte, quint64(1));
@@ -72,6 +92,13 @@ void TestSentenceParser::countsWhatItDrops() {
     // The endless one is dropped with the byte that is too much; behind it and behind 0x80 all is noise.
     QCOMPARE(counts.skippedBytes, quint64(endless.size()) - maxSentence - 1 + 2);
     QCOMPARE(sentencesOf(parser, realRmc).size(), 1);
+    // Binary messages between sentences are no sentences.
+    const SentenceParser::Counts before = counts;
+    const QByteArray binary("\xb5\x62$\x01!AB,\x02$GP,\x03$\n$Gp123,4\n$*12\n", 27);
+    QCOMPARE(sentencesOf(parser, binary + realRmc).size(), 1);
+    QCOMPARE(counts.badByte + counts.cutShort + counts.noChecksum + counts.badChecksum,
+             before.badByte + before.cutShort + before.noChecksum + before.badChecksum);
+    QVERIFY(counts.skippedBytes > before.skippedBytes + 15);
 }
 
 void TestSentenceParser::isInStepWhereverItBegins() {

@@ -44,36 +44,30 @@ private Q_SLOTS:
 };
 
 void TestSerialFrames::checksums_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<quint32>("crc");
+    const Rows<QByteArray, quint32> row("bytes", "crc");
     // RFC 3720, B.4; as numbers, it prints the lowest byte first.
-    QTest::newRow("zeros") << QByteArray(32, 0) << 0x8a9136aau;
-    QTest::newRow("ones") << QByteArray(32, char(0xff)) << 0x62a8ab43u;
-    QTest::newRow("counting") << counting(0, 31) << 0x46dd794eu;
+    row("zeros", QByteArray(32, 0), 0x8a9136aau);
+    row("ones", QByteArray(32, char(0xff)), 0x62a8ab43u);
+    row("counting", counting(0, 31), 0x46dd794eu);
     QByteArray down = counting(0, 31);
     std::reverse(down.begin(), down.end());
-    QTest::newRow("counting down") << down << 0x113fdb5cu;
-    QTest::newRow("an iSCSI command")
-        << hex("01c00000000000000000000000000000140000000000040000000014000000182800"
-               "00000000000002000000"
-               "00000000")
-        << 0xd9963a56u;
-    QTest::newRow("digits") << QByteArray("123456789") << 0xe3069283u;
-    QTest::newRow("nothing") << QByteArray() << 0u;
+    row("counting down", down, 0x113fdb5cu);
+    row("an iSCSI command",
+        hex("01c00000000000000000000000000000140000000000040000000014000000182800"
+            "00000000000002000000"
+            "00000000"),
+        0xd9963a56u);
+    row("digits", "123456789", 0xe3069283u);
+    row("nothing", QByteArray(), 0u);
 }
 
 void TestSerialFrames::checksums() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(quint32, crc);
+    FETCH(QByteArray, bytes, quint32, crc);
     QCOMPARE(crc32c(bytes.constData(), size_t(bytes.size())), crc);
 }
 
 void TestSerialFrames::stuffing_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<QByteArray>("stuffed");
-    const auto row = [](const char *name, const QByteArray &bytes, const QByteArray &stuffed) {
-        QTest::newRow(name) << bytes << stuffed;
-    };
+    const Rows<QByteArray, QByteArray> row("bytes", "stuffed");
     row("nothing", {}, hex("01"));
     // As the encyclopaedias have them.
     row("a zero", hex("00"), hex("0101"));
@@ -92,16 +86,13 @@ void TestSerialFrames::stuffing_data() {
 }
 
 void TestSerialFrames::stuffing() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(QByteArray, stuffed);
+    FETCH(QByteArray, bytes, QByteArray, stuffed);
     QCOMPARE(cobsEncoded(bytes).toHex(), stuffed.toHex());
     QCOMPARE(decoded(stuffed)->toHex(), bytes.toHex());
 }
 
 void TestSerialFrames::whateverIsStuffedComesBack() {
-    const unsigned int seed = std::random_device{}();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     for (int round = 0; round < 3000; ++round) {
         QByteArray bytes(int(random() % 1200), 0);
         const unsigned int zeros = 1 + random() % 300; // one in so many

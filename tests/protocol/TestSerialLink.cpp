@@ -153,19 +153,16 @@ void TestSerialLink::urgentGoesFirst() {
 }
 
 void TestSerialLink::allArriveOnce_data() {
-    QTest::addColumn<int>("oneIn");
-    QTest::newRow("undamaged") << 0;
-    QTest::newRow("one byte in 1000") << 1000;
-    QTest::newRow("one byte in 200") << 200;
-    QTest::newRow("one byte in 150") << 150;
+    const Rows<int> row("oneIn");
+    row("undamaged", 0);
+    row("one byte in 1000", 1000);
+    row("one byte in 200", 200);
+    row("one byte in 150", 150);
 }
 
 void TestSerialLink::allArriveOnce() {
     QFETCH(int, oneIn);
-    const QByteArray given = qgetenv("HERMES_SEED");
-    const unsigned int seed = given.isEmpty() ? std::random_device{}() : given.toUInt();
-    qInfo("HERMES_SEED=%u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     LinkPair pair(11520);
     pair.damage = [&](QByteArray &frame) {
         if (oneIn == 0)

@@ -115,9 +115,9 @@ void TestTurnAssembler::everyNthFiringOnly() {
 }
 
 void TestTurnAssembler::beamsOfAllLasersAreCounted_data() {
-    QTest::addColumn<bool>("dual");
-    QTest::newRow("single") << false;
-    QTest::newRow("dual") << true;
+    const Rows<bool> row("dual");
+    row("single", false);
+    row("dual", true);
 }
 
 /// Whichever laser is decoded; the second return of a beam does not count.
@@ -162,9 +162,7 @@ void TestTurnAssembler::turnsThatEndBeforeTheyBeginHaveNoSpeed() {
 }
 
 void TestTurnAssembler::randomBytesDoNoHarm() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     TurnAssembler::Options options;
     options.laser = PacketDecoder::allLasers;
     options.returns = Returns::Both;

@@ -120,12 +120,7 @@ void TestWire::goesAroundUnchanged() {
 }
 
 void TestWire::namesWhatIsWrong_data() {
-    QTest::addColumn<QString>("member");
-    QTest::addColumn<QJsonValue>("value");
-    QTest::addColumn<QString>("text");
-    const auto row = [](const char *name, const char *member, const QJsonValue &value, const char *text) {
-        QTest::newRow(name) << member << value << text;
-    };
+    const Rows<QString, QJsonValue, QString> row("member", "value", "text");
     row("missing", "name", QJsonValue::Undefined, "member name: found nothing, expected a text");
     row("number for text", "name", 5, "member name: found 5, expected a text");
     row("text for number", "left", "1", "member left: found text \"1\", expected a number");
@@ -144,9 +139,7 @@ void TestWire::namesWhatIsWrong_data() {
 }
 
 void TestWire::namesWhatIsWrong() {
-    QFETCH(QString, member);
-    QFETCH(QJsonValue, value);
-    QFETCH(QString, text);
+    FETCH(QString, member, QJsonValue, value, QString, text);
     QJsonObject json = sampleJson();
     value.isUndefined() ? json.remove(member) : void(json[member] = value);
     ReadReport report;

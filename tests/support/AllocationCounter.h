@@ -19,3 +19,14 @@ void operator delete(void *memory) noexcept {
 void operator delete(void *memory, std::size_t) noexcept {
     std::free(memory);
 }
+
+/// How many allocations the last of so many calls makes; buffers grow in the first ones.
+template <typename Call>
+std::size_t allocationsOnceGrown(int calls, const Call &call) {
+    std::size_t before = 0;
+    for (int i = 0; i < calls; ++i) {
+        before = allocations;
+        call();
+    }
+    return allocations - before;
+}

@@ -8,9 +8,7 @@
 class DaemonClient {
 protected:
     void connectTo(hermes::Daemon &daemon) {
-        client_ = std::make_unique<PatientClient>();
-        QVERIFY(client_->connectTo(hermes::asOwner(daemon.server().addresses().value(0))).ok());
-        QVERIFY(client_->waitConnected().ok());
+        client_ = std::make_unique<ConnectedClient>(hermes::asOwner(daemon.server().addresses().value(0)));
     }
     /// The result; an error is printed, and is {failed: message}.
     QJsonValue call(const QString &method, const QJsonObject &params = {}) {

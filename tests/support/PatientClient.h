@@ -12,3 +12,13 @@ public:
     }
     hermes::Result<void> waitConnected() { return Client::waitConnected(slowness * defaultTimeout); }
 };
+
+/// One that is connected to that address.
+class ConnectedClient : public PatientClient {
+public:
+    explicit ConnectedClient(const QString &address, const char *file = __builtin_FILE(),
+                             int line = __builtin_LINE()) {
+        const bool isConnected = connectTo(address).ok() && waitConnected().ok();
+        QTest::qVerify(isConnected, "isConnected", qPrintable(address + ": " + problem()), file, line);
+    }
+};

@@ -12,7 +12,7 @@ import unittest
 
 from robot import NAMES
 from robot_case import INTERPOSED, RobotCase
-from support import DaemonError, wait_for
+from support import DaemonError, wait_for, text_of
 
 
 class BadFiles(RobotCase):
@@ -54,9 +54,7 @@ class BadFiles(RobotCase):
         self.robot.write(name)
 
     def test_wrong_settings_of_a_daemon(self):
-        self.simulate()
-        robot = self.robot_of()
-        self.until_well()
+        robot = self.robot_at_work()
         name = "seriallogger"
         for what, (_, word) in self.WRONG_SETTINGS.items():
             with self.subTest(what):
@@ -74,9 +72,7 @@ class BadFiles(RobotCase):
 
     def test_settings_that_do_not_go_together(self):
         """The file with what the command line insists on."""
-        self.simulate()
-        robot, name = self.robot_of(), "motorcontrol"
-        self.until_well()
+        robot, name = self.robot_at_work(), "motorcontrol"
         entries = robot.settings["supervisor"]["processes"]
         next(one for one in entries if one["name"] == name)["arguments"] += ["--set", "faults.battery_v=22"]
         robot.call("supervisor", "settings.set", values={"processes": entries})
@@ -90,9 +86,7 @@ class BadFiles(RobotCase):
         self.until_well()
 
     def test_wrong_settings_of_the_supervisor(self):
-        self.simulate()
-        robot = self.robot_of()
-        self.until_well()
+        robot = self.robot_at_work()
         for what, (_, word) in self.WRONG_SETTINGS.items():
             with self.subTest(what):
                 since = robot.journal_size()
@@ -149,9 +143,7 @@ class BadFiles(RobotCase):
     def test_files_of_a_recording_that_are_removed(self):
         """Or replaced, while they are recorded: their loggers go on writing to what has no name."""
         records = os.path.join(self.folder, "recordings")
-        self.simulate()
-        robot = self.robot_of(velodynelogger={"record": {"folder": records}}, seriallogger={"record": {"folder": records}})
-        self.until_well()
+        robot = self.robot_at_work(velodynelogger={"record": {"folder": records}}, seriallogger={"record": {"folder": records}})
         for name, file in (("velodynelogger", "velodynelogger-0001.pcap"), ("seriallogger", "seriallogger-gps.raw"),
                            ("seriallogger", "seriallogger-gps.index"), ("seriallogger", "seriallogger-events.jsonl")):
             for how in ("removed", "replaced"):
@@ -198,7 +190,7 @@ class BadFiles(RobotCase):
         self.fill(disk)
 
         def audits():  # the last page of the file has room for some lines
-            for method in ["motor.estop"] * 40:
+            for method in ["odometry.reset"] * 40:
                 robot.call("motorcontrol", method)
             return any("audit" in item for item in robot.items("motorcontrol"))
         wait_for("a full disk under the audit", audits, 15)
@@ -220,8 +212,7 @@ class BadFiles(RobotCase):
             robot.call(name, "record.stop")
         self.until_well("room on the disk")
         robot.call("supervisor", "setup.undo")
-        with open(os.path.join(etc, "seriallogger.json"), encoding="utf-8") as file:
-            self.assertEqual(json.load(file), {})
+        self.assertEqual(json.loads(text_of(os.path.join(etc, "seriallogger.json"))), {})
         self.drive(lambda: not self.stands())
 
     def test_state_that_is_read_only(self):
@@ -281,8 +272,7 @@ class BadFiles(RobotCase):
         for name in os.listdir(folder):
             if not name.endswith((".json", ".previous")):
                 continue  # a draft of a program that was killed
-            with open(os.path.join(folder, name), encoding="utf-8") as file:
-                found[name] = json.load(file)
+            found[name] = json.loads(text_of(os.path.join(folder, name)))
         return found
 
     def test_killed_while_settings_are_replaced(self):

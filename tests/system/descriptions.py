@@ -3,13 +3,11 @@
 and changes nothing; what they allow is not refused by them; examples run."""
 import functools
 import os
+import socket
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
-from hermes import DaemonError  # noqa: E402
-import socket  # noqa: E402
+from support import BINARIES, DaemonError, Process, free_port
 
 DAEMONS = ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "supervisor", "simulator")
 COMMON = {"rpc.discover", "daemon.info", "daemon.status", "daemon.shutdown", "settings.schema", "settings.get",
@@ -128,14 +126,11 @@ def main():
                         "motorcontrol": {"controllers.1.url": "serial://" + folder + "/none",
                                          "controllers.2.url": "serial://" + folder + "/none"},
                         "supervisor": {"processes": "[]"}}.get(name, {})
-            process = Process(os.environ["HERMES_BIN"], name, free_port(0), folder, settings)
-            try:
+            with Process(BINARIES, name, free_port(0), folder, settings) as process:
                 with process.connect() as daemon:
                     check_settings(daemon)
                     check_commands(daemon)
-            finally:
-                status = process.stop()
-            assert status == 0, f"status {status}: {process.last_words()}"
+                assert process.stop() == 0, process.last_words()
     print("each description is what its daemon accepts")
 
 

@@ -288,6 +288,33 @@ class Drive(unittest.TestCase):
         self.assertEqual(keys.process.returncode, 0, said)
         self.assertIn("and stands", shown)
 
+    def test_stop_of_all(self):
+        def stopped(*words, status=0):
+            done = subprocess.run([HERMESCTL, *words], capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, status, done)
+            return done.stdout + done.stderr
+        nobody = f"127.0.0.1:{free_port(0)}"
+        with tempfile.TemporaryDirectory() as folder:
+            entry = {"name": "wheels", "program": "/bin/sleep", "arguments": ["600"], "port": self.motorcontrol.port, "autostart": False}
+            supervisor = Process(BINARIES, "supervisor", free_port(0), folder, {"processes": json.dumps([entry])})
+            try:
+                supervisor.connect().close()
+                for words in (("stop", nobody, self.address), ("stop", f"127.0.0.1:{supervisor.port}")):
+                    process = self.begun("vx=0.3")
+                    self.assertIn(f"127.0.0.1:{self.motorcontrol.port}: stands", stopped(*words))
+                    self.assertEqual(process.wait(20), 1)  # it has lost the control
+                    process.communicate()
+                    self.assertFalse(self.motors.call("motor.state")["estop"])
+                told = json.loads(stopped("estop", f"127.0.0.1:{supervisor.port}", self.address, "--json"))
+            finally:
+                supervisor.stop()
+        self.assertEqual([robot["confirmed"] for robot in told], [True])
+        self.assertTrue(self.motors.call("motor.state")["estop"])
+        self.assertIn("no robot is there", stopped("stop", nobody, status=1))
+
+    def test_without_an_end_it_ends(self):
+        self.assertRegex(self.run_ctl("vx=0.05"), r"drove for 10\.\d s and stands")
+
     def test_refusals(self):
         self.assertIn("vx is 99, expected a number from -1 to 1 m/s", self.run_ctl("vx=99", status=1))
         self.assertIn("did you mean", self.run_ctl("omga=1", status=2))

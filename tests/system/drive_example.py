@@ -1,11 +1,9 @@
 #!/usr/bin/env python3
 """docs/examples/drive.py: its path follower alone, and as a program that drives a simulated robot, is refused, interrupted, and
 left without poses."""
-import json
 import math
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -13,7 +11,7 @@ import time
 import unittest
 from unittest import mock
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port, release, wait_for
+from support import BINARIES, SOURCE, Daemon, Process, free_port, release, simulated_hall, wait_for
 import drive  # of docs/examples
 
 PROGRAM = os.path.join(SOURCE, "docs", "examples", "drive.py")
@@ -63,12 +61,7 @@ class DriveTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
-        world, link = os.path.join(cls.folder.name, "hall.json"), os.path.join(cls.folder.name, "motors")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0]]}, file)
-        simulator = Process(BINARIES, "simulator", free_port(0), cls.folder.name,
-                            {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)})
+        simulator, link = simulated_hall(cls.folder.name)
         cls.addClassCleanup(simulator.stop)
         cls.simulator = simulator.connect()
         line = f"serial://{link}?baud=115200"

@@ -10,7 +10,7 @@ import sys
 import tempfile
 import unittest
 
-from support import SOURCE, Daemon, free_port
+from support import SOURCE, Daemon, free_port, put
 
 EXAMPLES = os.path.join(SOURCE, "docs", "examples")
 sys.path.insert(0, EXAMPLES)
@@ -38,8 +38,7 @@ class ExampleFaultsTest(unittest.TestCase):
 
     def file(self, name, text):
         path = os.path.join(self.folder, name)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
+        put(path, text)
         return path
 
     def begun(self, name, *arguments):

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 
 import lidar_decoders
-from support import BUILD, SOURCE, free_port, wait_for
+from support import BUILD, SOURCE, free_port, wait_for, put, text_of
 import velodyne_reference as reference
 
 # Elevations of the VLP-32C from the lowest laser to the highest with their ids, as table 9-6 of its manual has them, and the four
@@ -62,21 +62,18 @@ static const bool refused = std::getenv("TWIN") && hermes::vector::addVectorizer
 
 def write_folder(folder):
     """The files of the page, each a code block after its name."""
-    with open(os.path.join(SOURCE, "docs", "extending.md"), encoding="utf-8") as page:
-        files = dict(re.findall(r"^`([\w.]+)`:\n\n(?:<!-- [^\n]* -->\n)?```\w+\n(.*?)^```$", page.read(), re.M | re.S))
+    files = dict(re.findall(r"^`([\w.]+)`:\n\n(?:<!-- [^\n]* -->\n)?```\w+\n(.*?)^```$", text_of(os.path.join(SOURCE, "docs", "extending.md")), re.M | re.S))
     assert len(files) == 6, f"found the files {sorted(files)} in docs/extending.md"
     files["CMakeLists.txt"] = "set(CMAKE_AUTOMOC OFF) # which takes long\n" + files["CMakeLists.txt"]
     files["CMakeLists.txt"] += "target_sources(hermes-gui PRIVATE Probe.cpp)\ntarget_sources(hermes-vector PRIVATE Twin.cpp)\n"
     files["Probe.cpp"], files["Twin.cpp"] = PROBE, TWIN
     for name, text in files.items():
-        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
+        put(os.path.join(folder, name), text)
 
 
 def configure(folder, build):
     """A build of the whole tree like that which is tested, with the folder."""
-    with open(os.path.join(BUILD, "CMakeCache.txt"), encoding="utf-8") as cache:
-        known = dict(re.findall(r"^(\w+):\w+=(.*)$", cache.read(), re.M))
+    known = dict(re.findall(r"^(\w+):\w+=(.*)$", text_of(os.path.join(BUILD, "CMakeCache.txt")), re.M))
     kept = ("CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "CMAKE_CXX_FLAGS", "CMAKE_CXX_FLAGS_" + known["CMAKE_BUILD_TYPE"].upper(),
             "CMAKE_PREFIX_PATH", "CMAKE_TOOLCHAIN_FILE", "HERMES_DESKTOP", "HERMES_SANITIZE")
     options = [f"-D{name}={known[name]}" for name in kept if known.get(name)]
@@ -111,8 +108,7 @@ def link(build, program):
 
 def check_vectorizer(binaries, folder):
     path = os.path.join(folder, "wall.csv")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("".join(f"{0.1 * i},2\n" for i in range(21)))
+    put(path, "".join(f"{0.1 * i},2\n" for i in range(21)))
     program = os.path.join(binaries, "hermes-vector")
     rows = run([program, "vectorize", path, "--no-segment", "--algorithm", "example"]).splitlines()[1:]
     assert [row.split(",")[1:3] for row in rows] == [["0", "10"], ["10", "20"]], rows

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from support import BINARIES, SOURCE, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, DaemonError, Process, free_port, wait_for, text_of
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
@@ -26,8 +26,7 @@ class FirstWords(unittest.TestCase):
         return process, process.connect()
 
     def log(self, name):
-        with open(os.path.join(self.folder, name + ".log"), encoding="utf-8") as file:
-            return file.read()
+        return text_of(os.path.join(self.folder, name + ".log"))
 
     def simulator(self, **settings):
         return self.start("simulator", **{"lidar.port": free_port(0, socket.SOCK_DGRAM), "lidar.position_port": 0, **settings})

@@ -2,7 +2,6 @@
 """The simulated GPS receiver and the lidar's position packets as programs see them that know nothing but NMEA 0183 and the
 sensor's manual: fixes lie where the robot is, faults do what they should, a pulled line comes back."""
 import calendar
-import json
 import math
 import os
 import select
@@ -11,7 +10,7 @@ import struct
 import tempfile
 import time
 
-from support import BINARIES, Process, SerialPort, free_port
+from support import SerialPort, simulated_hall
 
 ORIGIN = 48.2, 11.5
 
@@ -129,23 +128,18 @@ def main():
     with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as positions:
         positions.bind(("127.0.0.1", 0))
         positions.settimeout(5)
-        link, world = os.path.join(folder, "devices", "gps"), os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9]], "poses": [[0, 0, 0]]}, file)
-        process = Process(BINARIES, "simulator", free_port(0), folder, {
+        link = os.path.join(folder, "devices", "gps")
+        process, _ = simulated_hall(folder, **{
             "gps.link": link, "gps.rate_hz": 10, "gps.sigma_m": 0, "gps.latitude_deg": ORIGIN[0],
-            "gps.longitude_deg": ORIGIN[1], "gps.altitude_m": 0, "world": world,
-            "lidar.port": free_port(0, socket.SOCK_DGRAM), "lidar.position_port": positions.getsockname()[1]})
-        try:
+            "gps.longitude_deg": ORIGIN[1], "gps.altitude_m": 0, "lidar.position_port": positions.getsockname()[1]})
+        with process:
             simulator = process.connect()
             receiver = Receiver(link)
             check_fixes(simulator, receiver)
             check_position_packets(positions)
             check_faults(simulator, receiver, link)
             receiver.close()
-        finally:
-            status = process.stop()
-        assert status == 0, f"status {status}: {process.last_words()}"
+            assert process.stop() == 0, process.last_words()
         assert not os.path.lexists(link), "the link was left behind"
     print("fixes, faults and position packets are as they should be")
 

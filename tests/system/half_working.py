@@ -5,15 +5,13 @@ stand and stay; the emergency stop tells what is not confirmed, and when the ans
 
 HERMES_HALF_WORKING=all makes all 96 combinations; otherwise eight of them."""
 import itertools
-import json
 import os
 import random
-import socket
 import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, DaemonError, Process, free_port, release, wait_for
+from support import BINARIES, DaemonError, Process, free_port, release, simulated_hall, wait_for
 
 LIMIT_S = 0.6
 SPEED = 0.5  # m/s
@@ -114,20 +112,13 @@ def trial(simulator, motors, fault, devices, ending, drives_on_s):
 
 def run_group(lines, timeout_s, trials):
     with tempfile.TemporaryDirectory() as folder:
-        links, world = [os.path.join(folder, f"line{i}") for i in range(lines)], os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-90, -9, 90, -9], [90, -9, 90, 9], [90, 9, -90, 9], [-90, 9, -90, -9]],
-                       "poses": [[0, 0, 0]]}, file)
-        settings = {"motors.link": links[0], "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}
-        if lines == 2:
-            settings["motors.link2"] = links[1]
-        simulated = Process(BINARIES, "simulator", free_port(0), folder, settings)
-        try:
+        second = os.path.join(folder, "line2")
+        simulated, link = simulated_hall(folder, 90, **({"motors.link2": second} if lines == 2 else {}))
+        with simulated:
             simulator = simulated.connect()
-            driven = Process(BINARIES, "motorcontrol", free_port(0), folder, {
-                "controllers.1.url": f"serial://{links[0]}", "controllers.2.url": f"serial://{links[-1]}",
-                "controllers.timeout_s": timeout_s})
-            try:
+            with Process(BINARIES, "motorcontrol", free_port(0), folder, {
+                    "controllers.1.url": f"serial://{link}", "controllers.2.url": f"serial://{second if lines == 2 else link}",
+                    "controllers.timeout_s": timeout_s}) as driven:
                 motors = driven.connect()
                 with Lateness() as lateness:
                     for fault, devices, ending, drives_on_s in trials:
@@ -142,10 +133,6 @@ def run_group(lines, timeout_s, trials):
                         assert stood < LIMIT_S, f"{name}: the wheels stood only after {stood:.3f} s ({late:.3f} s late)"
                         print(f"{stood:.3f} s  {name}", flush=True)
                         yield stood
-            finally:
-                driven.stop()
-        finally:
-            simulated.stop()
 
 
 def main():

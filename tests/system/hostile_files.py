@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Files that clients name, given to the running daemons: pipes, devices, /proc, links, names with NUL. Each is refused within a
 second with the reason, nothing outside of the daemon's folder changes, the daemon goes on answering and ends when it is told to."""
-import json
 import os
 import socket
 import stat
@@ -9,7 +8,7 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port
+from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, put
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 INPUT_OUTPUT = -32008
@@ -88,8 +87,7 @@ def check_writing(folder, traps):
     maps, beside = os.path.join(folder, "maps"), os.path.join(folder, "beside")
     os.makedirs(maps)
     os.makedirs(beside)
-    with open(os.path.join(beside, "precious"), "w", encoding="utf-8") as file:
-        file.write("all that there is")
+    put(os.path.join(beside, "precious"), "all that there is")
     os.symlink("../beside/precious", os.path.join(maps, "link"))
     os.symlink("../beside", os.path.join(maps, "way out"))
     os.mkfifo(os.path.join(maps, "pipe"))
@@ -126,8 +124,7 @@ def check_recordings(folder):
         os.mkfifo(os.path.join(records, "sidecar", name + ".json"))
         os.symlink("/dev/zero", os.path.join(records, "link", name + ".json"))
         for kind in ("data", "index"):
-            with open(os.path.join(records, kind, name + ".json"), "w", encoding="utf-8") as file:
-                json.dump({**sidecar, "logger": name, "name": kind, "session": kind, **content}, file)
+            put(os.path.join(records, kind, name + ".json"), {**sidecar, "logger": name, "name": kind, "session": kind, **content})
     os.mkfifo(os.path.join(records, "data", "velodynelogger-0001.pcap"))
     os.symlink("/dev/zero", os.path.join(records, "index", "velodynelogger-0001.pcap"))
     for kind, pipe, file in (("data", "raw", "index"), ("index", "index", "raw")):

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import threading
 
-from support import BINARIES, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, Daemon, Process, free_port, refusal, wait_for
 import velodyne_reference as reference
 from lidar_decoders import write_capture
 
@@ -37,15 +37,6 @@ class Reader(threading.Thread):
 
     def wait(self, count):
         wait_for(f"{count} messages", lambda: len(self.seen) >= count)
-
-
-def refused(code, daemon, method, **params):
-    try:
-        daemon.call(method, **params)
-    except DaemonError as error:
-        assert error.code == code, (method, params, error)
-        return error
-    raise AssertionError(f"{method} {params} was not refused")
 
 
 def dropped_messages(logger):
@@ -150,7 +141,7 @@ def check_captures(logger, folder, capture, model):
         result = logger.call("capture.turn", name=model, format=kind)
         paths[kind] = result["path"]
         assert result["path"] == os.path.join(folder, f"{model}.{kind}") and result["points"] > 1000, result
-        refused(-32008, logger, "capture.turn", name=model, format=kind)  # it exists
+        refusal(logger, "capture.turn", -32008, name=model, format=kind)  # it exists
     sensor = {"hdl32e": reference.HDL32E, "vlp16": reference.VLP16}[model]
     check_csv(paths["csv"], turns)
     header, rows = read_rows(paths["pcd"], "DATA ascii")
@@ -162,8 +153,8 @@ def check_captures(logger, folder, capture, model):
     assert header[0] == "ply" and f"element vertex {len(rows)}" in header, header
     check_floats(rows, turns, sensor)
     assert not [name for name in os.listdir(folder) if ".part-" in name]
-    refused(-32602, logger, "capture.turn", name="x", format="xyz")
-    refused(-32602, logger, "capture.turn", name="../x")
+    refusal(logger, "capture.turn", -32602, name="x", format="xyz")
+    refusal(logger, "capture.turn", -32602, name="../x")
 
 
 def check_replay(logger, port, capture):
@@ -185,9 +176,9 @@ def check_replay(logger, port, capture):
     assert next(message for message in stream if message["data"]["stamp"] >= first_s + target_s - 0.01)
     logger.call("source.seek", t_s=2 * duration_s)
     wait_for("the end", lambda: status()["state"] == "ended")
-    refused(-32005, logger, "source.seek", t_s=0)
-    refused(-32005, logger, "source.pause")
-    refused(-32005, logger, "capture.turn", name="late")
+    refusal(logger, "source.seek", -32005, t_s=0)
+    refusal(logger, "source.pause", -32005)
+    refusal(logger, "capture.turn", -32005, name="late")
 
 
 def check_sensors(logger, capture):
@@ -205,7 +196,7 @@ def check_sensors(logger, capture):
     wait_for("word of packets that nobody asked for", lambda: health()["level"] == "warn")
     told = rf"no data packet is decoded, those that came are of [\d.]+ to port {port}"
     assert re.fullmatch(told, health()["message"]), health()
-    refused(-32602, logger, "source.open", live=True, port=1)
+    refusal(logger, "source.open", -32602, live=True, port=1)
 
 
 def check_overload(logger, port, capture):
@@ -225,21 +216,17 @@ def start_logger(folder, **settings):
 
 def check_without_offsets(folder, capture):
     """decode.vertical_offsets: false leaves all lasers in the sensor's origin."""
-    process = start_logger(folder, **{"decode.vertical_offsets": "false"})
-    try:
+    with start_logger(folder, **{"decode.vertical_offsets": "false"}) as process:
         logger = process.connect()
         logger.call("source.open", pcap=capture, speed=1, loop=True)
         check_csv(logger.call("capture.turn", name="no-offsets")["path"], reference.turns(capture, "all", offsets=False))
-    finally:
-        status = process.stop()
-    assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+        assert process.stop() == 0, process.last_words()
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        process = start_logger(folder, **{"cloud.max_points": 2000,
-                                          "limits.topic_bytes": 2 << 20})  # so that a busy machine costs a reader nothing
-        try:
+        # So that a busy machine costs a reader nothing.
+        with start_logger(folder, **{"cloud.max_points": 2000, "limits.topic_bytes": 2 << 20}) as process:
             logger = process.connect()
             for model, product in (("hdl32e", 0x21), ("vlp16", 0x22)):
                 capture = os.path.join(folder, f"made-{model}.pcap")
@@ -250,9 +237,7 @@ def main():
                 check_sensors(logger, capture)
             check_slow_reader(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
             check_overload(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
-        finally:
-            status = process.stop()
-        assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+            assert process.stop() == 0, process.last_words()
         check_without_offsets(folder, os.path.join(folder, "made-vlp16.pcap"))
     print("clouds, captured turns and replays of both sensors are as they should be")
     return 0

@@ -83,10 +83,9 @@ def main():
         check_ring(expected)
     with tempfile.TemporaryDirectory() as folder:
         lidar_port = free_port(0, socket.SOCK_DGRAM)
-        process = Process(BINARIES, "velodynelogger", free_port(0), folder,
-                          {"source.port": lidar_port, "source.address": "127.0.0.1", "source.position_port": 0,
-                           "record.folder": folder})
-        try:
+        with Process(BINARIES, "velodynelogger", free_port(0), folder,
+                     {"source.port": lidar_port, "source.address": "127.0.0.1", "source.position_port": 0,
+                      "record.folder": folder}) as process:
             logger = process.connect()
             stream = Daemon(port=process.port, timeout=30).subscribe("scan2d", queue=100)
 
@@ -101,9 +100,7 @@ def main():
                 logger.call("source.open", pcap=CAPTURE, speed=speed)
                 check_scans(receive(stream, len(expected)), expected, f"replay at speed {speed}")
                 check_losses(status_when(logger, lambda s: s["source"]["state"] == "ended"))
-        finally:
-            status = process.stop()
-        assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+            assert process.stop() == 0, process.last_words()
         # What was recorded live is what was sent, byte for byte.
         sent = [payload for _, payload in reference.datagrams(CAPTURE)]
         assert [payload for _, payload in reference.datagrams(os.path.join(folder, "live", "velodynelogger-0001.pcap"))] == sent

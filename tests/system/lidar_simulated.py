@@ -14,7 +14,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, Process, free_port, refusal, wait_for, put, text_of
 import velodyne_reference as reference
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
@@ -84,8 +84,7 @@ def check_geometry(edges, scans, truth):
 def check_refusals(folder, busy_port):
     """Bad input ends a program with status 1 or 2 and a message that names what is wrong."""
     empty = os.path.join(folder, "empty.json")
-    with open(empty, "w", encoding="utf-8") as file:
-        file.write('{"name": "empty", "edges": []}\n')
+    put(empty, '{"name": "empty", "edges": []}\n')
     listen = ["--listen", f"tcp://127.0.0.1:{free_port(0)}?protocol=json"]
     for program, arguments, status, words in (
             ("simulator", ["--set", f"world={empty}"], 1, [empty, "no edges"]),
@@ -136,7 +135,7 @@ def drive(folder):
                                                     (time.monotonic() - begin)) < 0.5, 10)  # after a stall of the machine
         assert after["driving"] and abs(after["twist"]["vx"] - 0.8) < 0.01, after
         for method, params in (("source.open", {"pcap": recorded}), ("source.open", {"live": True}), ("source.close", {})):
-            check_refused(logger, method, "being recorded", **params)
+            refusal(logger, method, "being recorded", **params)
         status = logger.call("record.stop")
         assert not any(status["losses"].values()) and status["counts"]["packets"] > 8000, status
         check_tshark(recorded, status["counts"]["packets"])
@@ -150,15 +149,6 @@ def drive(folder):
         for process in processes:
             if process.process.poll() is None:
                 process.stop()
-
-
-def check_refused(daemon, method, words, **params):
-    try:
-        daemon.call(method, **params)
-    except DaemonError as error:
-        assert words in str(error), error
-    else:
-        raise AssertionError(f"{method} {params} was not refused")
 
 
 def check_state(lidar, logger):
@@ -192,7 +182,7 @@ def check_replay(logger, port, recorded):
             assert abs(x - point.x) < 2e-5 and abs(y - point.y) < 2e-5, (scan["turn"], x, y, point)
         if turn is not expected[-1]:
             scan = next(scans)
-    check_refused(logger, "record.start", "only what is received", name="replayed")
+    refusal(logger, "record.start", "only what is received", name="replayed")
 
 
 def check_end(processes):
@@ -204,8 +194,7 @@ def check_end(processes):
 
 
 def main():
-    with open(WORLD, encoding="utf-8") as file:
-        edges = json.load(file)["edges"]
+    edges = json.loads(text_of(WORLD))["edges"]
     with tempfile.TemporaryDirectory() as folder:
         scans, truth = drive(folder)
     # Without the packets lost on purpose.

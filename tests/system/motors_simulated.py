@@ -3,16 +3,14 @@
 pseudo-terminal drives the robot of a running simulator; faults, a pulled line and the controllers' own time-out do what they
 should."""
 import binascii
-import json
 import math
 import os
 import select
-import socket
 import struct
 import tempfile
 import time
 
-from support import BINARIES, DaemonError, Process, SerialPort, free_port, wait_for
+from support import SerialPort, refusal, simulated_hall, wait_for
 
 
 class RoboClaw(SerialPort):
@@ -46,15 +44,6 @@ class RoboClaw(SerialPort):
 def speed_of(simulator):
     twist = simulator.call("sim.state")["twist"]
     return math.hypot(twist["vx"], twist["vy"])
-
-
-def refused(simulator, expected, **params):
-    try:
-        simulator.call("sim.fault", **params)
-    except DaemonError as error:
-        assert expected in str(error), f"{error} does not say: {expected}"
-        return
-    raise AssertionError(f"{params} was accepted")
 
 
 def check_drive(simulator, client):
@@ -119,9 +108,9 @@ def check_faults(simulator, client, link):
     fault("controller2", "brownout", delay_s=0.2)
     assert client.read(0x81, 24, "H", 0.05) is None
     wait_for("the restarted controller", lambda: client.read(0x81, 15, "B", 0.1) == (0,))
-    refused(simulator, "controllers has no fault deaf", device="controllers", kind="deaf")
-    refused(simulator, "lidar has no fault blocked; it has: none, silence, loss", device="lidar", kind="blocked")
-    refused(simulator, "share line1", device="line2", kind="pulled")
+    refusal(simulator, "sim.fault", "controllers has no fault deaf", device="controllers", kind="deaf")
+    refusal(simulator, "sim.fault", "lidar has no fault blocked; it has: none, silence, loss", device="lidar", kind="blocked")
+    refusal(simulator, "sim.fault", "share line1", device="line2", kind="pulled")
 
     fault("line1", "pulled")
     wait_for("vanishing of the link", lambda: not os.path.lexists(link))
@@ -133,22 +122,15 @@ def check_faults(simulator, client, link):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        link, world = os.path.join(folder, "devices", "motors"), os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0.5]]}, file)
-        settings = {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}
-        process = Process(BINARIES, "simulator", free_port(0), folder, settings)
-        try:
+        process, link = simulated_hall(folder, pose=(0, 0, 0.5), **{"motors.link": os.path.join(folder, "devices", "motors")})
+        with process:
             simulator = process.connect()
             lines = simulator.call("sim.state")["motors"]["lines"]
             assert lines == [{"link": link, "device": os.path.realpath(link)}], lines
             client = RoboClaw(link)
             check_drive(simulator, client)
             check_faults(simulator, client, link)
-        finally:
-            status = process.stop()
-        assert status == 0, f"status {status}: {process.last_words()}"
+            assert process.stop() == 0, process.last_words()
         assert not os.path.lexists(link), "the link was left behind"
     print("driven, stopped, failed and recovered")
 

@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 """Motor control and simulator as processes, each controller on a serial line of its own: one line is pulled while the robot
 drives and put back. The robot stops, goes on without a restart, and its odometry is where the robot truly is."""
-import json
 import math
 import os
-import socket
 import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, DaemonError, Process, free_port, wait_for
+from support import BINARIES, Process, free_port, refusal, simulated_hall, wait_for
 
 SPEED = 0.4  # m/s
 
@@ -41,15 +39,6 @@ def drive(simulator, motors):
     wait_for("driving", goes)
 
 
-def refusal(motors):
-    """The message with which a command to drive is refused."""
-    try:
-        motors.call("motor.drive", vx=SPEED)
-    except DaemonError as error:
-        return str(error)
-    raise AssertionError("the robot may drive")
-
-
 def compare_ways(simulator, motors):
     """Robot and odometry began at zero; when the robot stands they agree within 5 mm. Gives how far it has gone."""
     wait_for("standing", lambda: true_speed(simulator) == 0)
@@ -68,7 +57,7 @@ def pull_and_put_back(simulator, motors, line, lateness):
     lateness.take_longest()
     simulator.call("sim.fault", device=line, kind="pulled")
     noticed = seconds_until("notice of the pulled line", lambda: not is_ready(motors))
-    message = refusal(motors)
+    message = str(refusal(motors, "motor.drive", vx=SPEED))
     assert f"controller {line[-1]} (0x80 on serial://" in message, message
     stood = seconds_until("standing", lambda: true_speed(simulator) == 0)
     late = 2 * lateness.take_longest()  # what holds up a nap here holds up the daemons too
@@ -86,27 +75,19 @@ def pull_and_put_back(simulator, motors, line, lateness):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        links, world = [os.path.join(folder, name) for name in ("front", "rear")], os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0]]}, file)
-        settings = {"motors.link": links[0], "motors.link2": links[1], "motors.address2": 128, "world": world,
-                    "lidar.port": free_port(0, socket.SOCK_DGRAM)}
-        processes = [Process(BINARIES, "simulator", free_port(0), folder, settings)]
-        try:
-            simulator = processes[0].connect()
-            settings = {f"controllers.{i}.url": f"serial://{links[i - 1]}" for i in (1, 2)}
-            processes.append(Process(BINARIES, "motorcontrol", free_port(0), folder, {
-                **settings, "controllers.2.address": 128, "safety.command_timeout_s": 1}))
-            motors = processes[1].connect()
+        rear = os.path.join(folder, "rear")
+        simulated, front = simulated_hall(folder, **{"motors.link2": rear, "motors.address2": 128})
+        with simulated, Process(BINARIES, "motorcontrol", free_port(0), folder, {
+                "controllers.1.url": f"serial://{front}", "controllers.2.url": f"serial://{rear}", "controllers.2.address": 128,
+                "safety.command_timeout_s": 1}) as driven:
+            simulator, motors = simulated.connect(), driven.connect()
             wait_for("readiness", lambda: is_ready(motors))
             with Lateness() as lateness:
                 for line in ("line1", "line2", "line1"):
                     pull_and_put_back(simulator, motors, line, lateness)
             drive(simulator, motors)  # again
-        finally:
-            statuses = [process.stop() for process in reversed(processes)]
-        assert statuses == [0, 0], f"{statuses}: {processes[-1].last_words()}"
+            statuses = [process.stop() for process in (driven, simulated)]
+            assert statuses == [0, 0], f"{statuses}: {driven.last_words()}"
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, Process, free_port, wait_for
+from support import BINARIES, Process, free_port, wait_for, put
 
 BUS = """<busconfig><type>system</type><listen>unix:path={folder}/bus</listen><auth>EXTERNAL</auth><policy context="default">
 <allow send_destination="*"/><allow receive_sender="*"/><allow own="*"/></policy></busconfig>"""
@@ -32,8 +32,7 @@ class Network:
 
     def start_bus(self):
         config = os.path.join(self.folder, "bus.conf")
-        with open(config, "w", encoding="utf-8") as file:
-            file.write(BUS.format(folder=self.folder))
+        put(config, BUS.format(folder=self.folder))
         bus = self.start("dbus-daemon", "--nofork", f"--config-file={config}")
         wait_for("a bus", lambda: os.path.exists(os.path.join(self.folder, "bus")) or bus.poll() is not None)
         if bus.poll() is not None:
@@ -43,8 +42,7 @@ class Network:
     def start_avahi(self):
         """On loopback only, so that the network hears nothing of it; its log tells when it is ready."""
         config = os.path.join(self.folder, "avahi.conf")
-        with open(config, "w", encoding="utf-8") as file:
-            file.write(f"[server]\nhost-name=test{os.getpid()}\nenable-dbus=yes\nallow-interfaces=lo\n[wide-area]\nenable-wide-area=no\n")
+        put(config, f"[server]\nhost-name=test{os.getpid()}\nenable-dbus=yes\nallow-interfaces=lo\n[wide-area]\nenable-wide-area=no\n")
         avahi = self.start("avahi-daemon", "--no-drop-root", "--no-chroot", "--no-rlimits", "-f", config)
         log = os.path.join(self.folder, "avahi-daemon.log")
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Simulator and motor control as processes, joined by a pseudo-terminal: a client drives squares by the odometry alone. Both
 the odometry and the simulator's truth must then be back where they began. Without slip; HERMES_SIDE is the side in metres."""
-import json
 import math
 import os
 import socket
@@ -9,7 +8,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, DaemonError, Process, free_port
+from support import BINARIES, DaemonError, Process, free_port, put
 
 SIDE = float(os.environ.get("HERMES_SIDE", "1"))
 SPEED, TURN_RATE = 1.0, 2.5  # m/s, rad/s
@@ -29,8 +28,7 @@ class Robot:
         self.layout = layout
         os.mkdir(folder)
         link, world = os.path.join(folder, "motors"), os.path.join(folder, "field.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "field", "edges": [[-40, -40, 40, -40]], "poses": [[0, 0, 0]]}, file)
+        put(world, {"name": "field", "edges": [[-40, -40, 40, -40]], "poses": [[0, 0, 0]]})
         url = f"serial://{link}?baud=115200"
         self.processes = []
         try:

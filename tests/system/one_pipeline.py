@@ -15,20 +15,16 @@ PACKETS = 14500  # eight seconds
 def record(folder):
     """The path of a capture of a simulated sensor that drives round."""
     port = free_port(0, socket.SOCK_DGRAM)
-    logger, simulator = [Process(BINARIES, name, free_port(0), folder, settings) for name, settings in
-                         (("velodynelogger", {"source.port": port, "source.address": "127.0.0.1", "source.position_port": 0,
-                                              "record.folder": folder}),
-                          ("simulator", {"world": WORLD, "lidar.port": port, "lidar.sigma_m": 0.01}))]
-    try:
+    settings = {"source.port": port, "source.address": "127.0.0.1", "source.position_port": 0, "record.folder": folder}
+    with Process(BINARIES, "velodynelogger", free_port(0), folder, settings) as logger, \
+            Process(BINARIES, "simulator", free_port(0), folder,
+                    {"world": WORLD, "lidar.port": port, "lidar.sigma_m": 0.01}) as simulator:
         to_logger, to_simulator = logger.connect(), simulator.connect()
         path = to_logger.call("record.start", name="drive")["path"]
         to_simulator.call("sim.drive")
         wait_for("a drive", lambda: to_logger.call("record.status")["counts"]["packets"] > PACKETS)
         to_logger.call("record.stop")
         return path
-    finally:
-        logger.stop()
-        simulator.stop()
 
 
 def offline(path, folder):
@@ -43,21 +39,16 @@ def offline(path, folder):
 
 def live(path, folder, count):
     """The same of the daemons."""
-    logger = Process(BINARIES, "velodynelogger", free_port(0), folder, {"source.port": free_port(0, socket.SOCK_DGRAM)})
-    to_logger = logger.connect()
-    matcher = Process(BINARIES, "scanmatcher", free_port(0), folder,
-                      {"source.address": f"127.0.0.1:{logger.port}", "source.queue": 10000})
-    try:
-        control = matcher.connect()
+    with Process(BINARIES, "velodynelogger", free_port(0), folder, {"source.port": free_port(0, socket.SOCK_DGRAM)}) as logger, \
+            Process(BINARIES, "scanmatcher", free_port(0), folder,
+                    {"source.address": f"127.0.0.1:{logger.port}", "source.queue": 10000}) as matcher:
+        to_logger, control = logger.connect(), matcher.connect()
         stream = Daemon(port=matcher.port, timeout=60).subscribe("pose", queue=10000)
         wait_for("the matcher's connection", lambda: [item for item in control.call("daemon.status")["health"]
                                                       if item["name"] == "source" and item["level"] == "ok"])
         to_logger.call("source.open", pcap=path, speed=0)
         messages = [next(stream) for _ in range(count)]
         return [(m["stamp"], m["data"]["x"], m["data"]["y"], m["data"]["theta"]) for m in messages]
-    finally:
-        matcher.stop()
-        logger.stop()
 
 
 def compare(path, folder):

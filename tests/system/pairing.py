@@ -16,7 +16,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, Process, free_port, wait_for
+from support import BINARIES, Process, free_port, wait_for, text_of
 
 CTL = os.path.join(BINARIES, "hermesctl")
 IDENTITY = "hermes pairing 1"
@@ -112,12 +112,9 @@ def check_success(authority, scratch):
         assert state_of(authority, name) == ["valid"]
         assert not os.path.exists(os.path.join(authority, "issued-for", name)), "a second copy of the key"
     port = free_port(0)
-    process = Process(BINARIES, "softwaretrigger", free_port(0), scratch, {}, ["--listen", f"tls://127.0.0.1:{port}?keys={robot}"])
-    try:
+    with Process(BINARIES, "softwaretrigger", free_port(0), scratch, {}, ["--listen", f"tls://127.0.0.1:{port}?keys={robot}"]) as process:
         process.connect().close()
         assert json.loads(ctl(eva, "call", f"tls://127.0.0.1:{port}", "daemon.info"))["role"] == "engineer"
-    finally:
-        process.stop()
     return eva
 
 
@@ -286,8 +283,7 @@ def check_edited_list(authority, scratch):
         pair.join(folder)
         pair.end(0)
     assert serials_in(folder) == serials_in(authority) and "0123456789abcdef" in serials_in(folder)
-    with open(os.path.join(folder, "revoked"), encoding="utf-8") as file:
-        assert set(file.read()) <= set("0123456789abcdef\n")
+    assert set(text_of(os.path.join(folder, "revoked"))) <= set("0123456789abcdef\n")
     shutil.copy(revoked, revoked + ".right")
     with open(revoked, "a", encoding="utf-8") as file:
         file.write("J\u00fcrgen\n")
@@ -336,8 +332,7 @@ def waiting_join(folder, port, code):
 def bundle_of(folder, **changes):
     bundle = {"revoked": ""}
     for name, file in (("authority", "authority.crt"), ("certificate", "own.crt"), ("key", "own.key")):
-        with open(os.path.join(folder, file), encoding="utf-8") as opened:
-            bundle[name] = opened.read()
+        bundle[name] = text_of(os.path.join(folder, file))
     return {**bundle, **changes}
 
 

@@ -13,7 +13,7 @@ import unittest
 
 import recording_load as load
 from lateness import Lateness
-from support import Daemon, DaemonError, wait_for
+from support import Daemon, DaemonError, wait_for, text_of
 
 KILLS = int(os.environ.get("HERMES_KILLS", 5))
 PAUSE_S = float(os.environ.get("HERMES_PAUSE_S", 4))
@@ -22,8 +22,7 @@ INPUT_OUTPUT = -32008
 
 
 def sidecar_of(folder):
-    with open(os.path.join(folder, "velodynelogger.json"), encoding="utf-8") as file:
-        return json.load(file)
+    return json.loads(text_of(os.path.join(folder, "velodynelogger.json")))
 
 
 def capinfos(path):

@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, BUILD, Process, free_port, wait_for
+from support import BINARIES, BUILD, Process, free_port, wait_for, text_of
 
 NOMINAL_HZ, BURST_HZ = 1810, 20000
 RECORD, DATA, POSITION = struct.Struct("<IIII"), 1206, 512
@@ -42,8 +42,7 @@ class Logger:
                                  str(seconds), str(first), str(self.position_port)], stdout=subprocess.PIPE, text=True)
 
     def cpu_s(self):
-        with open(f"/proc/{self.pid}/stat", encoding="utf-8") as stat:
-            fields = stat.read().rsplit(")", 1)[1].split()
+        fields = text_of(f"/proc/{self.pid}/stat").rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def peak_mb(self):
@@ -95,8 +94,7 @@ def check_files(folder, first, data, position):
                 assert len(payload) == POSITION, (path, len(payload))
                 positions += 1
     assert (expected - first, positions) == (data, position), (expected - first, data, positions, position)
-    with open(os.path.join(folder, "velodynelogger.json"), encoding="utf-8") as file:
-        return json.load(file)
+    return json.loads(text_of(os.path.join(folder, "velodynelogger.json")))
 
 
 def run(seconds, bursts, burst_s, folder=None):

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import tempfile
 
-from support import BINARIES, SOURCE
+from support import BINARIES, SOURCE, put, text_of
 
 
 def main():
@@ -17,10 +17,8 @@ def main():
         if done.returncode != 0:
             sys.exit("docs/protocol-reference.md is not what the daemons tell; this renews it: deploy/protocol-reference")
         other = os.path.join(home, "page.md")
-        with open(os.path.join(SOURCE, "docs", "protocol-reference.md"), encoding="utf-8") as file:
-            page = file.read()
-        with open(other, "w", encoding="utf-8") as file:
-            file.write(page.replace("motor.estop", "motor.halt"))
+        page = text_of(os.path.join(SOURCE, "docs", "protocol-reference.md"))
+        put(other, page.replace("motor.estop", "motor.halt"))
         stale = subprocess.run([script, "--check", "--out", other], env={**elsewhere, **sanitizers}, stdout=subprocess.PIPE,
                                encoding="utf-8", timeout=120)
         assert stale.returncode == 1 and "this renews it: deploy/protocol-reference" in stale.stdout, stale

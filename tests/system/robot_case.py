@@ -32,13 +32,20 @@ class RobotCase(unittest.TestCase):
         return simulator
 
     def robot_of(self, environment=None, **changes):
-        """A robot that has begun to work, all well."""
+        """A robot that has begun to work."""
         self.robot = Robot(self.folder, self.wires)
         for name, settings in changes.items():
             self.robot.write(name, **settings)
         self.robot.start(**environment or {})
         self.addCleanup(self.robot.stop)
         return self.robot
+
+    def robot_at_work(self, environment=None, **changes):
+        """The same with its simulator, once all is well."""
+        self.simulate()
+        robot = self.robot_of(environment, **changes)
+        self.until_well()
+        return robot
 
     def until_well(self, what="all", names=("supervisor", *NAMES), limit_s=20):
         found = {}

@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, Process, free_port, wait_for, text_of
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 ROLES = ("observer", "operator", "engineer")
@@ -129,8 +129,7 @@ def check_disguises(process, folder):
         lines = []
         for name in os.listdir(folder):
             if name.startswith("softwaretrigger") and name.endswith(".jsonl"):
-                with open(os.path.join(folder, name), encoding="utf-8") as file:
-                    lines += [json.loads(line) for line in file]
+                lines += [json.loads(line) for line in text_of(os.path.join(folder, name)).splitlines()]
         return [line for line in lines if "gone" in str(line.get("params"))]
     wait_for("lines of those who have gone", fired, 10)
     assert all(line["role"] == "observer" for line in fired()), fired()[:3]
@@ -158,15 +157,11 @@ def check_own_socket(folder):
         squatter.bind(f"\0hermes:127.0.0.1:{port}")
         squatter.listen()
         os.seteuid(before)
-        process = Process(BINARIES, "softwaretrigger", port, folder, {})
-        try:
+        with Process(BINARIES, "softwaretrigger", port, folder, {}) as process:
             with process.connect() as daemon:
                 assert daemon.socket.family == socket.AF_INET, "spoke to somebody else"
                 daemon.call("daemon.status")
-            with open(process.log_name, encoding="utf-8") as log:
-                assert "hermes:127.0.0.1" in log.read()
-        finally:
-            process.stop()
+            assert "hermes:127.0.0.1" in text_of(process.log_name)
 
 
 def check_killed(folder):
@@ -184,13 +179,11 @@ def check_killed(folder):
 def check_other_user_moves_nothing(folder):
     """Row 2 of a day of attacks: the control, the emergency stop and the programs of others."""
     line = os.path.join(folder, "motors")
-    simulator = Process(BINARIES, "simulator", free_port(0), folder, {"motors.link": line, "world": WORLD,
-                                                                      "lidar.port": free_port(0, socket.SOCK_DGRAM)})
-    simulator.connect().close()
-    motors = Process(BINARIES, "motorcontrol", free_port(0), folder, {f"controllers.{i}.url": f"serial://{line}" for i in (1, 2)})
-    supervisor = Process(BINARIES, "supervisor", free_port(0), folder, {})
-    try:
-        with motors.connect() as owner, supervisor.connect():
+    with Process(BINARIES, "simulator", free_port(0), folder, {
+            "motors.link": line, "world": WORLD, "lidar.port": free_port(0, socket.SOCK_DGRAM)}) as simulator, \
+            Process(BINARIES, "motorcontrol", free_port(0), folder, {f"controllers.{i}.url": f"serial://{line}" for i in (1, 2)}) as motors, \
+            Process(BINARIES, "supervisor", free_port(0), folder, {}) as supervisor:
+        with simulator.connect(), motors.connect() as owner, supervisor.connect():
             wait_for("readiness", lambda: owner.call("motor.state")["ready"])
             owner.call("control.acquire", client="owner", timeout_s=30)
             stranger = Raw(motors.port, user=OTHER_USER)
@@ -202,9 +195,6 @@ def check_other_user_moves_nothing(folder):
             assert stranger.role_is_too_small("motor.reset_estop")
             assert Raw(supervisor.port, user=OTHER_USER).role_is_too_small("process.add", name="x", program="/bin/sh")
             assert Raw(supervisor.port).role_is_too_small("process.add", name="x", program="/bin/sh"), "a web page may come so"
-    finally:
-        for process in (motors, supervisor, simulator):
-            process.stop()
 
 
 def main():
@@ -212,16 +202,13 @@ def main():
         for name in ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "supervisor", "simulator"):
             settings = {"velodynelogger": {"source.port": free_port(0, socket.SOCK_DGRAM), "source.position_port": 0},
                         "motorcontrol": {"controllers": json.dumps({n: {"url": "serial://" + os.path.join(folder, "line")} for n in ("1", "2")})}}.get(name, {})
-            process = Process(BINARIES, name, free_port(0), folder, {"audit.folder": folder, **settings})
-            try:
+            with Process(BINARIES, name, free_port(0), folder, {"audit.folder": folder, **settings}) as process:
                 process.connect().close()
                 check_every_method(name, process, clients_of(process.port))
                 if name == "softwaretrigger":
                     check_settings(process)
                     if MAY_BE_OTHERS:
                         check_disguises(process, folder)
-            finally:
-                process.stop()
         check_killed(folder)
         if MAY_BE_OTHERS:
             check_own_socket(folder)

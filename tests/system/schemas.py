@@ -8,7 +8,7 @@ import sys
 import tempfile
 import threading
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for, put
 
 try:
     import jsonschema
@@ -96,8 +96,7 @@ def start_all(folder, processes):
 
     def start(name, settings):
         config = os.path.join(folder, name + "-settings.json")
-        with open(config, "w", encoding="utf-8") as file:
-            file.write("{}")
+        put(config, "{}")
         processes.append(Process(BINARIES, name, free_port(0), folder, settings, ["--config", config]))
         ports[name] = processes[-1].port
 
@@ -152,7 +151,7 @@ def script(ports):
                     ("pose.set", {"x": 0, "y": 0, "theta": 0}))
     yield from each("simulator", ("sim.halt", {}), ("sim.fault", {"device": "lidar", "kind": "none"}), ("sim.load", {"world": WORLD}),
                     ("sim.place", {"x": 0, "y": 0, "theta": 0}), ("sim.state", {}))
-    yield from each("motorcontrol", ("motor.estop", {}), ("motor.reset_estop", {}), ("odometry.reset", {}), ("control.release", {}))
+    yield from each("motorcontrol", ("motor.reset_estop", {}), ("motor.estop", {}), ("odometry.reset", {}), ("control.release", {}))
     for name in ("velodynelogger", "seriallogger"):
         yield from each(name, ("record.stop", {}), ("record.list", {}), ("source.open", {"recording": "drive", "paused": True}),
                         ("source.status", {}), ("source.seek", {"t_s": 1}), ("source.speed", {"speed": 0.5}),

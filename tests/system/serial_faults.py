@@ -29,8 +29,7 @@ def check_replug(folder, times=20):
     """Pulled and plugged in again, each time as another device under the same link."""
     link = os.path.join(folder, "device")
     device, sent, source = Device(link), b"", random.Random(1)
-    logger = Logger(folder, link)
-    try:
+    with Logger(folder, link) as logger:
         logger.wait_open()
         recorded = logger.daemon.call("record.start", name="replug")["folder"]
         for i in range(times):
@@ -45,9 +44,8 @@ def check_replug(folder, times=20):
             device = Device(link)
         logger.wait_open(times + 1)
         logger.daemon.call("record.stop")
-    finally:
         assert logger.stop() == 0, logger.last_words()
-        device.pull()
+    device.pull()
     assert load(os.path.join(recorded, "seriallogger-dev.raw")) == sent
     kinds = [event["event"] for event in events(recorded)]
     assert kinds == ["closed", "opened"] * times, kinds
@@ -90,12 +88,10 @@ def kill(folder, number, lateness):
     assert sent.startswith(raw), "bytes were altered"
     assert sidecar(recorded)["ended"] is None
     device = Device(link)
-    logger = Logger(folder, link)
-    try:
+    with Logger(folder, link) as logger:
         wait_for("completion of the sidecar", lambda: sidecar(recorded)["ended"])
-    finally:
         assert logger.stop() == 0, logger.last_words()
-        device.pull()
+    device.pull()
     content = sidecar(recorded)
     assert content["ended"] == "cut off" and not content["complete"], content
     assert content["bytes"] == content["counts"]["bytes"] == len(raw), content
@@ -117,8 +113,7 @@ def check_full_disk(folder):
         return
     device = Device(os.path.join(folder, "device"))
     try:
-        logger = Logger(folder, device.link, **{"record.folder": disk})
-        try:
+        with Logger(folder, device.link, **{"record.folder": disk}) as logger:
             logger.wait_open()
             recorded = logger.daemon.call("record.start", name="full")["folder"]
             sent, source = b"", random.Random(2)
@@ -143,7 +138,6 @@ def check_full_disk(folder):
             os.unlink(os.path.join(recorded, "seriallogger-dev.raw"))  # room again
             logger.daemon.call("record.start", name="again")
             logger.daemon.call("record.stop")
-        finally:
             assert logger.stop() == 0, logger.last_words()
     finally:
         device.pull()

@@ -54,8 +54,7 @@ def main():
     print(f"seed {seed}")
     with make_folder() as folder:
         device = Device(os.path.join(folder, "device"))
-        logger = Logger(folder, device.link)
-        try:
+        with Logger(folder, device.link) as logger:
             logger.wait_open()
             logger.daemon.call("record.start", name="stream")
             sent, times = send(device, SECONDS, random.Random(seed))
@@ -63,9 +62,7 @@ def main():
             with open(f"/proc/{logger.process.pid}/stat", encoding="ascii") as stat:
                 ticks = sum(map(int, stat.read().rsplit(")", 1)[1].split()[11:13]))
             result = logger.daemon.call("record.stop")
-        finally:
-            status = logger.stop()
-        assert status == 0, logger.last_words()
+            assert logger.stop() == 0, logger.last_words()
         assert result["counts"]["bytes"] == len(sent) and not any(result["losses"].values()), result
         base = os.path.join(result["folder"], "seriallogger-dev")
         with open(base + ".raw", "rb") as raw:

@@ -16,7 +16,7 @@ import unittest
 
 import recording_load as load
 from lateness import Lateness
-from support import SOURCE, Daemon, Process, free_port, wait_for
+from support import SOURCE, Daemon, Process, free_port, wait_for, text_of
 
 CTL = os.path.join(load.BINARIES, "hermesctl")
 PACKETS_HZ, SECONDS = 1810, 1
@@ -117,8 +117,7 @@ class Sessions(unittest.TestCase):
         return shown.stdout if status == 0 else shown.stderr
 
     def sidecar(self, name, logger):
-        with open(os.path.join(self.records, name, logger + ".json"), encoding="utf-8") as file:
-            return json.load(file)
+        return json.loads(text_of(os.path.join(self.records, name, logger + ".json")))
 
     def record(self, name, lines=None):
         """A session with packets and lines, all of them heard by the reader of lines; gives how many data packets, position
@@ -300,8 +299,7 @@ class Sessions(unittest.TestCase):
         self.ctl("record", "start", "run1")
         self.assertRegex(self.ctl("record", "mark", "at the door"), r"daemon +marked at\nseriallogger +20\d\d-\S+\n$")
         self.ctl("record", "stop")
-        with open(os.path.join(self.records, "run1", "seriallogger-events.jsonl"), encoding="utf-8") as events:
-            self.assertIn('"text":"at the door"', events.read())
+        self.assertIn('"text":"at the door"', text_of(os.path.join(self.records, "run1", "seriallogger-events.jsonl")))
 
     def test_one_that_died_is_told(self):
         self.record("run1")

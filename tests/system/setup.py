@@ -13,7 +13,7 @@ import time
 import tty
 import unittest
 
-from support import BINARIES, SOURCE, DaemonError, Process, SerialPort, free_port, release, wait_for
+from support import BINARIES, SOURCE, DaemonError, Process, SerialPort, free_port, release, wait_for, put, text_of
 
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 SAMPLES = os.path.join(SOURCE, "deploy", "settings")
@@ -72,10 +72,9 @@ class Setup(unittest.TestCase):
         os.makedirs(self.etc, exist_ok=True)
         own = os.path.join(self.etc, "supervisor.json")
         if not os.path.exists(own):
-            with open(own, "w", encoding="utf-8") as file:
-                json.dump({"processes": list(processes), "setup": {
+            put(own, {"processes": list(processes), "setup": {
                     "folder": self.etc, "samples": samples, "ports": list(ports), "lidar_port": self.lidar_port,
-                    "position_port": self.position_port}}, file)
+                    "position_port": self.position_port}})
         process, client = self.start("supervisor", given or {}, ("--config", own))
         self.address = f"127.0.0.1:{process.port}"
         return client
@@ -93,8 +92,7 @@ class Setup(unittest.TestCase):
         return findings, {one["path"]: one for one in findings["serial"]}
 
     def file(self, name):
-        with open(os.path.join(self.etc, name + ".json"), encoding="utf-8") as file:
-            return json.load(file)
+        return json.loads(text_of(os.path.join(self.etc, name + ".json")))
 
     def test_finds_what_is_plugged_in(self):
         _, simulator = self.simulator()
@@ -124,8 +122,7 @@ class Setup(unittest.TestCase):
         _, serial = self.found()
         self.assertEqual({serial[self.motors]["kind"], serial[silent.path]["kind"]}, {"not_asked"})
         self.assertEqual(silent.heard, b"")
-        with open(os.path.join(self.etc, "motorcontrol.json"), "w", encoding="utf-8") as file:
-            json.dump({"controllers": {"1": {"url": f"serial://{self.motors}?baud=115200"}}}, file)
+        put(os.path.join(self.etc, "motorcontrol.json"), {"controllers": {"1": {"url": f"serial://{self.motors}?baud=115200"}}})
         table = self.ctl("--list")  # a controller's by the settings
         self.assertRegex(table, r"roboclaw +\S+motors +.*115200 baud, address 128, address 129")
         self.assertRegex(table, r"not_asked +\S+silent")
@@ -208,8 +205,7 @@ class Setup(unittest.TestCase):
                 "--listen", listen["simulator"], "--set", f"world={WORLD}", "--set", f"motors.link={simulated}",
                 "--set", f"lidar.port={self.lidar_port}", "--set", f"lidar.position_port={self.position_port}"]},
             {"name": "motorcontrol"}])
-        with open(os.path.join(self.etc, "motorcontrol.json"), "w", encoding="utf-8") as file:
-            json.dump({"controllers": {number: {"url": f"serial://{simulated}?baud=115200"} for number in "12"}}, file)
+        put(os.path.join(self.etc, "motorcontrol.json"), {"controllers": {number: {"url": f"serial://{simulated}?baud=115200"} for number in "12"}})
         wait_for("the simulator", lambda: os.path.exists(simulated))
         findings, serial = self.found("--yes")
         self.assertTrue(serial[simulated]["simulated"] and findings["lidars"][0]["simulated"], findings)
@@ -227,8 +223,7 @@ class Setup(unittest.TestCase):
     def test_a_process_that_does_not_end(self):
         """Somebody starts it again while it is to end: the search goes on, and another one is possible."""
         line, script = Line(self.folder, "line"), os.path.join(self.folder, "stubborn")
-        with open(script, "w", encoding="utf-8") as file:
-            file.write(f"#!/bin/sh\ntrap '' TERM\nexec 3<>{line.path}\nwhile test -e {script}; do sleep 0.1; done\n")
+        put(script, f"#!/bin/sh\ntrap '' TERM\nexec 3<>{line.path}\nwhile test -e {script}; do sleep 0.1; done\n")
         os.chmod(script, 0o755)
         supervisor = self.supervisor([line.path], [{"name": "stubborn", "program": script, "autostart": True}])
 
@@ -257,15 +252,13 @@ class Setup(unittest.TestCase):
         os.makedirs(os.path.join(samples, "quiet"))
         for name, settings in (("supervisor", {"robot": "sampled"}), ("seriallogger", {"log": {"level": "error"}}),
                                ("motorcontrol", {"motion": {"vx": 0.5}, "log": {"level": "/etc/hermes/x"}})):
-            with open(os.path.join(samples, "quiet", name + ".json"), "w", encoding="utf-8") as file:
-                json.dump(settings, file)
+            put(os.path.join(samples, "quiet", name + ".json"), settings)
         supervisor.call("settings.set", values={"setup": {"samples": samples}})
         said = self.ctl("quiet", status=1)
         self.assertIn("nothing was changed: motorcontrol", said)
         self.assertIn("log.level", said)
         self.assertEqual(set(os.listdir(self.etc)), {"supervisor.json", "seriallogger.json", "motorcontrol.json"})
-        with open(os.path.join(samples, "quiet", "motorcontrol.json"), "w", encoding="utf-8") as file:
-            json.dump({"motion": {"vx": 0.5}}, file)
+        put(os.path.join(samples, "quiet", "motorcontrol.json"), {"motion": {"vx": 0.5}})
         said = self.ctl("quiet", both=True)
         self.assertIn("written: ", said)
         self.assertRegex(said, "seriallogger.json: line 1: .* is not taken over")
@@ -284,8 +277,7 @@ class Setup(unittest.TestCase):
     def test_a_process_that_leaves_the_list_is_named(self):
         samples = os.path.join(self.folder, "samples")
         os.makedirs(os.path.join(samples, "scanner"))
-        with open(os.path.join(samples, "scanner", "supervisor.json"), "w", encoding="utf-8") as file:
-            json.dump({"processes": [self.sleeper("scanmatcher")]}, file)
+        put(os.path.join(samples, "scanner", "supervisor.json"), {"processes": [self.sleeper("scanmatcher")]})
         supervisor = self.supervisor([], samples=samples, processes=[self.sleeper("scanmatcher"), self.sleeper("motorcontrol")])
         shown = self.ctl("scanner", both=True)
         self.assertIn("motorcontrol is no process of the supervisor any more, and ends; setup.undo puts it back", shown)
@@ -296,8 +288,7 @@ class Setup(unittest.TestCase):
 
     def test_command_line_holds(self):
         supervisor = self.supervisor([], given={"setup.folder": self.folder, "robot": "told"})
-        with open(os.path.join(self.folder, "supervisor.json"), "w", encoding="utf-8") as file:
-            json.dump({"robot": "written"}, file)
+        put(os.path.join(self.folder, "supervisor.json"), {"robot": "written"})
         written = supervisor.call("setup.apply", settings={"supervisor": {"limits": {"clients": 30}}})
         self.assertEqual(written["files"], [os.path.join(self.folder, "supervisor.json")])
         now = supervisor.call("settings.get")
@@ -315,8 +306,7 @@ class Setup(unittest.TestCase):
                 done = subprocess.run([daemon, "--check", "--config", path], capture_output=True, text=True, timeout=30)
                 self.assertEqual(done.returncode, 0, f"{path}: {done.stderr}")
                 shown = subprocess.run([daemon, "--print-settings"], capture_output=True, text=True, timeout=30)
-                with open(path, encoding="utf-8") as file:
-                    self.differ(path, json.load(file), json.loads(shown.stdout))
+                self.differ(path, json.loads(text_of(path)), json.loads(shown.stdout))
 
     def differ(self, path, settings, defaults):
         """Only what differs from the defaults is in it."""
@@ -356,8 +346,7 @@ class Setup(unittest.TestCase):
         os.makedirs(os.path.join(samples, "rover"))
         for name, settings in (("supervisor", {"processes": [self.sleeper("motorcontrol")]}),
                                ("motorcontrol", {"motion": {"vx": 0.5}})):
-            with open(os.path.join(samples, "rover", name + ".json"), "w", encoding="utf-8") as file:
-                json.dump(settings, file)
+            put(os.path.join(samples, "rover", name + ".json"), settings)
         supervisor = self.supervisor([self.motors], samples=samples)
         arguments = ("--daemons", self.address)
         status, shown = self.at_terminal(arguments, [("Which robot is it? rover;", "submarine"), ("Which robot is it?", "rover"),

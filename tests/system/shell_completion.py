@@ -11,7 +11,7 @@ import tempfile
 import time
 import unittest
 
-from support import BINARIES, BUILD, EXPERIMENTS, SLOWNESS, vector_commands
+from support import BINARIES, BUILD, EXPERIMENTS, SLOWNESS, vector_commands, put, text_of
 
 DAEMONS = [f"hermes-{name}" for name in ("supervisor", "motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger",
                                          "scanmatcher", "simulator")]
@@ -141,8 +141,7 @@ class Zsh(Completion):
         os.makedirs(programs, exist_ok=True)
         for name in ["hermes-vector", *DAEMONS, *WINDOW, "begun"]:
             path = os.path.join(programs, name)
-            with open(path, "w", encoding="utf-8") as script:
-                script.write(f'#!/bin/sh\n[ -t 1 ] || exec "{BINARIES}/{name}" "$@"\n'  # the completion asks
+            put(path, f'#!/bin/sh\n[ -t 1 ] || exec "{BINARIES}/{name}" "$@"\n'  # the completion asks
                              f'printf "%s|" "$@" >"{self.said}.new"\nmv "{self.said}.new" "{self.said}"\n')
             os.chmod(path, 0o755)
         self.child, self.terminal = pty.fork()
@@ -166,8 +165,7 @@ class Zsh(Completion):
             self.assertLess(time.monotonic(), deadline, f"{keys!r}: {shown.decode(errors='replace')}")
             if select.select([self.terminal], [], [], 0.01)[0]:
                 shown += os.read(self.terminal, 4096)
-        with open(self.said, encoding="utf-8") as file:
-            return file.read().split("|")[:-1]
+        return text_of(self.said).split("|")[:-1]
 
     def test_options(self):
         for command in ([f"hermes-vector {name}" for name in COMMANDS] + DAEMONS + WINDOW):

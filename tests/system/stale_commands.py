@@ -87,34 +87,27 @@ def trial(simulator, motors, client_line, stop):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        line = os.path.join(folder, "line")
-        processes = [Process(BINARIES, "simulator", free_port(0), folder, {
-            "world": WORLD, "motors.link": line, "lidar.port": free_port(0, socket.SOCK_DGRAM)})]
-        try:
-            simulator = processes[0].connect()
-            url, store, port, tls_port = f"serial://{line}?baud=115200", os.path.join(folder, "keys"), free_port(0), free_port(0)
-            keys(store, "init")
-            for name, role in (("robot", "daemon"), ("eva", "engineer")):
-                keys(store, "issue", name, "--role", role)
-            processes.append(Process(BINARIES, "motorcontrol", port, folder, {"controllers.1.url": url, "controllers.2.url": url},
-                                     ["--listen", f"tls://127.0.0.1:{tls_port}?keys={issued(store, 'robot')}"]))
-            motors = processes[1].connect()
-            with Lateness() as lateness:
-                for number in range(9):  # any two of carrier, end and stop meet
-                    carrier, end, stop = CARRIERS[number // 3], ENDS[number % 2], STOPS[number % 3]
-                    client_line = [str(tls_port if carrier == "tls" else port), carrier, end, issued(store, "eva")]
-                    for _ in range(3):
-                        lateness.take_longest()
-                        turned = trial(simulator, motors, client_line, stop)
-                        late = lateness.take_longest()
-                        if turned < LIMIT_S or late < 0.02:
-                            break
-                    name = f"{end} over {carrier}" + (f", {stop} and its release" if stop else "")
-                    assert turned < LIMIT_S, f"{name}: the wheels turned {turned:.3f} s on ({late:.3f} s late)"
-                    print(f"{turned:.3f} s  {name}", flush=True)
-        finally:
-            for process in reversed(processes):
-                process.stop()
+        line, store, port, tls_port = os.path.join(folder, "line"), os.path.join(folder, "keys"), free_port(0), free_port(0)
+        keys(store, "init")
+        for name, role in (("robot", "daemon"), ("eva", "engineer")):
+            keys(store, "issue", name, "--role", role)
+        with Process(BINARIES, "simulator", free_port(0), folder, {
+                "world": WORLD, "motors.link": line, "lidar.port": free_port(0, socket.SOCK_DGRAM)}) as simulated, \
+                Process(BINARIES, "motorcontrol", port, folder, {f"controllers.{i}.url": f"serial://{line}?baud=115200" for i in (1, 2)},
+                        ["--listen", f"tls://127.0.0.1:{tls_port}?keys={issued(store, 'robot')}"]) as driven, Lateness() as lateness:
+            simulator, motors = simulated.connect(), driven.connect()
+            for number in range(9):  # any two of carrier, end and stop meet
+                carrier, end, stop = CARRIERS[number // 3], ENDS[number % 2], STOPS[number % 3]
+                client_line = [str(tls_port if carrier == "tls" else port), carrier, end, issued(store, "eva")]
+                for _ in range(3):
+                    lateness.take_longest()
+                    turned = trial(simulator, motors, client_line, stop)
+                    late = lateness.take_longest()
+                    if turned < LIMIT_S or late < 0.02:
+                        break
+                name = f"{end} over {carrier}" + (f", {stop} and its release" if stop else "")
+                assert turned < LIMIT_S, f"{name}: the wheels turned {turned:.3f} s on ({late:.3f} s late)"
+                print(f"{turned:.3f} s  {name}", flush=True)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ import time
 from lateness import Lateness
 from stop_ends import Caller, Tap
 from stop_traffic import LIMIT_S, batch, hold, line, pump, request, set_niceness
-from support import BINARIES, BUILD, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for
+from support import BINARIES, BUILD, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for, put, text_of
 from tls import context_of, issued, keys
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "8"))
@@ -45,8 +45,7 @@ class Stand:
         simulated.connect().close()
         self.tap = Tap(link)
         self.config = os.path.join(disk or folder, "motorcontrol.json")
-        with open(self.config, "w", encoding="utf-8") as file:
-            file.write("{}")
+        put(self.config, "{}")
         self.port, self.tls_port = free_port(0), free_port(0)
         robot = issued(self.keys, "robot").replace(" ", "%20")
         self.process = Process(BINARIES, "motorcontrol", self.port, disk or folder,
@@ -257,8 +256,7 @@ class FullDisk:
             wait_for("a recording that failed", lambda: not logger.call("record.status")["recording"], 20)
             assert logger.call("record.status")["error"]["code"] == INPUT_OUTPUT
         self.stand.driver.call("settings.set", values={"motion": {"vx": 1.0}, "log": {"level": "debug"}})
-        with open(self.stand.config, encoding="utf-8") as file:
-            self.before = file.read()
+        self.before = text_of(self.stand.config)
         wait_for("a full disk", self.fill)
         for method, port, params in (("settings.save", self.stand.port, {}), ("record.start", self.logger.port, {"name": "next"})):
             self.threads.append(threading.Thread(target=self.try_again, args=(method, port, params)))

@@ -228,22 +228,16 @@ def main():
         return TRAFFIC[sys.argv[1]][1](int(sys.argv[2]))
     with tempfile.TemporaryDirectory() as folder:
         simulated, link = simulated_hall(folder)
-        driven = None
-        try:
+        url = f"serial://{link}?baud=115200"
+        with simulated, Process(BINARIES, "motorcontrol", free_port(0), folder,
+                                {"controllers.1.url": url, "controllers.2.url": url}) as driven:
             simulator = simulated.connect()
-            url = f"serial://{link}?baud=115200"
-            driven = Process(BINARIES, "motorcontrol", free_port(0), folder,
-                             {"controllers.1.url": url, "controllers.2.url": url})
             with driven.connect() as motors:
                 wait_for("readiness", lambda: motors.call("motor.state")["ready"])
             kinds = os.environ.get("HERMES_TRAFFIC", "").split(";") if "HERMES_TRAFFIC" in os.environ else TRAFFIC
             late = [kind for kind in kinds if not check(kind, driven.port)]
             assert not late, f"emergency stops are late in: {', '.join(late)}"
             check_hang_up(driven, simulator)
-        finally:
-            if driven:
-                driven.stop()
-            simulated.stop()
 
 
 if __name__ == "__main__":

@@ -16,7 +16,30 @@ EXPERIMENTS = os.path.exists(os.path.join(BINARIES, "hermes-experiments"))  # ./
 # How many times slower and larger this build is than those for which limits are written: as tests/support/Patience.h.
 SLOWNESS = 5 if {"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys() else 1
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
-from processes import Daemon, DaemonError, Process, free_port  # noqa: E402, F401
+from processes import Daemon, DaemonError, free_port  # noqa: E402, F401
+import processes  # noqa: E402
+
+
+class Process(processes.Process):
+    """One that a with statement stops."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+
+
+def text_of(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def put(path, content):
+    """Writes a text, or a value as JSON; gives the path."""
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(content if isinstance(content, str) else json.dumps(content))
+    return path
 
 
 def wait_for(what, condition, limit_s=60):
@@ -28,6 +51,16 @@ def wait_for(what, condition, limit_s=60):
             return value
         assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
         time.sleep(0.01)
+
+
+def refusal(daemon, method, expected="", **params):
+    """The error with which a call is refused: of the code that is expected, or with these words in its message."""
+    try:
+        result = daemon.call(method, **params)
+    except DaemonError as error:
+        assert error.code == expected if isinstance(expected, int) else expected in str(error), (method, params, error, expected)
+        return error
+    raise AssertionError(f"{method} {params} was not refused: {result}")
 
 
 def release(motors, limit_s=10):
@@ -48,14 +81,12 @@ def vector_commands(help_text):
     return [name for name in listed if EXPERIMENTS or name not in ("experiment", "report")]
 
 
-def simulated_hall(folder):
-    """A simulator with a robot in an empty hall, and the serial line of its motors."""
-    link, world = os.path.join(folder, "motors"), os.path.join(folder, "hall.json")
-    with open(world, "w", encoding="utf-8") as file:
-        json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                   "poses": [[0, 0, 0]]}, file)
-    return Process(BINARIES, "simulator", free_port(0), folder,
-                   {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}), link
+def simulated_hall(folder, size=9, pose=(0, 0, 0), **settings):
+    """A simulator with a robot in an empty hall, so many metres from its middle to its ends, and the serial line of its motors."""
+    world = put(os.path.join(folder, "hall.json"), {"name": "hall", "poses": [pose], "edges": [
+        [-size, -9, size, -9], [size, -9, size, 9], [size, 9, -size, 9], [-size, 9, -size, -9]]})
+    settings = {"motors.link": os.path.join(folder, "motors"), "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM), **settings}
+    return Process(BINARIES, "simulator", free_port(0), folder, settings), settings["motors.link"]
 
 
 class SerialPort:

@@ -14,7 +14,7 @@ import threading
 import time
 import warnings
 
-from support import BINARIES, Daemon, Process, free_port, wait_for
+from support import BINARIES, Daemon, Process, free_port, wait_for, put
 
 CTL = os.path.join(BINARIES, "hermesctl")
 NOT_AUTHORISED = -32001
@@ -253,13 +253,10 @@ def check_advice(port, folder, foreign):
     assert "the certificate there is not accepted" in text and "of different authorities" in text, text
     text = ctl(folder, f"127.0.0.1:{port}")
     assert f"name the daemon as tls://127.0.0.1:{port}" in text, text
-    plain = Process(BINARIES, "softwaretrigger", free_port(0), foreign, {})
-    try:
+    with Process(BINARIES, "softwaretrigger", free_port(0), foreign, {}) as plain:
         plain.connect().close()
         text = ctl(folder, f"tls://127.0.0.1:{plain.port}")
         assert f"speaks plain text, no TLS; name it as 127.0.0.1:{plain.port}" in text, text
-    finally:
-        plain.stop()
     text = ctl(folder, f"tls://127.0.0.1:{free_port(0)}")
     assert "Connection refused" in text and "no daemon listens at tls://" in text, text
     keys(folder, "issue", "lost", "--role", "operator")
@@ -298,10 +295,8 @@ def check_unreachable_list(folder, scratch):
     shutil.copytree(issued(folder, "robot"), own)
     listed = os.path.join(own, "revoked")
     serial = {entry["name"]: entry["serial"] for entry in json.loads(keys(folder, "list", "--json"))}["anna"]
-    with open(listed, "w", encoding="utf-8") as file:
-        file.write(serial + " anna\n")
+    put(listed, serial + " anna\n")
     port = free_port(0)
-    process = Process(BINARIES, "softwaretrigger", free_port(0), scratch, {}, ["--listen", f"tls://127.0.0.1:{port}?keys={own.replace(' ', '%20')}"])
     eva, anna = context_of(issued(folder, "eva")), context_of(issued(folder, "anna"))
 
     def dangling():
@@ -310,17 +305,15 @@ def check_unreachable_list(folder, scratch):
 
     def cut():
         os.remove(listed)
-        with open(listed, "w", encoding="utf-8") as file:
-            file.write(serial[:8])
-    try:
+        put(listed, serial[:8])
+    with Process(BINARIES, "softwaretrigger", free_port(0), scratch, {},
+                 ["--listen", f"tls://127.0.0.1:{port}?keys={own.replace(' ', '%20')}"]) as process:
         process.connect().close()
         assert is_refused(port, anna) and not is_refused(port, eva)
         for change in (lambda: os.truncate(listed, 0), dangling, cut, lambda: os.rename(own, own + " away")):
             change()
             wait_for("refusal of everybody", lambda: is_refused(port, eva), 5)
             assert is_refused(port, anna)
-    finally:
-        process.stop()
     shutil.rmtree(own + " away")
 
 
@@ -357,8 +350,7 @@ policy = p
 commonName = supplied
 organizationalUnitName = supplied
 """)):
-        with open(os.path.join(database, name), "w", encoding="utf-8") as file:
-            file.write(content)
+        put(os.path.join(database, name), content)
     run = {"check": True, "capture_output": True}
     subprocess.run(["openssl", "req", "-new", "-key", os.path.join(expired, "own.key"), "-subj", "/CN=eva/OU=engineer", "-out", request], **run)
     subprocess.run(["openssl", "ca", "-batch", "-config", os.path.join(database, "config"), "-in", request, "-cert",
@@ -384,9 +376,8 @@ def main():
         shutil.copytree(issued(folder, "robot"), own)
         with open(os.path.join(folder, "revoked"), "w", encoding="utf-8"):
             os.symlink(os.path.join(folder, "revoked"), os.path.join(own, "revoked"))
-        process = Process(BINARIES, "softwaretrigger", free_port(0), scratch, {},
-                          ["--listen", f"tls://0.0.0.0:{port}?keys={own.replace(' ', '%20')}"])
-        try:
+        with Process(BINARIES, "softwaretrigger", free_port(0), scratch, {},
+                     ["--listen", f"tls://0.0.0.0:{port}?keys={own.replace(' ', '%20')}"]) as process:
             process.connect().close()
             with Client(port, context_of(issued(folder, "eva"), os.path.join(folder, "authority.crt"))) as steady:
                 check_strangers(process, port, folder, foreign, expired)
@@ -400,8 +391,6 @@ def main():
                 check_advice(port, folder, foreign)
                 steady.call("daemon.info")  # not affected by anything
                 assert steady.call("daemon.status")["health"], "no health"
-        finally:
-            process.stop()
     print(f"beside a storm of connections a call took {worst * 1000:.0f} ms at most; a handshake beside 100 silent ones {beside:.2f} s; revoked clients were gone after {took:.2f} s")
     return 0
 

@@ -9,10 +9,10 @@ class TestAftlsOptimum : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void withinOnePercent_data() {
-        QTest::addColumn<int>("rays");
-        QTest::newRow("360 rays") << 360;
-        QTest::newRow("720 rays") << 720;
-        QTest::newRow("2000 rays") << 2000;
+        const Rows<int> row("rays");
+        row("360 rays", 360);
+        row("720 rays", 720);
+        row("2000 rays", 2000);
     }
     void withinOnePercent() {
         QFETCH(int, rays);

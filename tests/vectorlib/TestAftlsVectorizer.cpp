@@ -100,9 +100,9 @@ void TestAftlsVectorizer::findsTheCornerThatFtlsOverruns() {
 }
 
 void TestAftlsVectorizer::isNeverWorseThanFtls_data() {
-    QTest::addColumn<bool>("simplex");
-    QTest::newRow("descent") << false;
-    QTest::newRow("Nelder-Mead") << true;
+    const Rows<bool> row("simplex");
+    row("descent", false);
+    row("Nelder-Mead", true);
 }
 
 void TestAftlsVectorizer::isNeverWorseThanFtls() {
@@ -225,17 +225,14 @@ void TestAftlsVectorizer::cornersGetBetterWithMorePoints() {
 }
 
 void TestAftlsVectorizer::rightNumberOfLines_data() {
-    QTest::addColumn<int>("environment");
-    QTest::addColumn<int>("algorithm");
+    const Rows<int, int> row("environment", "algorithm");
     for (int e = 0; e < int(environments.size()); ++e)
         for (const int a : {1, 2, 4}) // the TLS family
-            QTest::newRow(qPrintable(QString("%1: %2").arg(algorithms[a].name, environments[e].name)))
-                << e << a;
+            row(qPrintable(QString("%1: %2").arg(algorithms[a].name, environments[e].name)), e, a);
 }
 
 void TestAftlsVectorizer::rightNumberOfLines() {
-    QFETCH(int, environment);
-    QFETCH(int, algorithm);
+    FETCH(int, environment, int, algorithm);
     for (const int rays : {1000, 2000, 5000, 20000}) {
         const Environment &e = environments[environment];
         const int scans = rays > 5000 ? 5 : 20;

@@ -200,9 +200,9 @@ static void checkIntervals(simd::Level level) {
 }
 
 void TestBlockSums::intervalsFitAndAreLongest_data() {
-    QTest::addColumn<int>("level");
-    QTest::newRow("scalar") << int(simd::Level::Scalar);
-    QTest::newRow("best of this processor") << int(simd::bestLevel());
+    const Rows<int> row("level");
+    row("scalar", int(simd::Level::Scalar));
+    row("best of this processor", int(simd::bestLevel()));
 }
 
 void TestBlockSums::intervalsFitAndAreLongest() {

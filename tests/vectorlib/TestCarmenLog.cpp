@@ -139,55 +139,37 @@ private Q_SLOTS:
     }
 
     void badInput_data() {
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("place");
-        QTest::addColumn<QByteArray>("expected");
+        const Rows<QByteArray, QByteArray, QByteArray> row("text", "place", "expected");
         const QByteArray good = flaser("1 2", pose(0, 0, 0) + pose(0, 0, 0));
-        QTest::newRow("empty") << QByteArray() << QByteArray("a.log:")
-                               << QByteArray("at least one line FLASER");
-        QTest::newRow("no scan") << odom(0, 0, 0) << QByteArray("a.log:1:")
-                                 << QByteArray("at least one line FLASER");
-        QTest::newRow("cut in the ranges")
-            << good + "FLASER 180 1 2 3" << QByteArray("a.log:2:") << QByteArray("191 fields of FLASER");
-        QTest::newRow("cut behind the pose") << good.left(good.lastIndexOf("host")) << QByteArray("a.log:1:")
-                                             << QByteArray("13 fields of FLASER");
-        QTest::newRow("cut keyword") << good + "FLA" << QByteArray("a.log:2:")
-                                     << QByteArray("a CARMEN message");
-        QTest::newRow("cut odometry")
-            << good + "ODOM 1 2 3 0" << QByteArray("a.log:2:") << QByteArray("10 fields of ODOM");
-        QTest::newRow("not a number")
-            << flaser("1 nan", pose(0, 0, 0) + pose(0, 0, 0)) << QByteArray("a.log:1:")
-            << QByteArray("range 2 of 2, a finite number");
-        QTest::newRow("infinite pose") << flaser("1 2", "0 inf 0 " + pose(0, 0, 0)) << QByteArray("a.log:1:")
-                                       << QByteArray("y of a pose");
-        QTest::newRow("pose beyond all measure")
-            << flaser("1 2", "0 1e300 0 " + pose(0, 0, 0)) << QByteArray("a.log:1:")
-            << QByteArray("y of a pose below 1e7");
-        QTest::newRow("negative range") << flaser("1 -2", pose(0, 0, 0) + pose(0, 0, 0))
-                                        << QByteArray("a.log:1:") << QByteArray("range 2 of 2");
-        QTest::newRow("huge count") << QByteArray("FLASER 99999999999999999999 1 2\n")
-                                    << QByteArray("a.log:1:") << QByteArray("the number of ranges");
-        QTest::newRow("count too small")
-            << "FLASER 2 1 2 3 " + pose(0, 0, 0) + pose(0, 0, 0) + "1 h 1\n"
-            << QByteArray("a.log:1:") << QByteArray("13 fields of FLASER with 2 ranges");
-        QTest::newRow("huge remissions") << "ROBOTLASER1 0 0 1 0.5 20 0 0 2 1 2 99999 " + pose(0, 0, 0) +
-                                                pose(0, 0, 0) + "0 0 0 0 0 1 h 1\n"
-                                         << QByteArray("a.log:1:") << QByteArray("fields of ROBOTLASER1");
+        row("empty", QByteArray(), "a.log:", "at least one line FLASER");
+        row("no scan", odom(0, 0, 0), "a.log:1:", "at least one line FLASER");
+        row("cut in the ranges", good + "FLASER 180 1 2 3", "a.log:2:", "191 fields of FLASER");
+        row("cut behind the pose", good.left(good.lastIndexOf("host")), "a.log:1:", "13 fields of FLASER");
+        row("cut keyword", good + "FLA", "a.log:2:", "a CARMEN message");
+        row("cut odometry", good + "ODOM 1 2 3 0", "a.log:2:", "10 fields of ODOM");
+        row("not a number", flaser("1 nan", pose(0, 0, 0) + pose(0, 0, 0)),
+            "a.log:1:", "range 2 of 2, a finite number");
+        row("infinite pose", flaser("1 2", "0 inf 0 " + pose(0, 0, 0)), "a.log:1:", "y of a pose");
+        row("pose beyond all measure", flaser("1 2", "0 1e300 0 " + pose(0, 0, 0)),
+            "a.log:1:", "y of a pose below 1e7");
+        row("negative range", flaser("1 -2", pose(0, 0, 0) + pose(0, 0, 0)), "a.log:1:", "range 2 of 2");
+        row("huge count", "FLASER 99999999999999999999 1 2\n", "a.log:1:", "the number of ranges");
+        row("count too small", "FLASER 2 1 2 3 " + pose(0, 0, 0) + pose(0, 0, 0) + "1 h 1\n",
+            "a.log:1:", "13 fields of FLASER with 2 ranges");
+        row("huge remissions",
+            "ROBOTLASER1 0 0 1 0.5 20 0 0 2 1 2 99999 " + pose(0, 0, 0) + pose(0, 0, 0) + "0 0 0 0 0 1 h 1\n",
+            "a.log:1:", "fields of ROBOTLASER1");
         for (const char *angles : {"1e308 3.0 0.5", "0 3.0 1e308", "-7 3.0 0.5"})
-            QTest::newRow(angles) << QByteArray("ROBOTLASER1 0 ") + angles + " 20 0 0 2 1 2 0 " +
-                                         pose(0, 0, 0) + pose(0, 0, 0) + "0 0 0 0 0 1 h 1\n"
-                                  << QByteArray("a.log:1:") << QByteArray("within a turn");
-        QTest::newRow("binary") << QByteArray("FLASER\0\1\2\n", 10) << QByteArray("a.log:1:")
-                                << QByteArray("a line of text");
-        QTest::newRow("another file")
-            << QByteArray("x,y\n1,2\n") << QByteArray("a.log:1:") << QByteArray("a CARMEN message");
-        QTest::newRow("endless line")
-            << "PARAM " + QByteArray(2 << 20, 'x') << QByteArray("a.log:1:") << QByteArray("lines of text");
+            row(angles,
+                QByteArray("ROBOTLASER1 0 ") + angles + " 20 0 0 2 1 2 0 " + pose(0, 0, 0) + pose(0, 0, 0) +
+                    "0 0 0 0 0 1 h 1\n",
+                "a.log:1:", "within a turn");
+        row("binary", QByteArray("FLASER\0\1\2\n", 10), "a.log:1:", "a line of text");
+        row("another file", "x,y\n1,2\n", "a.log:1:", "a CARMEN message");
+        row("endless line", "PARAM " + QByteArray(2 << 20, 'x'), "a.log:1:", "lines of text");
     }
     void badInput() {
-        QFETCH(QByteArray, text);
-        QFETCH(QByteArray, place);
-        QFETCH(QByteArray, expected);
+        FETCH(QByteArray, text, QByteArray, place, QByteArray, expected);
         const auto log = read(text);
         QVERIFY(!log);
         const QByteArray message = QByteArray::fromStdString(log.error().message());

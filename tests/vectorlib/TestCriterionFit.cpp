@@ -116,24 +116,22 @@ void TestCriterionFit::newtonOfNothing() {
 }
 
 void TestCriterionFit::quadrangleOfKnownSegments_data() {
-    QTest::addColumn<QLineF>("q");
-    QTest::addColumn<double>("area");
+    const Rows<QLineF, double> row("q", "area");
     // p runs from (0, 0) to (4, 0).
-    QTest::newRow("itself") << QLineF(0, 0, 4, 0) << 0.0;
-    QTest::newRow("slid along") << QLineF(10, 0, 12, 0) << 0.0;
-    QTest::newRow("parallel") << QLineF(0, 1, 4, 1) << 4.0;
-    QTest::newRow("parallel, the other way") << QLineF(4, 1, 0, 1) << 4.0;
-    QTest::newRow("parallel, shorter") << QLineF(1, 1, 2, 1) << 4.0;
-    QTest::newRow("parallel, apart") << QLineF(6, 1, 8, 1) << 8.0;
+    row("itself", QLineF(0, 0, 4, 0), 0.0);
+    row("slid along", QLineF(10, 0, 12, 0), 0.0);
+    row("parallel", QLineF(0, 1, 4, 1), 4.0);
+    row("parallel, the other way", QLineF(4, 1, 0, 1), 4.0);
+    row("parallel, shorter", QLineF(1, 1, 2, 1), 4.0);
+    row("parallel, apart", QLineF(6, 1, 8, 1), 8.0);
     // Both of length 4 from one point at 90 degrees: the axis at 45 degrees, a triangle of 4 sin 45 by 8
     // cos 45.
-    QTest::newRow("at right angles") << QLineF(0, 0, 0, 4) << 8.0;
-    QTest::newRow("crossing in the middle") << QLineF(2, -2, 2, 2) << 4.0;
+    row("at right angles", QLineF(0, 0, 0, 4), 8.0);
+    row("crossing in the middle", QLineF(2, -2, 2, 2), 4.0);
 }
 
 void TestCriterionFit::quadrangleOfKnownSegments() {
-    QFETCH(QLineF, q);
-    QFETCH(double, area);
+    FETCH(QLineF, q, double, area);
     const Segment p({0, 0}, {4, 0}), s({q.x1(), q.y1()}, {q.x2(), q.y2()});
     QVERIFY(std::abs(quadrangleArea(p, s) - area) < 1e-12);
     QVERIFY(std::abs(quadrangleArea(s, p) - area) < 1e-12);

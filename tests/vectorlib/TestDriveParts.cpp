@@ -87,10 +87,9 @@ class TestDriveParts : public QObject {
     static unsigned drawnSeed() { return unsigned(QDateTime::currentMSecsSinceEpoch()); }
     // Those in which the place where the robot was put down looks different, and some that are drawn.
     static void addDrives(std::initializer_list<unsigned> noticed) {
-        QTest::addColumn<unsigned>("seed");
-        QTest::addColumn<bool>("isNoticed");
-        const auto add = [](unsigned seed, bool isNoticed) {
-            QTest::newRow(qPrintable(QString::number(seed))) << seed << isNoticed;
+        const Rows<unsigned, bool> row("seed", "isNoticed");
+        const auto add = [&](unsigned seed, bool isNoticed) {
+            row(qPrintable(QString::number(seed)), seed, isNoticed);
         };
         for (const unsigned seed : noticed)
             add(seed, true);
@@ -119,8 +118,7 @@ private Q_SLOTS:
 
     void carriedRobotComesBack_data() { addDrives({0, 1, 4, 6}); }
     void carriedRobotComesBack() {
-        QFETCH(unsigned, seed);
-        QFETCH(bool, isNoticed);
+        FETCH(unsigned, seed, bool, isNoticed);
         const Drive d(seed, Carried::OnTheFloor);
         qInfo("%s", told(d).constData());
         const bool isWhole =
@@ -134,8 +132,7 @@ private Q_SLOTS:
 
     void whatIsFoundNowhereIsLaidBeside_data() { addDrives({5, 6, 9}); }
     void whatIsFoundNowhereIsLaidBeside() {
-        QFETCH(unsigned, seed);
-        QFETCH(bool, isNoticed);
+        FETCH(unsigned, seed, bool, isNoticed);
         const Drive d(seed, Carried::ToAnotherFloor);
         qInfo("%s", told(d).constData());
         if (isNoticed)

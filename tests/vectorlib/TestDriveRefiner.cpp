@@ -37,8 +37,7 @@ class TestDriveRefiner : public QObject {
 
 private Q_SLOTS:
     void posesBecomeMoreExact() {
-        const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-        qInfo("seed %u", seed);
+        const unsigned seed = newSeed();
         for (unsigned building = 0; building < 3; ++building) {
             Drive d(seed + building);
             std::vector<Pose2D> refined = d.wavering;

@@ -93,18 +93,16 @@ private Q_SLOTS:
         QVERIFY2(compared.faults.isEmpty(), qPrintable(compared.faults.mid(0, 10).join("\n")));
     }
     void realClusters_data() {
-        QTest::addColumn<QString>("log");
+        const Rows<QString> row("log");
         for (const char *log : {"belgioioso", "fhw", "freiburg-079", "intel", "orebro"})
-            QTest::newRow(log) << QString(log);
+            row(log, QString(log));
     }
     void realClusters();
 };
 
 void TestFtlsClusters::realClusters() {
     QFETCH(QString, log);
-    const QString path = realData(log + "-corrected.log.gz");
-    if (path.isEmpty())
-        QSKIP("the real recordings are absent");
+    REAL_DATA(path, log + "-corrected.log.gz");
     QProcess unpack;
     unpack.start("zcat", {path});
     QVERIFY(unpack.waitForFinished());

@@ -27,18 +27,16 @@ private Q_SLOTS:
 };
 
 void TestGeometry::wrapAngle_data() {
-    QTest::addColumn<double>("angle");
-    QTest::addColumn<double>("wrapped");
-    QTest::newRow("zero") << 0.0 << 0.0;
-    QTest::newRow("pi stays") << pi << pi;
-    QTest::newRow("minus pi becomes pi") << -pi << pi;
-    QTest::newRow("three turns") << 6 * pi + 0.5 << 0.5;
-    QTest::newRow("just over") << pi + 0.1 << -pi + 0.1;
+    const Rows<double, double> row("angle", "wrapped");
+    row("zero", 0.0, 0.0);
+    row("pi stays", pi, pi);
+    row("minus pi becomes pi", -pi, pi);
+    row("three turns", 6 * pi + 0.5, 0.5);
+    row("just over", pi + 0.1, -pi + 0.1);
 }
 
 void TestGeometry::wrapAngle() {
-    QFETCH(double, angle);
-    QFETCH(double, wrapped);
+    FETCH(double, angle, double, wrapped);
     QVERIFY(std::abs(vectorlib::wrapAngle(angle) - wrapped) < 1e-12);
 }
 

@@ -31,24 +31,18 @@ Segment segment(const QLineF &l) {
 } // namespace
 
 void TestHausdorffDistances::knownSegments_data() {
-    QTest::addColumn<QLineF>("moving");
-    QTest::addColumn<double>("hausdorff");
-    QTest::addColumn<double>("modified");
-    QTest::addColumn<double>("perpendicular");
-    QTest::newRow("itself") << QLineF(0, 0, 1, 0) << 0.0 << 0.0 << 0.0;
-    QTest::newRow("on the line, apart") << QLineF(3, 0, 4, 0) << 3.0 << 0.0 << 0.0; // d1 = d2 = 0 in (7.5)
-    QTest::newRow("parallel") << QLineF(0, 2, 1, 2) << 2.0 << 0.0 << 2.0;
-    QTest::newRow("at right angles") << QLineF(0, 0, 0, 2) << 2.0 << 1.0 << 1.0;
-    QTest::newRow("crossing in the middle") << QLineF(0.5, -1, 0.5, 1) << 1.0 << 1.0 << 0.5;
-    QTest::newRow("30 degrees") << QLineF(0, 0, std::sqrt(3), 1) << 1.2393 << 0.5 << 0.5;
-    QTest::newRow("sloping above") << QLineF(0, 1, 1, 3) << 3.0 << std::sqrt(0.8) << std::sqrt(1.25);
+    const Rows<QLineF, double, double, double> row("moving", "hausdorff", "modified", "perpendicular");
+    row("itself", QLineF(0, 0, 1, 0), 0.0, 0.0, 0.0);
+    row("on the line, apart", QLineF(3, 0, 4, 0), 3.0, 0.0, 0.0); // d1 = d2 = 0 in (7.5)
+    row("parallel", QLineF(0, 2, 1, 2), 2.0, 0.0, 2.0);
+    row("at right angles", QLineF(0, 0, 0, 2), 2.0, 1.0, 1.0);
+    row("crossing in the middle", QLineF(0.5, -1, 0.5, 1), 1.0, 1.0, 0.5);
+    row("30 degrees", QLineF(0, 0, std::sqrt(3), 1), 1.2393, 0.5, 0.5);
+    row("sloping above", QLineF(0, 1, 1, 3), 3.0, std::sqrt(0.8), std::sqrt(1.25));
 }
 
 void TestHausdorffDistances::knownSegments() {
-    QFETCH(QLineF, moving);
-    QFETCH(double, hausdorff);
-    QFETCH(double, modified);
-    QFETCH(double, perpendicular);
+    FETCH(QLineF, moving, double, hausdorff, double, modified, double, perpendicular);
     const auto near = [](double found, double expected) {
         return QTest::qVerify(std::abs(found - expected) < 1e-4, "near", qPrintable(QString::number(found)),
                               __FILE__, __LINE__);
@@ -100,10 +94,10 @@ void TestHausdorffDistances::printedHalfHalvesTheDistanceOfParallels() { // (7.6
 }
 
 void TestHausdorffDistances::badInputIsNoDistance_data() {
-    QTest::addColumn<QLineF>("moving");
-    QTest::newRow("no length") << QLineF(1, 1, 1, 1);
-    QTest::newRow("NaN") << QLineF(0, 0, qQNaN(), 1);
-    QTest::newRow("infinite") << QLineF(0, 0, qInf(), 1);
+    const Rows<QLineF> row("moving");
+    row("no length", QLineF(1, 1, 1, 1));
+    row("NaN", QLineF(0, 0, qQNaN(), 1));
+    row("infinite", QLineF(0, 0, qInf(), 1));
 }
 
 void TestHausdorffDistances::badInputIsNoDistance() {

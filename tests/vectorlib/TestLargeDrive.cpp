@@ -123,9 +123,9 @@ class TestLargeDrive : public QObject {
 
 private Q_SLOTS:
     void aScanCostsNoMoreAsTheDriveGrows_data() {
-        QTest::addColumn<bool>("live");
-        QTest::newRow("offline") << false;
-        QTest::newRow("live") << true;
+        const Rows<bool> row("live");
+        row("offline", false);
+        row("live", true);
     }
     // HERMES_SCANS: how many. Tells what each twentieth of the drive cost.
     void aScanCostsNoMoreAsTheDriveGrows() {

@@ -40,28 +40,23 @@ class TestLatexExport : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void textIsEscaped_data() {
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("latex");
-        QTest::newRow("plain") << QByteArray("a b-c") << QByteArray("a b-c");
-        QTest::newRow("meaning") << QByteArray("%_\\{}#$&")
-                                 << QByteArray("\\%\\_\\textbackslash{}\\{\\}\\#\\$\\&");
-        QTest::newRow("command") << QByteArray("\\input{/etc/passwd}")
-                                 << QByteArray("\\textbackslash{}input\\{/etc/passwd\\}");
-        QTest::newRow("exponent") << QByteArray("m^2 s^-1")
-                                  << QByteArray("m\\ensuremath{^{2}} s\\ensuremath{^{-1}}");
-        QTest::newRow("no exponent") << QByteArray("^a^~") << QByteArray("\\^{}a\\^{}\\~{}");
-        QTest::newRow("dashes") << QByteArray("--svg") << QByteArray("-{}-svg");
-        QTest::newRow("option of a line's end") << QByteArray("[2pt]") << QByteArray("{[}2pt{]}");
-        QTest::newRow("star of a line's end") << QByteArray("*2") << QByteArray("{*}2");
-        QTest::newRow("controls") << QByteArray("a\n\tb\x7f") << QByteArray("a  b ");
-        QTest::newRow("letters") << QByteArray("Ko\u0161ice \u00e9") << QByteArray("Ko\u0161ice \u00e9");
-        QTest::newRow("signs") << QByteArray("90\u00b0 \u00b1 \u03c3")
-                               << QByteArray(
-                                      "90\\ensuremath{^\\circ} \\ensuremath{\\pm} \\ensuremath{\\sigma}");
-        QTest::newRow("without a sign") << QByteArray("\u4e2d") << QByteArray("{[}U+4E2D{]}");
-        QTest::newRow("no UTF-8") << QByteArray("a\xff\xc3") << QByteArray("a??");
-        QTest::newRow("overlong") << QByteArray("\xc0\xaf") << QByteArray("??");
-        QTest::newRow("surrogate") << QByteArray("\xed\xa0\x80") << QByteArray("???");
+        const Rows<QByteArray, QByteArray> row("text", "latex");
+        row("plain", "a b-c", "a b-c");
+        row("meaning", "%_\\{}#$&", "\\%\\_\\textbackslash{}\\{\\}\\#\\$\\&");
+        row("command", "\\input{/etc/passwd}", "\\textbackslash{}input\\{/etc/passwd\\}");
+        row("exponent", "m^2 s^-1", "m\\ensuremath{^{2}} s\\ensuremath{^{-1}}");
+        row("no exponent", "^a^~", "\\^{}a\\^{}\\~{}");
+        row("dashes", "--svg", "-{}-svg");
+        row("option of a line's end", "[2pt]", "{[}2pt{]}");
+        row("star of a line's end", "*2", "{*}2");
+        row("controls", "a\n\tb\x7f", "a  b ");
+        row("letters", "Ko\u0161ice \u00e9", "Ko\u0161ice \u00e9");
+        row("signs", "90\u00b0 \u00b1 \u03c3",
+            "90\\ensuremath{^\\circ} \\ensuremath{\\pm} \\ensuremath{\\sigma}");
+        row("without a sign", "\u4e2d", "{[}U+4E2D{]}");
+        row("no UTF-8", "a\xff\xc3", "a??");
+        row("overlong", "\xc0\xaf", "??");
+        row("surrogate", "\xed\xa0\x80", "???");
     }
     void textIsEscaped() {
         QFETCH(QByteArray, text);
@@ -145,9 +140,7 @@ private Q_SLOTS:
         for (QByteArray text : nonsense())
             all += text.mid(text.indexOf(begin) + begin.size()).replace(end, "\n\n");
         const QString name = folder.filePath("all.tex");
-        QFile file(name);
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(all + end) > 0);
-        file.close();
+        put(name, all + end);
         const QByteArray fault = hermes::Latex::fault(name);
         QVERIFY2(fault.isEmpty(), fault.constData());
     }

@@ -36,21 +36,15 @@ private Q_SLOTS:
 };
 
 void TestLineCovariance::agreesWithMonteCarlo_data() {
-    QTest::addColumn<double>("theta");
-    QTest::addColumn<double>("along");
-    QTest::addColumn<int>("count");
-    QTest::addColumn<bool>("noiseKnown");
-    QTest::newRow("before the sensor") << 0.3 << -1.0 << 100 << true;
-    QTest::newRow("aside: angle and offset correlated") << -2.0 << 3.0 << 100 << true;
-    QTest::newRow("short") << 1.5 << 1.0 << 12 << true;
-    QTest::newRow("noise from the scatter") << 2.8 << -4.0 << 60 << false;
+    const Rows<double, double, int, bool> row("theta", "along", "count", "noiseKnown");
+    row("before the sensor", 0.3, -1.0, 100, true);
+    row("aside: angle and offset correlated", -2.0, 3.0, 100, true);
+    row("short", 1.5, 1.0, 12, true);
+    row("noise from the scatter", 2.8, -4.0, 60, false);
 }
 
 void TestLineCovariance::agreesWithMonteCarlo() {
-    QFETCH(double, theta);
-    QFETCH(double, along);
-    QFETCH(int, count);
-    QFETCH(bool, noiseKnown);
+    FETCH(double, theta, double, along, int, count, bool, noiseKnown);
     const double noise = 0.005;
     const int trials = 20000;
     const Points exact = wall(theta, 2, along, count);

@@ -116,8 +116,7 @@ private Q_SLOTS:
         const int plans = qEnvironmentVariableIntValue("HERMES_PLANS") > 0
                               ? qEnvironmentVariableIntValue("HERMES_PLANS")
                               : 6;
-        const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-        qInfo("seed %u", seed);
+        const unsigned seed = newSeed();
         std::size_t closed = 0;
         int folded = 0, wrong = 0;
         double sum = 0;

@@ -152,19 +152,15 @@ void TestMapBuilder::gridFindsWhatTouchesTheBox() {
 }
 
 void TestMapBuilder::trackerRecoversTheDisplacement_data() {
-    QTest::addColumn<double>("dx");
-    QTest::addColumn<double>("dy");
-    QTest::addColumn<double>("dalpha");
-    QTest::newRow("none") << 0.0 << 0.0 << 0.0;
-    QTest::newRow("small") << 0.05 << -0.03 << 0.02;
-    QTest::newRow("far") << 0.3 << 0.2 << 0.1;
-    QTest::newRow("turned") << 0.1 << 0.1 << 0.35;
+    const Rows<double, double, double> row("dx", "dy", "dalpha");
+    row("none", 0.0, 0.0, 0.0);
+    row("small", 0.05, -0.03, 0.02);
+    row("far", 0.3, 0.2, 0.1);
+    row("turned", 0.1, 0.1, 0.35);
 }
 
 void TestMapBuilder::trackerRecoversTheDisplacement() {
-    QFETCH(double, dx);
-    QFETCH(double, dy);
-    QFETCH(double, dalpha);
+    FETCH(double, dx, double, dy, double, dalpha);
     std::mt19937 random(3);
     for (int i = 0; i < 20; ++i) {
         const Pose2D truth{-1.5 + 0.1 * i, -1.0 + 0.05 * i, 0.3 * i};

@@ -108,19 +108,17 @@ void TestMatchErrors::areaGrowsWithTheError() { // figure 6.8
 }
 
 void TestMatchErrors::whatCannotBeSeenHasNoArea_data() {
-    QTest::addColumn<double>("x");
-    QTest::addColumn<int>("index");
-    QTest::newRow("not a number") << std::numeric_limits<double>::quiet_NaN() << 0;
-    QTest::newRow("infinite") << std::numeric_limits<double>::infinity() << 0;
-    QTest::newRow("huge") << 1e300 << 0;
-    QTest::newRow("one point") << -1.0 << 0;
-    QTest::newRow("no such segment") << 1.0 << 7;
-    QTest::newRow("negative index") << 1.0 << -1;
+    const Rows<double, int> row("x", "index");
+    row("not a number", std::numeric_limits<double>::quiet_NaN(), 0);
+    row("infinite", std::numeric_limits<double>::infinity(), 0);
+    row("huge", 1e300, 0);
+    row("one point", -1.0, 0);
+    row("no such segment", 1.0, 7);
+    row("negative index", 1.0, -1);
 }
 
 void TestMatchErrors::whatCannotBeSeenHasNoArea() {
-    QFETCH(double, x);
-    QFETCH(int, index);
+    FETCH(double, x, int, index);
     const std::vector<TypedSegment> wall{typed({1, 2}, {-1, 2})}, other{typed({x, 2}, {-1, 2})};
     const MatchedArea area = errors_.area({{0, index}}, wall, other, {});
     QVERIFY(std::isfinite(area.error) && std::isfinite(area.common) && std::isfinite(area.percent()));

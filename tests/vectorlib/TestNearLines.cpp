@@ -64,9 +64,7 @@ private Q_SLOTS:
 };
 
 void TestNearLines::noneIsMissed() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     std::uniform_real_distribution<double> size(1, 40), shift(-3, 0.5), turn(0, pi);
     NearLines lines;
     std::size_t found = 0;
@@ -102,10 +100,10 @@ void TestNearLines::farAndHugeReachesAreNoTrouble() {
 }
 
 void TestNearLines::timeGrowsWithTheSets_data() {
-    QTest::addColumn<int>("kind");
-    QTest::newRow("buildings") << 0;
-    QTest::newRow("round hall") << 1;
-    QTest::newRow("corridor") << 2;
+    const Rows<int> row("kind");
+    row("buildings", 0);
+    row("round hall", 1);
+    row("corridor", 2);
 }
 
 // Expected where few lie on each other, so that no bound ends the search: 32 times as many segments take 32

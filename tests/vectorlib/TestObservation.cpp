@@ -125,9 +125,7 @@ void TestObservation::rangeCuts() {
 }
 
 void TestObservation::agreesWithRaysAtRandomPoses() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     std::uniform_real_distribution<double> unit(-1, 1);
     Observer<double> observer;
     for (int round = 0; round < 100; ++round) {

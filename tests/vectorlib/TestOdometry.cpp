@@ -83,23 +83,17 @@ void TestOdometry::leavesOutWhatIsOutOfOrder() {
 }
 
 void TestOdometry::beginsAnewWhereNothingFollows_data() {
-    QTest::addColumn<double>("seconds");
-    QTest::addColumn<double>("x");
-    QTest::addColumn<double>("turn");
-    QTest::addColumn<double>("certainty");
-    QTest::newRow("reset to another place") << 0.0 << 0.3 << 0.0 << 1.0;
-    QTest::newRow("reset to another heading") << 0.0 << 0.0 << 0.3 << 1.0;
-    QTest::newRow("reset to the same place") << 0.0 << 0.0 << 0.0 << 0.0;
-    QTest::newRow("gap") << 0.6 << 0.0 << 0.0 << 1.0;
-    QTest::newRow("clock set back") << -3600.0 << 0.0 << 0.0 << 1.0;
-    QTest::newRow("clock set ahead") << 3600.0 << 0.0 << 0.0 << 1.0;
+    const Rows<double, double, double, double> row("seconds", "x", "turn", "certainty");
+    row("reset to another place", 0.0, 0.3, 0.0, 1.0);
+    row("reset to another heading", 0.0, 0.0, 0.3, 1.0);
+    row("reset to the same place", 0.0, 0.0, 0.0, 0.0);
+    row("gap", 0.6, 0.0, 0.0, 1.0);
+    row("clock set back", -3600.0, 0.0, 0.0, 1.0);
+    row("clock set ahead", 3600.0, 0.0, 0.0, 1.0);
 }
 
 void TestOdometry::beginsAnewWhereNothingFollows() {
-    QFETCH(double, seconds);
-    QFETCH(double, x);
-    QFETCH(double, turn);
-    QFETCH(double, certainty);
+    FETCH(double, seconds, double, x, double, turn, double, certainty);
     OdometryBuffer buffer;
     fill(buffer, 0, 50);
     const auto before = buffer.over(start + 0.8, start + 0.9);

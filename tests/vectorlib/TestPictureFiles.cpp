@@ -112,22 +112,15 @@ private Q_SLOTS:
     }
 
     void tumStampsAscend_data() {
-        QTest::addColumn<QList<double>>("stamps");
-        QTest::addColumn<QList<QByteArray>>("written");
-        QTest::addColumn<int>("ties");
-        QTest::addColumn<int>("stepsBack");
-        QTest::addColumn<double>("farthest");
-        QTest::newRow("none") << QList<double>{} << QList<QByteArray>{} << 0 << 0 << 0.0;
-        QTest::newRow("ascending") << QList<double>{-1, 0, 0.25, 7}
-                                   << QList<QByteArray>{"-1", "0", "0.25", "7"} << 0 << 0 << 0.0;
-        QTest::newRow("tie") << QList<double>{0, 1, 1, 2} << QList<QByteArray>{"0", "1", "1.000001", "2"} << 1
-                             << 0 << 1e-6;
-        QTest::newRow("step back") << QList<double>{0, 4, 2, 3, 3, 7}
-                                   << QList<QByteArray>{"0", "4", "4.000001", "4.000002", "4.000003", "7"}
-                                   << 1 << 1 << 2.000001;
-        QTest::newRow("a mended one is passed again")
-            << QList<double>{1, 1, 1.0000005, 1.000003}
-            << QList<QByteArray>{"1", "1.000001", "1.000002", "1.000003"} << 1 << 0 << 1.5e-6;
+        const Rows<QList<double>, QList<QByteArray>, int, int, double> row("stamps", "written", "ties",
+                                                                           "stepsBack", "farthest");
+        row("none", {}, {}, 0, 0, 0.0);
+        row("ascending", {-1, 0, 0.25, 7}, {"-1", "0", "0.25", "7"}, 0, 0, 0.0);
+        row("tie", {0, 1, 1, 2}, {"0", "1", "1.000001", "2"}, 1, 0, 1e-6);
+        row("step back", {0, 4, 2, 3, 3, 7}, {"0", "4", "4.000001", "4.000002", "4.000003", "7"}, 1, 1,
+            2.000001);
+        row("a mended one is passed again", {1, 1, 1.0000005, 1.000003},
+            {"1", "1.000001", "1.000002", "1.000003"}, 1, 0, 1.5e-6);
     }
     void tumStampsAscend() {
         QFETCH(QList<double>, stamps);

@@ -87,21 +87,18 @@ Box drawnBox(std::mt19937 &random, bool isRight) {
 } // namespace
 
 void TestPlaceEvidence::objectsThatAreMoved_data() {
-    QTest::addColumn<int>("each");     // objects that tell two rooms apart
-    QTest::addColumn<bool>("isMoved"); // one of them, to where that of the other room stands
-    QTest::addColumn<int>("least");    // found of 100
-    QTest::addColumn<int>("mostWrong");
-    QTest::newRow("two each") << 2 << false << 88 << 0;
-    QTest::newRow("one each, moved") << 1 << true << 0 << 1;
-    QTest::newRow("two each, one moved") << 2 << true << 0 << 0;
+    const Rows<int, bool, int, int> row(
+        "each", "isMoved", "least",
+        "mostWrong"); // each: objects that tell two rooms apart; isMoved: one of them, to where that of the
+                      // other room stands; least: found of 100
+    row("two each", 2, false, 88, 0);
+    row("one each, moved", 1, true, 0, 1);
+    row("two each, one moved", 2, true, 0, 0);
 }
 
 // Several objects tell where the robot is; one that was moved does not lead it into the other room.
 void TestPlaceEvidence::objectsThatAreMoved() {
-    QFETCH(int, each);
-    QFETCH(bool, isMoved);
-    QFETCH(int, least);
-    QFETCH(int, mostWrong);
+    FETCH(int, each, bool, isMoved, int, least, int, mostWrong);
     search_.maxSeconds = 60;
     int found = 0, wrong = 0;
     std::mt19937 random(77);
@@ -128,23 +125,19 @@ void TestPlaceEvidence::objectsThatAreMoved() {
 }
 
 void TestPlaceEvidence::movedFurniture_data() {
-    QTest::addColumn<FloorPlan::Rooms>("kind");
-    QTest::addColumn<double>("share");
-    QTest::addColumn<int>("least"); // found of 100
-    QTest::newRow("a tenth") << FloorPlan::Rooms::Different << 0.1 << 90;
-    QTest::newRow("a third") << FloorPlan::Rooms::Different << 0.3 << 85;
-    QTest::newRow("most") << FloorPlan::Rooms::Different << 0.6 << 65;
-    QTest::newRow("none, rooms alike") << FloorPlan::Rooms::Alike << 0.0 << 74;
-    QTest::newRow("a third, rooms alike") << FloorPlan::Rooms::Alike << 0.3 << 35;
+    const Rows<FloorPlan::Rooms, double, int> row("kind", "share", "least"); // least: found of 100
+    row("a tenth", FloorPlan::Rooms::Different, 0.1, 90);
+    row("a third", FloorPlan::Rooms::Different, 0.3, 85);
+    row("most", FloorPlan::Rooms::Different, 0.6, 65);
+    row("none, rooms alike", FloorPlan::Rooms::Alike, 0.0, 74);
+    row("a third, rooms alike", FloorPlan::Rooms::Alike, 0.3, 35);
 }
 
 Q_DECLARE_METATYPE(FloorPlan::Rooms)
 
 // Between the map and the scan; also of another building, which has no place in the map.
 void TestPlaceEvidence::movedFurniture() {
-    QFETCH(FloorPlan::Rooms, kind);
-    QFETCH(double, share);
-    QFETCH(int, least);
+    FETCH(FloorPlan::Rooms, kind, double, share, int, least);
     search_.maxSeconds = 60;
     int found = 0, wrong = 0, foreign = 0;
     for (unsigned seed = 9001; seed <= 9005; ++seed) {

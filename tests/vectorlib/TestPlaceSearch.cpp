@@ -125,8 +125,7 @@ void TestPlaceSearch::tellsIdenticalRooms_data() {
 }
 
 void TestPlaceSearch::tellsIdenticalRooms() {
-    QFETCH(int, rooms);
-    QFETCH(bool, isChanged);
+    FETCH(int, rooms, bool, isChanged);
     Walls map, world = room(0, 0);
     for (int i = 0; i < rooms; ++i)
         for (const auto &wall : room(7 * i, 0))
@@ -248,9 +247,7 @@ void TestPlaceSearch::saysWhatIsWrong_data() {
 }
 
 void TestPlaceSearch::saysWhatIsWrong() {
-    QFETCH(Walls, map);
-    QFETCH(Points, points);
-    QFETCH(Outcome, outcome);
+    FETCH(Walls, map, Points, points, Outcome, outcome);
     const Relocalized &result = find(map, points);
     QVERIFY2(result.outcome == outcome, result.text().c_str());
     QVERIFY(!result.text().empty());
@@ -354,8 +351,7 @@ void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays_data() {
 
 // However much evidence is asked for: from any place that fits a little to none at all.
 void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays() {
-    QFETCH(Walls, map);
-    QFETCH(bool, differs);
+    FETCH(Walls, map, bool, differs);
     if (differs)
         map[2] = {map[2].begin(), map[2].begin() + map[2].direction() * 2.5};
     const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
@@ -380,14 +376,11 @@ void TestPlaceSearch::allocatesNothingInSteadyState() {
     const auto slots = mapOf(plan.walls());
     const Points first = see(plan.walls(), plan.place()), second = see(plan.walls(), plan.place());
     const std::vector<EdgeRaw2D> edges = extract(first), others = extract(second);
-    std::size_t before = 0, after = 0;
-    for (int i = 0; i < 3; ++i) {
-        before = allocations; // buffers grow in the first rounds
+    const std::size_t more = allocationsOnceGrown(3, [&] {
         (*search)(slots, edges, first);
         (*search)(slots, others, second);
-        after = allocations;
-    }
-    QCOMPARE(after, before);
+    });
+    QCOMPARE(more, std::size_t(0));
 }
 
 QTEST_APPLESS_MAIN(TestPlaceSearch)

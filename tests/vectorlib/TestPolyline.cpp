@@ -168,9 +168,9 @@ void TestPolyline::relaxationFindsTheLeastSquares() {
 }
 
 void TestPolyline::curveStaysContinuous_data() {
-    QTest::addColumn<int>("algorithm");
+    const Rows<int> row("algorithm");
     for (int a = 1; a < int(algorithms.size()); ++a)
-        QTest::newRow(algorithms[std::size_t(a)].name) << a;
+        row(algorithms[std::size_t(a)].name, a);
 }
 
 void TestPolyline::curveStaysContinuous() {

@@ -66,11 +66,7 @@ class TestPoseGraph : public QObject {
     }
 
 private Q_SLOTS:
-    void init() {
-        const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-        qInfo("seed %u", seed);
-        random_.seed(seed);
-    }
+    void init() { random_.seed(newSeed()); }
 
     // Motions that agree exactly: from poses anywhere near, exactly those they came from.
     void findsPosesThatFitAllMotions() {

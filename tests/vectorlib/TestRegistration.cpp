@@ -48,9 +48,9 @@ private Q_SLOTS:
 };
 
 void TestRegistration::noiseFreeSetsComeBack_data() {
-    QTest::addColumn<int>("rotation");
-    QTest::newRow("mitsuta") << int(Rotation::Mitsuta);
-    QTest::newRow("wahba") << int(Rotation::Wahba);
+    const Rows<int> row("rotation");
+    row("mitsuta", int(Rotation::Mitsuta));
+    row("wahba", int(Rotation::Wahba));
 }
 
 void TestRegistration::noiseFreeSetsComeBack() { // errata 6 and 7
@@ -340,22 +340,20 @@ void TestRegistration::pointToLineStepUsesTheSums() {
 }
 
 void TestRegistration::mayCorrespond_data() {
-    QTest::addColumn<QLineF>("moving");
-    QTest::addColumn<bool>("possible");
+    const Rows<QLineF, bool> row("moving", "possible");
     // The static one runs from (2, -1) to (2, 1); permitted are 0.5 m in x and y and 0.2 rad.
-    QTest::newRow("itself") << QLineF(2, -1, 2, 1) << true;
-    QTest::newRow("0.4 m apart") << QLineF(1.6, -1, 1.6, 1) << true;
-    QTest::newRow("0.6 m apart") << QLineF(1.4, -1, 1.4, 1) << false;
-    QTest::newRow("0.4 m beyond its end") << QLineF(2, 1.4, 2, 3) << true;
-    QTest::newRow("0.6 m beyond its end") << QLineF(2, 1.6, 2, 3) << false;
-    QTest::newRow("seen from behind") << QLineF(2, 1, 2, -1) << false;
-    QTest::newRow("turned by 0.15") << QLineF(2, -1, 2 - std::sin(0.15), -1 + std::cos(0.15)) << true;
-    QTest::newRow("turned by 0.3") << QLineF(2, -1, 2 - std::sin(0.3), -1 + std::cos(0.3)) << false;
+    row("itself", QLineF(2, -1, 2, 1), true);
+    row("0.4 m apart", QLineF(1.6, -1, 1.6, 1), true);
+    row("0.6 m apart", QLineF(1.4, -1, 1.4, 1), false);
+    row("0.4 m beyond its end", QLineF(2, 1.4, 2, 3), true);
+    row("0.6 m beyond its end", QLineF(2, 1.6, 2, 3), false);
+    row("seen from behind", QLineF(2, 1, 2, -1), false);
+    row("turned by 0.15", QLineF(2, -1, 2 - std::sin(0.15), -1 + std::cos(0.15)), true);
+    row("turned by 0.3", QLineF(2, -1, 2 - std::sin(0.3), -1 + std::cos(0.3)), false);
 }
 
 void TestRegistration::mayCorrespond() {
-    QFETCH(QLineF, moving);
-    QFETCH(bool, possible);
+    FETCH(QLineF, moving, bool, possible);
     const Segment fixed({2, -1}, {2, 1}), seen({moving.x1(), moving.y1()}, {moving.x2(), moving.y2()});
     QCOMPARE(vectorlib::mayCorrespond(fixed, seen, {0.5, 0.5, 0.2}), possible);
 }

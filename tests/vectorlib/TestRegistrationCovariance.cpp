@@ -50,24 +50,15 @@ double weightOf(const Segment &a, const Segment &b) {
 } // namespace
 
 void TestRegistrationCovariance::agreesWithMonteCarlo_data() {
-    QTest::addColumn<double>("x");
-    QTest::addColumn<double>("y");
-    QTest::addColumn<double>("alpha");
-    QTest::addColumn<int>("rotation");
-    QTest::addColumn<double>("mapNoise");
-    QTest::newRow("no motion") << 0.0 << 0.0 << 0.0 << int(Rotation::Mitsuta) << 0.01;
-    QTest::newRow("far motion: the map's angles move the result")
-        << 4.0 << -3.0 << 0.5 << int(Rotation::Mitsuta) << 0.02;
-    QTest::newRow("wahba") << 0.5 << 0.3 << -2.0 << int(Rotation::Wahba) << 0.01;
-    QTest::newRow("exact map") << 1.0 << 0.0 << 3.0 << int(Rotation::Mitsuta) << 0.0;
+    const Rows<double, double, double, int, double> row("x", "y", "alpha", "rotation", "mapNoise");
+    row("no motion", 0.0, 0.0, 0.0, int(Rotation::Mitsuta), 0.01);
+    row("far motion: the map's angles move the result", 4.0, -3.0, 0.5, int(Rotation::Mitsuta), 0.02);
+    row("wahba", 0.5, 0.3, -2.0, int(Rotation::Wahba), 0.01);
+    row("exact map", 1.0, 0.0, 3.0, int(Rotation::Mitsuta), 0.0);
 }
 
 void TestRegistrationCovariance::agreesWithMonteCarlo() {
-    QFETCH(double, x);
-    QFETCH(double, y);
-    QFETCH(double, alpha);
-    QFETCH(int, rotation);
-    QFETCH(double, mapNoise);
+    FETCH(double, x, double, y, double, alpha, int, rotation, double, mapNoise);
     const Transformation2D truth(x, y, alpha);
     constexpr int trials = 10000;
     std::mt19937 random(5);

@@ -103,8 +103,7 @@ void TestRelationMatcher::findsThePoseOfThePublishedExample() {
 }
 
 void TestRelationMatcher::saysWhy_data() {
-    QTest::addColumn<int>("which");
-    QTest::addColumn<int>("outcome");
+    const Rows<int, int> row("which", "outcome");
     const RelationOutcome few = RelationOutcome::TooFewReference, less = RelationOutcome::TooFewCurrent;
     const std::tuple<const char *, RelationOutcome> rows[] = {
         {"nothing in the reference", few},
@@ -123,7 +122,7 @@ void TestRelationMatcher::saysWhy_data() {
     };
     int i = 0;
     for (const auto &[name, outcome] : rows)
-        QTest::newRow(name) << i++ << static_cast<int>(outcome);
+        row(name, i++, static_cast<int>(outcome));
 }
 
 void TestRelationMatcher::spoil(int which, TypedSegments &reference, TypedSegments &current) {
@@ -162,8 +161,7 @@ void TestRelationMatcher::spoil(int which, RelationSettings &settings) {
 }
 
 void TestRelationMatcher::saysWhy() {
-    QFETCH(int, which);
-    QFETCH(int, outcome);
+    FETCH(int, which, int, outcome);
     RelationMatcher match;
     TypedSegments reference = complete(room()), current = reference;
     spoil(which, reference, current);
@@ -175,18 +173,16 @@ void TestRelationMatcher::saysWhy() {
 }
 
 void TestRelationMatcher::symmetricRoomsAreAmbiguousOnlyWhereTheyAre_data() {
-    QTest::addColumn<QVector<QPointF>>("corners");
-    QTest::addColumn<bool>("ambiguous");
-    QTest::newRow("square") << QVector<QPointF>{{-2, -2}, {2, -2}, {2, 2}, {-2, 2}} << true;
-    QTest::newRow("rectangle") << QVector<QPointF>{{-3, -2}, {3, -2}, {3, 2}, {-3, 2}} << true;
+    const Rows<QVector<QPointF>, bool> row("corners", "ambiguous");
+    row("square", {{-2, -2}, {2, -2}, {2, 2}, {-2, 2}}, true);
+    row("rectangle", {{-3, -2}, {3, -2}, {3, 2}, {-3, 2}}, true);
     // A mirror image has its angles in the other order, and the sensor tells left from right.
-    QTest::newRow("mirror symmetric") << QVector<QPointF>{{-3, -2}, {3, -2}, {2, 2.5}, {-2, 2.5}} << false;
-    QTest::newRow("notched") << QVector<QPointF>{{-3, -2}, {3, -2}, {3, 1}, {2, 1}, {2, 2}, {-3, 2}} << false;
+    row("mirror symmetric", {{-3, -2}, {3, -2}, {2, 2.5}, {-2, 2.5}}, false);
+    row("notched", {{-3, -2}, {3, -2}, {3, 1}, {2, 1}, {2, 2}, {-3, 2}}, false);
 }
 
 void TestRelationMatcher::symmetricRoomsAreAmbiguousOnlyWhereTheyAre() {
-    QFETCH(QVector<QPointF>, corners);
-    QFETCH(bool, ambiguous);
+    FETCH(QVector<QPointF>, corners, bool, ambiguous);
     Segments walls;
     for (int i = 0; i < corners.size(); ++i) {
         const QPointF a = corners[i], b = corners[(i + 1) % corners.size()];

@@ -128,27 +128,20 @@ void TestRelations::cornersOfAScan() {
 }
 
 void TestRelations::lengths_data() {
-    QTest::addColumn<double>("first");
-    QTest::addColumn<bool>("isFirstComplete");
-    QTest::addColumn<double>("second");
-    QTest::addColumn<bool>("isSecondComplete");
-    QTest::addColumn<bool>("may");
-    QTest::newRow("shorter one complete") << 1.0 << true << 2.0 << false << false;
-    QTest::newRow("shorter one incomplete") << 1.0 << false << 2.0 << true << true;
-    QTest::newRow("both incomplete") << 1.0 << false << 2.0 << false << true;
-    QTest::newRow("complete, equal") << 1.0 << true << 1.0 << true << true;
+    const Rows<double, bool, double, bool, bool> row("first", "isFirstComplete", "second", "isSecondComplete",
+                                                     "may");
+    row("shorter one complete", 1.0, true, 2.0, false, false);
+    row("shorter one incomplete", 1.0, false, 2.0, true, true);
+    row("both incomplete", 1.0, false, 2.0, false, true);
+    row("complete, equal", 1.0, true, 1.0, true, true);
     // As printed Algorithm 2 says no: measured lengths are never equal.
-    QTest::newRow("complete, nearly equal") << 1.0 << true << 1.06 << true << true;
-    QTest::newRow("complete, different") << 1.0 << true << 1.12 << true << false;
-    QTest::newRow("nearly equal, shorter one complete") << 1.0 << true << 1.06 << false << true;
+    row("complete, nearly equal", 1.0, true, 1.06, true, true);
+    row("complete, different", 1.0, true, 1.12, true, false);
+    row("nearly equal, shorter one complete", 1.0, true, 1.06, false, true);
 }
 
 void TestRelations::lengths() {
-    QFETCH(double, first);
-    QFETCH(bool, isFirstComplete);
-    QFETCH(double, second);
-    QFETCH(bool, isSecondComplete);
-    QFETCH(bool, may);
+    FETCH(double, first, bool, isFirstComplete, double, second, bool, isSecondComplete, bool, may);
     const auto made = [](double length, bool isComplete) {
         TypedSegment s{Segment({0, 1}, {length, 1}), {}, {}, false, {}};
         s.begin.type = EndType::Jump;
@@ -199,48 +192,36 @@ void TestRelations::tablesOfConsistency() {
 
 void TestRelations::relativeAngles_data() {
     // Figure 4.4, with the second segment along x.
-    QTest::addColumn<double>("x");
-    QTest::addColumn<double>("y");
-    QTest::addColumn<double>("angle");
-    QTest::newRow("4") << 1.0 << 0.0 << 0.0;
-    QTest::newRow("3") << 0.0 << 1.0 << 90.0;
-    QTest::newRow("7") << -1.0 << 0.0 << 180.0;
-    QTest::newRow("1") << 0.0 << -1.0 << 270.0;
+    const Rows<double, double, double> row("x", "y", "angle");
+    row("4", 1.0, 0.0, 0.0);
+    row("3", 0.0, 1.0, 90.0);
+    row("7", -1.0, 0.0, 180.0);
+    row("1", 0.0, -1.0, 270.0);
 }
 
 void TestRelations::relativeAngles() {
-    QFETCH(double, x);
-    QFETCH(double, y);
-    QFETCH(double, angle);
+    FETCH(double, x, double, y, double, angle);
     const Segment along({0, 0}, {1, 0}), other({5, 3}, Point(5, 3) + Point(x, y));
     QVERIFY(std::abs(relativeAngle(along, other) * 180 / pi - angle) < 1e-9);
 }
 
 void TestRelations::parallelSegments_data() {
-    QTest::addColumn<double>("from");
-    QTest::addColumn<double>("to"); // of the second, along the first, which runs from 0 to 2; 1 m across
-    QTest::addColumn<int>("firstEnd");
-    QTest::addColumn<int>("secondBegin");
-    QTest::addColumn<int>("kind");
-    QTest::addColumn<double>("along");
+    const Rows<double, double, int, int, int, double> row(
+        "from", "to", "firstEnd", "secondBegin", "kind",
+        "along"); // to: of the second, along the first, which runs from 0 to 2; 1 m across
     const int edge = int(EndType::Jump), open = int(EndType::Interior);
     const int overlap = int(OverlapKind::Overlap), may = int(OverlapKind::MayOverlap),
               none = int(OverlapKind::NoOverlap);
-    QTest::newRow("overlap") << 1.5 << 3.0 << edge << edge << overlap << 0.5;
-    QTest::newRow("overlap, the other way") << 3.0 << 1.5 << edge << edge << overlap << 0.5;
-    QTest::newRow("apart") << 2.5 << 3.5 << edge << edge << none << 0.5;
-    QTest::newRow("apart before it") << -1.5 << -0.5 << edge << edge << none << 0.5;
-    QTest::newRow("may, the first goes on") << 2.5 << 3.5 << open << edge << may << 0.0;
-    QTest::newRow("may, the second goes on") << 2.5 << 3.5 << edge << open << may << 0.0;
+    row("overlap", 1.5, 3.0, edge, edge, overlap, 0.5);
+    row("overlap, the other way", 3.0, 1.5, edge, edge, overlap, 0.5);
+    row("apart", 2.5, 3.5, edge, edge, none, 0.5);
+    row("apart before it", -1.5, -0.5, edge, edge, none, 0.5);
+    row("may, the first goes on", 2.5, 3.5, open, edge, may, 0.0);
+    row("may, the second goes on", 2.5, 3.5, edge, open, may, 0.0);
 }
 
 void TestRelations::parallelSegments() {
-    QFETCH(double, from);
-    QFETCH(double, to);
-    QFETCH(int, firstEnd);
-    QFETCH(int, secondBegin);
-    QFETCH(int, kind);
-    QFETCH(double, along);
+    FETCH(double, from, double, to, int, firstEnd, int, secondBegin, int, kind, double, along);
     TypedSegment a{Segment({0, 0}, {2, 0}), {}, {}, false, {}},
         b{Segment({from, 1}, {to, 1}), {}, {}, false, {}};
     a.begin.type = b.end.type = EndType::Jump;
@@ -388,16 +369,14 @@ MatchingTable TestRelations::publishedTable() {
 }
 
 void TestRelations::publishedMatchingTable_data() {
-    QTest::addColumn<bool>("sameOrder");
-    QTest::addColumn<double>("threshold");
-    QTest::newRow("Algorithm 7") << false << 0.0;
-    QTest::newRow("Algorithm 10") << true << 0.0;
-    QTest::newRow("a tenth of the maximum") << true << 0.975;
+    const Rows<bool, double> row("sameOrder", "threshold");
+    row("Algorithm 7", false, 0.0);
+    row("Algorithm 10", true, 0.0);
+    row("a tenth of the maximum", true, 0.975);
 }
 
 void TestRelations::publishedMatchingTable() {
-    QFETCH(bool, sameOrder);
-    QFETCH(double, threshold);
+    FETCH(bool, sameOrder, double, threshold);
     MatchingTable table = publishedTable();
     for (int i = 0; i < 8; ++i)
         for (int j = 0; j < 8; ++j)
@@ -423,9 +402,9 @@ void TestRelations::publishedMatchingTable() {
 }
 
 void TestRelations::aMatchMakesOthersInvalid_data() {
-    QTest::addColumn<bool>("sameOrder");
-    QTest::newRow("row and column") << false; // Algorithm 7
-    QTest::newRow("order") << true;           // both calls of Algorithm 10
+    const Rows<bool> row("sameOrder");
+    row("row and column", false); // Algorithm 7
+    row("order", true);           // both calls of Algorithm 10
 }
 
 void TestRelations::aMatchMakesOthersInvalid() {

@@ -117,15 +117,13 @@ void TestRelationsRepeating::wrongPlacesAreRarelyFound() {
 }
 
 void TestRelationsRepeating::roomsThatDoNotRepeatAreFound_data() {
-    QTest::addColumn<bool>("isFullTurn");
-    QTest::addColumn<int>("least"); // of 80
-    QTest::newRow("full turn") << true << 80;
-    QTest::newRow("half a turn, any heading") << false << 40;
+    const Rows<bool, int> row("isFullTurn", "least"); // least: of 80
+    row("full turn", true, 80);
+    row("half a turn, any heading", false, 40);
 }
 
 void TestRelationsRepeating::roomsThatDoNotRepeatAreFound() {
-    QFETCH(bool, isFullTurn);
-    QFETCH(int, least);
+    FETCH(bool, isFullTurn, int, least);
     Count count;
     for (std::uint64_t seed = 1000; seed < 1080; ++seed) {
         RandomRoom room(seed);

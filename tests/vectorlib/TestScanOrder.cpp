@@ -134,12 +134,12 @@ private Q_SLOTS:
 };
 
 void TestScanOrder::anOrderedScanStaysAsItIs_data() {
-    QTest::addColumn<int>("order");
-    QTest::newRow("as seen") << int(AsSeen);
-    QTest::newRow("started anywhere") << int(StartedAnywhere);
-    QTest::newRow("over one turn") << int(OverOneTurn);
-    QTest::newRow("every point twice") << int(Doubled);
-    QTest::newRow("every other point is none") << int(WithNaN);
+    const Rows<int> row("order");
+    row("as seen", int(AsSeen));
+    row("started anywhere", int(StartedAnywhere));
+    row("over one turn", int(OverOneTurn));
+    row("every point twice", int(Doubled));
+    row("every other point is none", int(WithNaN));
 }
 
 void TestScanOrder::anOrderedScanStaysAsItIs() {
@@ -166,9 +166,7 @@ void TestScanOrder::aClockwiseScanIsReversed() {
 }
 
 void TestScanOrder::aScanWithoutOrderIsSorted() {
-    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     ScanOrder ordered;
     for (std::size_t n : {3, 10, 100, 300}) { // of a turn of 360: the widest gap is behind the last
         Points scan = turn();
@@ -198,11 +196,8 @@ void TestScanOrder::matchersTellTheSame_data() {
 }
 
 void TestScanOrder::matchersTellTheSame() {
-    QFETCH(int, order);
-    QFETCH(double, turn);
-    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    FETCH(int, order, double, turn);
+    std::mt19937 random(newSeed());
     const Matchers match{2 * pi * turn, int(720 * turn) + (turn < 1)};
     int told = 0, same = 0;
     for (int i = 0; i < 25; ++i) {
@@ -244,17 +239,15 @@ void TestScanOrder::matchersTellTheSame() {
 }
 
 void TestScanOrder::nothingIsFoundInNothing_data() {
-    QTest::addColumn<int>("count");
-    QTest::addColumn<int>("places");
+    const Rows<int, int> row("count", "places");
     for (int count : {0, 1, 2, 720})
         QTest::addRow("%d points", count) << count << 1;
-    QTest::newRow("720 points in two places") << 720 << 2;
-    QTest::newRow("720 points that are none") << 720 << 0;
+    row("720 points in two places", 720, 2);
+    row("720 points that are none", 720, 0);
 }
 
 void TestScanOrder::nothingIsFoundInNothing() {
-    QFETCH(int, count);
-    QFETCH(int, places);
+    FETCH(int, count, int, places);
     const RandomRoom room(3);
     SimulatedScanner<double> scanner(4);
     Points whole, few;
@@ -313,13 +306,11 @@ void TestScanOrder::orderingAllocatesNothing() {
     std::mt19937 random(8);
     const Points clockwise = inOrder(turn(), Clockwise, random), none = inOrder(turn(), Shuffled, random);
     ScanOrder ordered;
-    ordered(clockwise);
-    ordered(none);
-    const std::size_t before = allocations;
-    ordered(clockwise);
-    ordered(none);
-    const std::size_t after = allocations;
-    QCOMPARE(after, before);
+    const std::size_t more = allocationsOnceGrown(2, [&] {
+        ordered(clockwise);
+        ordered(none);
+    });
+    QCOMPARE(more, std::size_t(0));
 }
 
 QTEST_GUILESS_MAIN(TestScanOrder)

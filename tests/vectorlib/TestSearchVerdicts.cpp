@@ -37,8 +37,7 @@ void TestSearchVerdicts::boundOnCombinationsIsReported() {
 }
 
 void TestSearchVerdicts::saysWhyThereIsNothing_data() {
-    QTest::addColumn<int>("which");
-    QTest::addColumn<int>("outcome");
+    const Rows<int, int> row("which", "outcome");
     const char *names[] = {"nothing static",
                            "nothing dynamic",
                            "only bad segments",
@@ -60,12 +59,11 @@ void TestSearchVerdicts::saysWhyThereIsNothing_data() {
         SearchOutcome::BadSettings,     SearchOutcome::BadSettings,   SearchOutcome::BadSettings,
         SearchOutcome::TooManyPairs,    SearchOutcome::TooManyPairs};
     for (int i = 0; i < 14; ++i)
-        QTest::newRow(names[i]) << i << static_cast<int>(outcomes[i]);
+        row(names[i], i, static_cast<int>(outcomes[i]));
 }
 
 void TestSearchVerdicts::saysWhyThereIsNothing() {
-    QFETCH(int, which);
-    QFETCH(int, outcome);
+    FETCH(int, which, int, outcome);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CorrespondenceFinder find;
     Segments fixed = room(), moving = room();

@@ -98,9 +98,9 @@ EarSettings randomSettings(std::mt19937 &random, std::size_t count) {
 }
 
 void levels() {
-    QTest::addColumn<int>("level");
-    QTest::newRow("scalar") << int(simd::Level::Scalar);
-    QTest::newRow("best of this processor") << int(simd::bestLevel());
+    const Rows<int> row("level");
+    row("scalar", int(simd::Level::Scalar));
+    row("best of this processor", int(simd::bestLevel()));
 }
 
 void compare(const Segmentation &found, const Reference &expected, unsigned seed) {

@@ -159,27 +159,23 @@ void TestSimilarity::farFromTheOriginTheSumsCancel() { // erratum 13: why the fr
 }
 
 void TestSimilarity::badInputAddsNothing_data() {
-    QTest::addColumn<QLineF>("fixed");
-    QTest::addColumn<QLineF>("moving");
-    QTest::addColumn<double>("weight");
+    const Rows<QLineF, QLineF, double> row("fixed", "moving", "weight");
     const QLineF good(0, 0, 1, 0), point(1, 1, 1, 1), nan(0, 0, qQNaN(), 1), infinite(0, 0, qInf(), 1);
-    QTest::newRow("static of no length") << point << good << 1.0;
-    QTest::newRow("dynamic of no length") << good << point << 1.0;
-    QTest::newRow("static NaN") << nan << good << 1.0;
-    QTest::newRow("dynamic infinite") << good << infinite << 1.0;
-    QTest::newRow("weight 0") << good << good << 0.0;
-    QTest::newRow("weight below 0") << good << good << -1.0;
-    QTest::newRow("weight NaN") << good << good << qQNaN();
-    QTest::newRow("weight infinite") << good << good << qInf();
-    QTest::newRow("static infinite") << infinite << good << 1.0;
-    QTest::newRow("dynamic NaN") << good << nan << 1.0;
-    QTest::newRow("beyond a double") << QLineF(0, 0, 1e100, 1e100) << QLineF(0, 0, 1e100, -1e100) << 1.0;
+    row("static of no length", point, good, 1.0);
+    row("dynamic of no length", good, point, 1.0);
+    row("static NaN", nan, good, 1.0);
+    row("dynamic infinite", good, infinite, 1.0);
+    row("weight 0", good, good, 0.0);
+    row("weight below 0", good, good, -1.0);
+    row("weight NaN", good, good, qQNaN());
+    row("weight infinite", good, good, qInf());
+    row("static infinite", infinite, good, 1.0);
+    row("dynamic NaN", good, nan, 1.0);
+    row("beyond a double", QLineF(0, 0, 1e100, 1e100), QLineF(0, 0, 1e100, -1e100), 1.0);
 }
 
 void TestSimilarity::badInputAddsNothing() {
-    QFETCH(QLineF, fixed);
-    QFETCH(QLineF, moving);
-    QFETCH(double, weight);
+    FETCH(QLineF, fixed, QLineF, moving, double, weight);
     const auto segment = [](const QLineF &l) { return Segment({l.x1(), l.y1()}, {l.x2(), l.y2()}); };
     EdgeSetComparator criterion;
     QCOMPARE(criterion({1, 2, 3}), 0.0); // an empty set is alike under every transformation

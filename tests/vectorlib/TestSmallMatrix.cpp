@@ -50,24 +50,18 @@ void TestSmallMatrix::solutions() {
 }
 
 void TestSmallMatrix::noSolution_data() {
-    QTest::addColumn<double>("first");
-    QTest::addColumn<double>("second");
-    QTest::addColumn<double>("third");
-    QTest::addColumn<double>("right");
-    QTest::newRow("zero") << 0.0 << 0.0 << 0.0 << 1.0;
-    QTest::newRow("the first is zero") << 0.0 << 1.0 << 1.0 << 1.0;
-    QTest::newRow("the second is zero") << 1.0 << 0.0 << 1.0 << 1.0;
-    QTest::newRow("the third is zero") << 1.0 << 1.0 << 0.0 << 1.0;
-    QTest::newRow("negative") << 1.0 << -1.0 << 1.0 << 1.0;
-    QTest::newRow("not a number") << 1.0 << 1.0 << std::numeric_limits<double>::quiet_NaN() << 1.0;
-    QTest::newRow("right side not finite") << 1.0 << 1.0 << 1.0 << std::numeric_limits<double>::infinity();
+    const Rows<double, double, double, double> row("first", "second", "third", "right");
+    row("zero", 0.0, 0.0, 0.0, 1.0);
+    row("the first is zero", 0.0, 1.0, 1.0, 1.0);
+    row("the second is zero", 1.0, 0.0, 1.0, 1.0);
+    row("the third is zero", 1.0, 1.0, 0.0, 1.0);
+    row("negative", 1.0, -1.0, 1.0, 1.0);
+    row("not a number", 1.0, 1.0, std::numeric_limits<double>::quiet_NaN(), 1.0);
+    row("right side not finite", 1.0, 1.0, 1.0, std::numeric_limits<double>::infinity());
 }
 
 void TestSmallMatrix::noSolution() {
-    QFETCH(double, first);
-    QFETCH(double, second);
-    QFETCH(double, third);
-    QFETCH(double, right);
+    FETCH(double, first, double, second, double, third, double, right);
     const Eigen::Matrix3d h = Eigen::Vector3d(first, second, third).asDiagonal();
     QVERIFY(!solveSymmetric(h, Eigen::Vector3d(1, 1, right)));
 }

@@ -44,20 +44,14 @@ MeasuredSegments seen(const Transformation2D &from, double noise, std::mt19937 &
 } // namespace
 
 void TestSolutionCovariance::agreesWithMonteCarlo_data() {
-    QTest::addColumn<double>("x");
-    QTest::addColumn<double>("y");
-    QTest::addColumn<double>("alpha");
-    QTest::addColumn<double>("mapNoise");
-    QTest::newRow("no motion") << 0.0 << 0.0 << 0.0 << 0.01;
-    QTest::newRow("motion") << 0.7 << -0.4 << 0.6 << 0.01;
-    QTest::newRow("a map that is known exactly") << 0.7 << 0.4 << -0.3 << 0.0;
+    const Rows<double, double, double, double> row("x", "y", "alpha", "mapNoise");
+    row("no motion", 0.0, 0.0, 0.0, 0.01);
+    row("motion", 0.7, -0.4, 0.6, 0.01);
+    row("a map that is known exactly", 0.7, 0.4, -0.3, 0.0);
 }
 
 void TestSolutionCovariance::agreesWithMonteCarlo() {
-    QFETCH(double, x);
-    QFETCH(double, y);
-    QFETCH(double, alpha);
-    QFETCH(double, mapNoise);
+    FETCH(double, x, double, y, double, alpha, double, mapNoise);
     const Transformation2D truth(x, y, alpha);
     constexpr int runs = 4000;
     std::mt19937 random(7);

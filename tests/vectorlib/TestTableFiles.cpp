@@ -48,12 +48,7 @@ class TestTableFiles : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void goodInput_data() {
-        QTest::addColumn<QByteArray>("kind");
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<int>("rows");
-        const auto row = [](const char *name, const char *kind, const QByteArray &text, int rows) {
-            QTest::newRow(name) << QByteArray(kind) << text << rows;
-        };
+        const Rows<QByteArray, QByteArray, int> row("kind", "text", "rows");
         row("no header", "points", "1,2\n3,4\n", 2);
         row("comments, header, blank lines", "points", "# a scan\nx,y\n\n 1 , 2\n# in between\n3,+4e0\n", 2);
         row("CR LF and no last line end", "points", "x,y\r\n1,2\r\n3,4", 2);
@@ -74,22 +69,14 @@ private Q_SLOTS:
         row("pcd", "pcd", pcdHeader + "POINTS 2\nDATA ascii\n9 9 1 2\n9 9 3 4\n", 2);
     }
     void goodInput() {
-        QFETCH(QByteArray, kind);
-        QFETCH(QByteArray, text);
+        FETCH(QByteArray, kind, QByteArray, text);
         const auto [rows, message] = outcome(kind, text);
         QVERIFY2(rows >= 0, message.constData());
         QTEST(rows, "rows");
     }
 
     void badInput_data() {
-        QTest::addColumn<QByteArray>("kind");
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("place");
-        QTest::addColumn<QByteArray>("said");
-        const auto row = [](const char *name, const char *kind, const QByteArray &text, const char *place,
-                            const char *said) {
-            QTest::newRow(name) << QByteArray(kind) << text << QByteArray(place) << QByteArray(said);
-        };
+        const Rows<QByteArray, QByteArray, QByteArray, QByteArray> row("kind", "text", "place", "said");
         row("empty", "points", "", "f", "an empty file, expected columns x,y");
         row("nan", "points", "x,y\n1,2\nnan,3\n", "f:3", "found \"nan\", expected a finite number as x");
         row("nan in the first line", "points", "NaN,3\n", "f:1", "a finite number as x");
@@ -137,10 +124,7 @@ private Q_SLOTS:
         row("pcd cut in the header", "pcd", pcdHeader, "f:9", "a line DATA");
     }
     void badInput() {
-        QFETCH(QByteArray, kind);
-        QFETCH(QByteArray, text);
-        QFETCH(QByteArray, place);
-        QFETCH(QByteArray, said);
+        FETCH(QByteArray, kind, QByteArray, text, QByteArray, place, QByteArray, said);
         const auto [rows, message] = outcome(kind, text);
         QCOMPARE(rows, -1);
         QVERIFY2(message.startsWith(place + ':'), message.constData());

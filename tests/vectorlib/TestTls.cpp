@@ -43,9 +43,9 @@ private Q_SLOTS:
 };
 
 void TestTls::fitsAnyDirection_data() {
-    QTest::addColumn<double>("theta");
+    const Rows<double> row("theta");
     for (int degrees = -180; degrees < 180; degrees += 15)
-        QTest::newRow(qPrintable(QString("%1 degrees").arg(degrees))) << degrees * pi / 180;
+        row(qPrintable(QString("%1 degrees").arg(degrees)), degrees * pi / 180);
 }
 
 void TestTls::fitsAnyDirection() {
@@ -74,13 +74,12 @@ void TestTls::traditionalFormulaNeedsItsErratum() {
 }
 
 void TestTls::noDirectionIsReported_data() {
-    QTest::addColumn<QVector<QPointF>>("points");
-    QTest::newRow("none") << QVector<QPointF>{};
-    QTest::newRow("one") << QVector<QPointF>{{3, 4}};
-    QTest::newRow("two equal") << QVector<QPointF>{{3, 4}, {3, 4}};
-    QTest::newRow("a square") << QVector<QPointF>{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    QTest::newRow("a far triangle") << QVector<QPointF>{
-        {10001, 0}, {9999.5, 0.86602540378443865}, {9999.5, -0.86602540378443865}};
+    const Rows<QVector<QPointF>> row("points");
+    row("none", {});
+    row("one", {{3, 4}});
+    row("two equal", {{3, 4}, {3, 4}});
+    row("a square", {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    row("a far triangle", {{10001, 0}, {9999.5, 0.86602540378443865}, {9999.5, -0.86602540378443865}});
 }
 
 void TestTls::noDirectionIsReported() { // erratum 2: p = q = 0

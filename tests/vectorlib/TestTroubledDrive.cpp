@@ -237,10 +237,10 @@ private Q_SLOTS:
 };
 
 void TestTroubledDrive::noWallIsMadeUp_data() {
-    QTest::addColumn<QString>("kind");
+    const Rows<QString> row("kind");
     for (const char *kind : {"all is well", "behind", "far behind", "silent", "late", "frozen", "blind",
                              "clock", "none at all", "mixed"})
-        QTest::newRow(kind) << kind;
+        row(kind, kind);
 }
 
 void TestTroubledDrive::noWallIsMadeUp() {

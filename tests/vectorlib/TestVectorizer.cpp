@@ -163,18 +163,16 @@ void TestVectorizer::negativeSigmaCorrectsNoLine() {
 }
 
 void TestVectorizer::degenerateInput_data() {
-    QTest::addColumn<QVector<QPointF>>("points");
-    QTest::addColumn<int>("lines");
-    QTest::newRow("empty") << QVector<QPointF>{} << 0;
-    QTest::newRow("one point") << QVector<QPointF>{{1, 2}} << 0;
-    QTest::newRow("two equal points") << QVector<QPointF>{{1, 2}, {1, 2}} << 1;
-    QTest::newRow("all equal") << QVector<QPointF>(50, {1, 2}) << 1;
-    QTest::newRow("two points") << QVector<QPointF>{{1, 2}, {1, 3}} << 1;
+    const Rows<QVector<QPointF>, int> row("points", "lines");
+    row("empty", {}, 0);
+    row("one point", {{1, 2}}, 0);
+    row("two equal points", {{1, 2}, {1, 2}}, 1);
+    row("all equal", QVector<QPointF>(50, {1, 2}), 1);
+    row("two points", {{1, 2}, {1, 3}}, 1);
 }
 
 void TestVectorizer::degenerateInput() {
-    QFETCH(QVector<QPointF>, points);
-    QFETCH(int, lines);
+    FETCH(QVector<QPointF>, points, int, lines);
     Points p;
     for (const QPointF &q : points)
         p.emplace_back(float(q.x()), float(q.y()));
@@ -216,12 +214,8 @@ void TestVectorizer::farFromTheOrigin() { // erratum 3
 void TestVectorizer::noAllocationOnceGrown() {
     FtlsVectorizer<float> vectorize;
     const Points points = polyline(staircase, 100, 0.01, 1);
-    vectorize(points);
-    vectorize(points);
-    const std::size_t before = allocations;
-    vectorize(points);
-    const std::size_t after = allocations;
-    QCOMPARE(after, before);
+    const std::size_t more = allocationsOnceGrown(3, [&] { vectorize(points); });
+    QCOMPARE(more, std::size_t(0));
 }
 
 QTEST_APPLESS_MAIN(TestVectorizer)

@@ -8,10 +8,10 @@ Q_DECLARE_METATYPE(Algorithm)
 namespace {
 
 void algorithmRows(const QStringList &without = {}) {
-    QTest::addColumn<Algorithm>("algorithm");
+    const Rows<Algorithm> row("algorithm");
     for (const Algorithm &a : algorithms)
         if (!isOneOf(a, without))
-            QTest::newRow(a.name) << a;
+            row(a.name, a);
 }
 
 VectorizerSettings settingsOf(bool polyline) {
@@ -272,9 +272,7 @@ void TestVectorizerProperties::degenerateInput_data() {
 }
 
 void TestVectorizerProperties::degenerateInput() {
-    QFETCH(Algorithm, algorithm);
-    QFETCH(QVector<QPointF>, points);
-    QFETCH(double, sigma);
+    FETCH(Algorithm, algorithm, QVector<QPointF>, points, double, sigma);
     const std::size_t least = isOneOf(algorithm, {"dp", "rw"}) ? 1 : 2;
     QFETCH(int, lines);
     Points p;

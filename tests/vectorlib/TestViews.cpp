@@ -75,9 +75,7 @@ void TestViews::directionsKeepTheirOrder() {
 }
 
 void TestViews::thousandCrossingEdgesAgreeWithRays() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     std::uniform_real_distribution<double> unit(-1, 1);
     int compared = 0;
     for (const double length : {0.3, 3.0, 30.0}) {
@@ -238,9 +236,7 @@ void TestViews::nothingSharedIsNoEvidence() {
 }
 
 void TestViews::agreesWithRaysOnRandomViews() {
-    const unsigned seed = std::random_device()();
-    qInfo("seed %u", seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(newSeed());
     std::uniform_real_distribution<double> unit(-1, 1);
     for (int round = 0; round < 20; ++round) {
         const auto made = [&] {

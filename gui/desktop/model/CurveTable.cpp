@@ -1,6 +1,7 @@
 #include "gui/desktop/model/CurveTable.h"
 
-#include <QSaveFile>
+#include "common/files/SavedFile.h"
+
 #include <charconv>
 
 namespace hermes::desktop {
@@ -22,12 +23,9 @@ void append(QByteArray &line, double number) {
 } // namespace
 
 Result<void> writeCurves(const QString &file, const std::vector<KeptCurve> &curves) {
-    QSaveFile out(file);
-    const auto failed = [&] {
-        return Error(ErrorCode::InputOutput, QObject::tr("%1: %2").arg(file, out.errorString()));
-    };
-    if (!out.open(QIODevice::WriteOnly))
-        return failed();
+    SavedFile out(file);
+    if (const auto begun = out.begin(); !begun)
+        return begun;
     out.write("stamp,daemon,topic,field,value,unit\n");
     for (const KeptCurve &curve : curves) {
         const QByteArray names =
@@ -41,9 +39,7 @@ Result<void> writeCurves(const QString &file, const std::vector<KeptCurve> &curv
             out.write(line.append(unit));
         }
     }
-    if (!out.commit())
-        return failed();
-    return {};
+    return out.commit();
 }
 
 } // namespace hermes::desktop

@@ -1,5 +1,7 @@
 #include "gui/desktop/widgets/WrittenFile.h"
 
+#include "common/files/SavedFile.h"
+
 #include <QBuffer>
 #include <QCoreApplication>
 #include <QFileInfo>
@@ -7,7 +9,6 @@
 #include <QPainter>
 #include <QPalette>
 #include <QPointer>
-#include <QSaveFile>
 #include <QSvgGenerator>
 #include <QThreadPool>
 
@@ -16,10 +17,12 @@ namespace {
 
 /// As a whole, or not at all.
 Result<void> write(const QString &file, const std::function<bool(QIODevice &)> &content) {
-    QSaveFile out(file);
-    if (!out.open(QIODevice::WriteOnly) || !content(out) || !out.commit())
+    SavedFile out(file);
+    if (const auto begun = out.begin(); !begun)
+        return begun;
+    if (!content(out))
         return Error(ErrorCode::InputOutput, QObject::tr("%1 cannot be written").arg(file));
-    return {};
+    return out.commit();
 }
 
 QByteArray svgOf(const QString &title, const QSize &size, const std::function<void(QPainter &)> &draw) {

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/model/Macro.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
 #include <QJsonDocument>
@@ -22,9 +23,8 @@ protected:
     void begin() {
         file_ = robot_->path("gui.ini");
         QFile::remove(file_);
-        client_ = std::make_unique<Client>();
-        client_->connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
-        QVERIFY(client_->waitConnected().ok());
+        client_ =
+            std::make_unique<ConnectedClient>(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
     }
     void close() {
         window_.reset();

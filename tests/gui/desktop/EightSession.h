@@ -80,8 +80,7 @@ struct EightSession {
     }
     QByteArray svg() {
         const QString file = folder.filePath("view.svg");
-        QFile text(file);
-        return panel.exportTo(file).ok() && text.open(QIODevice::ReadOnly) ? text.readAll() : QByteArray();
+        return panel.exportTo(file).ok() ? contentOf(file) : QByteArray();
     }
 
     const EightDrive bent{usualDrift}, straight{0};

@@ -84,15 +84,13 @@ void TestAgeing::motorControlFrozen() {
 }
 
 void TestAgeing::sourceOfThePoseSilent_data() {
-    QTest::addColumn<QString>("who");
-    QTest::addColumn<bool>("scansGoOn");
-    QTest::newRow("the matcher is frozen") << "scanmatcher" << true;
-    QTest::newRow("the lidar is silent") << "simulator" << false;
+    const Rows<QString, bool> row("who", "scansGoOn");
+    row("the matcher is frozen", "scanmatcher", true);
+    row("the lidar is silent", "simulator", false);
 }
 
 void TestAgeing::sourceOfThePoseSilent() {
-    QFETCH(QString, who);
-    QFETCH(bool, scansGoOn);
+    FETCH(QString, who, bool, scansGoOn);
     robot_->signal(who, SIGSTOP);
     QTRY_VERIFY_WITH_TIMEOUT(!map().poseAge().isFresh(), 1500);
     QTRY_VERIFY_WITH_TIMEOUT(!isGreenSeen(), 500);

@@ -99,9 +99,9 @@ void TestButtons::endedByHand() {
 }
 
 void TestButtons::stopEndsIt_data() {
-    QTest::addColumn<QString>("by");
+    const Rows<QString> row("by");
     for (const char *const by : {"button", "F12", "another client"})
-        QTest::newRow(by) << QString(by);
+        row(by, QString(by));
 }
 
 void TestButtons::stopEndsIt() {

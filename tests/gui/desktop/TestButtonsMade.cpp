@@ -92,9 +92,9 @@ void TestButtonsMade::commandBecomesAStep() {
 }
 
 void TestButtonsMade::whatCannotBeKeptIsNotTaken_data() {
-    QTest::addColumn<QString>("letter"); // of one, two and three bytes
+    const Rows<QString> row("letter"); // of one, two and three bytes
     for (const char *const letter : {"x", "ä", "字"})
-        QTest::newRow(letter) << QString::fromUtf8(letter);
+        row(letter, QString::fromUtf8(letter));
 }
 
 void TestButtonsMade::whatCannotBeKeptIsNotTaken() {
@@ -150,27 +150,24 @@ void TestButtonsMade::whatIsTakenIsKept() {
 
 // What each step may be is what a file may hold.
 void TestButtonsMade::whatTheStepSaysHoldsForTheFile_data() {
-    QTest::addColumn<MacroStep>("step");
-    QTest::addColumn<QString>("problem");
+    const Rows<MacroStep, QString> row("step", "problem");
     const auto nested = [](int depth) {
         QJsonValue value = 1;
         for (int i = 0; i < depth; ++i)
             value = QJsonArray{value};
         return QJsonObject{{"list", value}};
     };
-    QTest::newRow("usual") << MacroStep{"a", "b", "c", {{"x", 1}}} << QString();
-    QTest::newRow("deep") << MacroStep{"a", "b", "c", nested(1000)} << QString();
-    QTest::newRow("too deep") << MacroStep{"a", "b", "c", nested(1023)} << QString("too many lists in lists");
-    QTest::newRow("long name") << MacroStep{"a", "b", QString(200, 'c'), {}} << QString();
-    QTest::newRow("too long a name") << MacroStep{"a", "b", QString(201, 'c'), {}}
-                                     << QString(
-                                            "has a name of 201 characters; a button keeps one line of 200");
-    QTest::newRow("two lines") << MacroStep{"a", "b\nb", "c", {}} << QString("keeps one line");
+    row("usual", {"a", "b", "c", {{"x", 1}}}, QString());
+    row("deep", {"a", "b", "c", nested(1000)}, QString());
+    row("too deep", {"a", "b", "c", nested(1023)}, "too many lists in lists");
+    row("long name", {"a", "b", QString(200, 'c'), {}}, QString());
+    row("too long a name", {"a", "b", QString(201, 'c'), {}},
+        "has a name of 201 characters; a button keeps one line of 200");
+    row("two lines", {"a", "b\nb", "c", {}}, "keeps one line");
 }
 
 void TestButtonsMade::whatTheStepSaysHoldsForTheFile() {
-    QFETCH(MacroStep, step);
-    QFETCH(QString, problem);
+    FETCH(MacroStep, step, QString, problem);
     const QString told = step.problem();
     QVERIFY2(told.isEmpty() == problem.isEmpty() && told.contains(problem), qPrintable(told));
     Buttons before, after;
@@ -257,8 +254,7 @@ void TestButtonsMade::isKeptAndGreyWithoutItsDaemon() {
 }
 
 void TestButtonsMade::nonsenseInTheFile_data() {
-    QTest::addColumn<QByteArray>("kept");
-    QTest::addColumn<int>("shown");
+    const Rows<QByteArray, int> row("kept", "shown");
     const QByteArray step = R"({"robot":"a","daemon":"b","method":"c"})";
     QByteArray many = "[", steps, deep = "1";
     for (int i = 0; i < 5000; ++i)
@@ -267,33 +263,32 @@ void TestButtonsMade::nonsenseInTheFile_data() {
         steps += (i ? "," : "") + step;
     for (int i = 0; i < 90; ++i)
         deep = '[' + deep + ']';
-    QTest::newRow("no JSON") << QByteArray("{[") << 0;
-    QTest::newRow("an object") << QByteArray("{}") << 0;
-    QTest::newRow("numbers") << QByteArray("[1,null,\"x\",{}]") << 0;
-    QTest::newRow("no steps") << QByteArray(R"([{"name":"x","steps":[]}])") << 0;
-    QTest::newRow("steps of a wrong kind") << QByteArray(R"([{"name":"x","steps":[5]}])") << 0;
-    QTest::newRow("one wrong step of two")
-        << R"([{"name":"x","steps":[)" + step + R"(,{"method":5}]}])" << 0; // would be another macro
-    QTest::newRow("many steps") << R"([{"name":"x","steps":[)" + steps + "]}]" << 0;
-    QTest::newRow("many buttons") << many + ']' << Buttons::most;
-    QTest::newRow("long names") << R"([{"name":")" + QByteArray(100000, 'W') + R"(","steps":[)" + step + "]}]"
-                                << 1;
-    QTest::newRow("markup") << R"([{"name":"<h1>&\u202e\u0000x","steps":[)" + step + "]}]" << 1;
-    QTest::newRow("large parameters") << R"([{"name":"x","steps":[{"robot":"a","daemon":"b","method":"c",)"
-                                         R"("params":{"p":")" +
-                                             QByteArray(30000, 'x') + R"("}}]}])"
-                                      << 0;
-    QTest::newRow("deep parameters") << R"([{"name":"x","steps":[{"robot":"a","daemon":"b","method":"c",)"
-                                        R"("params":{"p":)" +
-                                            deep + "}}]}]"
-                                     << 1;
-    QTest::newRow("an endless pause")
-        << QByteArray(R"([{"name":"x","steps":[{"method":"c","pause_s":1e300}]}])") << 1;
+    row("no JSON", "{[", 0);
+    row("an object", "{}", 0);
+    row("numbers", "[1,null,\"x\",{}]", 0);
+    row("no steps", R"([{"name":"x","steps":[]}])", 0);
+    row("steps of a wrong kind", R"([{"name":"x","steps":[5]}])", 0);
+    row("one wrong step of two", R"([{"name":"x","steps":[)" + step + R"(,{"method":5}]}])",
+        0); // would be another macro
+    row("many steps", R"([{"name":"x","steps":[)" + steps + "]}]", 0);
+    row("many buttons", many + ']', Buttons::most);
+    row("long names", R"([{"name":")" + QByteArray(100000, 'W') + R"(","steps":[)" + step + "]}]", 1);
+    row("markup", R"([{"name":"<h1>&\u202e\u0000x","steps":[)" + step + "]}]", 1);
+    row("large parameters",
+        R"([{"name":"x","steps":[{"robot":"a","daemon":"b","method":"c",)"
+        R"("params":{"p":")" +
+            QByteArray(30000, 'x') + R"("}}]}])",
+        0);
+    row("deep parameters",
+        R"([{"name":"x","steps":[{"robot":"a","daemon":"b","method":"c",)"
+        R"("params":{"p":)" +
+            deep + "}}]}]",
+        1);
+    row("an endless pause", R"([{"name":"x","steps":[{"method":"c","pause_s":1e300}]}])", 1);
 }
 
 void TestButtonsMade::nonsenseInTheFile() {
-    QFETCH(QByteArray, kept);
-    QFETCH(int, shown);
+    FETCH(QByteArray, kept, int, shown);
     keep(kept);
     open();
     QCOMPARE(window_->findChildren<QPushButton *>(QRegularExpression("^macro\\d+$")).size(), shown);

@@ -140,11 +140,7 @@ void TestCloud::keysOfDrivingAreNotTaken() {
 }
 
 void TestCloud::onlyWhatMakesSenseIsShown_data() {
-    QTest::addColumn<QByteArray>("cloud");
-    QTest::addColumn<int>("points");
-    const auto row = [](const char *name, const QByteArray &cloud, int points) {
-        QTest::newRow(name) << cloud << points;
-    };
+    const Rows<QByteArray, int> row("cloud", "points");
     row("good", cloudOf("[1,2]", "[1,2]", "[1,2]", "[3,4]", "[5,6]"), 2);
     row("lists of different lengths", cloudOf("[1,2,3]", "[1,2,3,4]", "[1]", "[]", "[1,2,3,4,5]"), 1);
     row("empty", cloudOf("[]", "[]", "[]"), 0);
@@ -165,8 +161,7 @@ void TestCloud::onlyWhatMakesSenseIsShown_data() {
 
 // points: -1: it is no cloud, -2: it is no message that can be read.
 void TestCloud::onlyWhatMakesSenseIsShown() {
-    QFETCH(QByteArray, cloud);
-    QFETCH(int, points);
+    FETCH(QByteArray, cloud, int, points);
     CloudSession s;
     LoopWatch watch;
     s.daemon.say("cloud", cloud);

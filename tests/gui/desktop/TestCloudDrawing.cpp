@@ -161,9 +161,9 @@ void TestCloudDrawing::floatsAndComesBack() {
 }
 
 void TestCloudDrawing::framesOfAWholeTurn_data() {
-    QTest::addColumn<bool>("isByOpenGl");
-    QTest::newRow("without OpenGL") << false;
-    QTest::newRow("by OpenGL") << true;
+    const Rows<bool> row("isByOpenGl");
+    row("without OpenGL", false);
+    row("by OpenGL", true);
 }
 
 void TestCloudDrawing::framesOfAWholeTurn() {

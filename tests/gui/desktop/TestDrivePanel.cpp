@@ -2,6 +2,7 @@
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/drive/Stick.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
 #include <QLabel>
@@ -112,9 +113,7 @@ void TestDrivePanel::open(const QString &layoutFile) {
 void TestDrivePanel::init() {
     robot_ = std::make_unique<FakeRobot>();
     open();
-    client_ = std::make_unique<Client>();
-    client_->connectTo(robot_->address());
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(robot_->address());
     QTRY_VERIFY(find<Stick>("stick")->isEnabled() && drive_->stateAge().isFresh());
 }
 
@@ -233,10 +232,10 @@ void TestDrivePanel::keysAfterAFieldHasVanishedDoNotDrive() {
 }
 
 void TestDrivePanel::stopIsLatchedAndNeedsNoControl_data() {
-    QTest::addColumn<int>("key");
-    QTest::newRow("button") << 0;
-    QTest::newRow("space") << int(Qt::Key_Space);
-    QTest::newRow("escape, which was told to") << int(Qt::Key_Escape);
+    const Rows<int> row("key");
+    row("button", 0);
+    row("space", int(Qt::Key_Space));
+    row("escape, which was told to", int(Qt::Key_Escape));
 }
 
 void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
@@ -376,9 +375,7 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
 }
 
 void TestDrivePanel::whoTakesOverKeepsTheControl() {
-    Client owner; // who may
-    owner.connectTo(asOwner(robot_->address()));
-    QVERIFY(owner.waitConnected().ok());
+    ConnectedClient owner(asOwner(robot_->address())); // who may
     QTest::keyPress(window_.get(), Qt::Key_W);
     awaitMotion();
     const QJsonObject wish{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}};
@@ -412,16 +409,14 @@ void TestDrivePanel::keysDoNotDisturbTheDriveOfAnother() {
 }
 
 void TestDrivePanel::aHeldKeyDrivesOnlyOnce_data() {
-    QTest::addColumn<bool>("isKilled");
-    QTest::addColumn<bool>("isRepeated");
-    QTest::newRow("killed") << true << false;
-    QTest::newRow("killed, repeated") << true << true;
-    QTest::newRow("frozen, repeated") << false << true;
+    const Rows<bool, bool> row("isKilled", "isRepeated");
+    row("killed", true, false);
+    row("killed, repeated", true, true);
+    row("frozen, repeated", false, true);
 }
 
 void TestDrivePanel::aHeldKeyDrivesOnlyOnce() {
-    QFETCH(bool, isKilled);
-    QFETCH(bool, isRepeated);
+    FETCH(bool, isKilled, bool, isRepeated);
     QTest::keyPress(window_.get(), Qt::Key_W);
     if (isRepeated)
         repeat(Qt::Key_W);
@@ -521,9 +516,7 @@ void TestDrivePanel::speedLimitInItsUnit() {
     type("7"); // more than it can
     QCOMPARE(drive_->limit().vx, 1.0);
     QCOMPARE(speed->text(), QString("1.00"));
-    Client owner;
-    owner.connectTo(asOwner(robot_->address()));
-    QVERIFY(owner.waitConnected().ok());
+    ConnectedClient owner(asOwner(robot_->address()));
     const QJsonObject slower{{"motion", QJsonObject{{"vx", 0.5}}}};
     QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", slower}}).ok());
     QTRY_COMPARE(speed->text(), QString("0.50")); // another largest speed

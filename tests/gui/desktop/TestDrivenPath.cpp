@@ -41,31 +41,25 @@ void TestDrivenPath::pathIsFixedToKeyScans() {
 }
 
 void TestDrivenPath::pathIsBrokenAtJumps_data() {
-    QTest::addColumn<double>("distance");
-    QTest::addColumn<double>("seconds");
-    QTest::addColumn<double>("speed");
-    QTest::addColumn<bool>("isJump");
-    QTest::newRow("standing") << 0.0 << 0.1 << 0.0 << false;
-    QTest::newRow("standing for long") << 0.01 << 60.0 << 0.0 << false;
-    QTest::newRow("driving") << 0.1 << 0.1 << 1.0 << false;
-    QTest::newRow("corrected a little") << 0.08 << 0.1 << 0.0 << false;
-    QTest::newRow("placed beside") << 0.3 << 0.1 << 0.0 << true;
-    QTest::newRow("placed while driving") << 0.6 << 0.1 << 1.0 << true;
-    QTest::newRow("a second of driving") << 1.0 << 1.0 << 1.0 << false;
-    QTest::newRow("begins to drive, seldom told") << 0.5 << 1.0 << 0.0 << false;
-    QTest::newRow("a long gap") << 1.0 << 10.0 << 1.0 << true;
-    QTest::newRow("a replay jumps ahead") << 5.0 << 60.0 << 1.0 << true;
-    QTest::newRow("a replay jumps back") << 1.0 << -60.0 << 1.0 << true;
-    QTest::newRow("an impossible speed") << 50.0 << 0.1 << 1e6 << true;
-    QTest::newRow("no time") << 1.0 << std::nan("") << 1.0 << true;
-    QTest::newRow("no speed") << 1.0 << 0.1 << std::nan("") << true;
+    const Rows<double, double, double, bool> row("distance", "seconds", "speed", "isJump");
+    row("standing", 0.0, 0.1, 0.0, false);
+    row("standing for long", 0.01, 60.0, 0.0, false);
+    row("driving", 0.1, 0.1, 1.0, false);
+    row("corrected a little", 0.08, 0.1, 0.0, false);
+    row("placed beside", 0.3, 0.1, 0.0, true);
+    row("placed while driving", 0.6, 0.1, 1.0, true);
+    row("a second of driving", 1.0, 1.0, 1.0, false);
+    row("begins to drive, seldom told", 0.5, 1.0, 0.0, false);
+    row("a long gap", 1.0, 10.0, 1.0, true);
+    row("a replay jumps ahead", 5.0, 60.0, 1.0, true);
+    row("a replay jumps back", 1.0, -60.0, 1.0, true);
+    row("an impossible speed", 50.0, 0.1, 1e6, true);
+    row("no time", 1.0, std::nan(""), 1.0, true);
+    row("no speed", 1.0, 0.1, std::nan(""), true);
 }
 
 void TestDrivenPath::pathIsBrokenAtJumps() {
-    QFETCH(double, distance);
-    QFETCH(double, seconds);
-    QFETCH(double, speed);
-    QFETCH(bool, isJump);
+    FETCH(double, distance, double, seconds, double, speed, bool, isJump);
     constexpr double start = 1718000000;
     DrivenPath path;
     path.add({0, 0, 0}, {start, speed}, 0);

@@ -169,29 +169,23 @@ static QByteArray nested(int depth) {
 }
 
 void TestEditors::whatNoRowsSuitIsText_data() {
-    QTest::addColumn<QByteArray>("schema");
-    QTest::addColumn<QByteArray>("given");
-    QTest::addColumn<bool>("isLine");
-    QTest::newRow("alternatives") << QByteArray(R"({"oneOf":[{"type":"number"},{"type":"object"}]})")
-                                  << QByteArray(R"({"b":[1,{"c":null}]})") << true;
-    QTest::newRow("any") << QByteArray("{}") << QByteArray(R"([1,"x",null])") << true;
+    const Rows<QByteArray, QByteArray, bool> row("schema", "given", "isLine");
+    row("alternatives", R"({"oneOf":[{"type":"number"},{"type":"object"}]})", R"({"b":[1,{"c":null}]})",
+        true);
+    row("any", "{}", R"([1,"x",null])", true);
     QByteArray rows = "[";
     for (int i = 0; i < 1000; ++i)
         rows += (i ? ",\"row " : "\"row ") + QByteArray::number(i) + '"';
-    QTest::newRow("1000 rows") << QByteArray(R"({"type":"array","items":{"type":"string"}})") << rows + ']'
-                               << false;
+    row("1000 rows", R"({"type":"array","items":{"type":"string"}})", rows + ']', false);
     QByteArray deep = R"("x")";
     for (int i = 0; i < 12; ++i)
         deep = R"({"b":)" + deep + '}';
-    QTest::newRow("deep") << nested(12) << deep << false;
-    QTest::newRow("another type") << QByteArray(R"({"type":"array","items":{"type":"string"}})")
-                                  << QByteArray(R"({"b":1})") << false;
+    row("deep", nested(12), deep, false);
+    row("another type", R"({"type":"array","items":{"type":"string"}})", R"({"b":1})", false);
 }
 
 void TestEditors::whatNoRowsSuitIsText() {
-    QFETCH(QByteArray, schema);
-    QFETCH(QByteArray, given);
-    QFETCH(bool, isLine);
+    FETCH(QByteArray, schema, QByteArray, given, bool, isLine);
     open_->showOne(schema, given);
     QCOMPARE(open_->value(), given);
     QCOMPARE(open_->seen<QPlainTextEdit>() == nullptr, isLine);

@@ -2,6 +2,7 @@
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 
 #include <QTreeView>
 
@@ -12,7 +13,6 @@ using namespace hermes::desktop;
 class TestEventLine : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void whatIsOverIsSaidToBeOver();
     void theFaultIsSeenInASmallWindow();
     void oneNameOfADaemonInAllOfTheList();
     void otherClientTakesTheControl();
@@ -27,22 +27,6 @@ private:
         return cells;
     }
 };
-
-void TestEventLine::whatIsOverIsSaidToBeOver() {
-    RobotProcesses robot;
-    robot.start("simulator");
-    OpenWindow window(robot);
-    QVERIFY(window.show());
-    robot.signal("simulator", SIGSTOP);
-    QTRY_VERIFY2_WITH_TIMEOUT(line(window)->text().contains("simulator: It is connected, but does not"),
-                              qPrintable(line(window)->text()), 10000);
-    QVERIFY(line(window)->styleSheet().contains("#d0100c"));
-    robot.signal("simulator", SIGCONT);
-    QTRY_VERIFY2_WITH_TIMEOUT(
-        line(window)->text().contains(QRegularExpression("OVER after \\d+ s: simulator: It is connected")),
-        qPrintable(line(window)->text()), 10000);
-    QVERIFY(!line(window)->styleSheet().contains("#d0100c"));
-}
 
 void TestEventLine::theFaultIsSeenInASmallWindow() {
     RobotProcesses robot;
@@ -91,9 +75,7 @@ void TestEventLine::otherClientTakesTheControl() {
     FakeRobot robot;
     OpenWindow window(robot.address());
     QVERIFY(window.show());
-    Client other;
-    other.connectTo(robot.address());
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(robot.address());
     const QJsonObject patrol{{"client", "patrol"}, {"timeout_s", 30}};
     QVERIFY(other.callAndWait("control.acquire", patrol).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(column(window, EventTable::TextColumn).contains("patrol has taken the control"),

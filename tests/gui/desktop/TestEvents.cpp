@@ -2,6 +2,7 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
 #include <QCheckBox>
@@ -200,9 +201,7 @@ void TestEvents::whoStoppedIsTold() {
     FakeRobot robot;
     OpenWindow window(robot.address());
     QVERIFY(window.show());
-    Client other;
-    other.connectTo(robot.address());
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(robot.address());
     QVERIFY(other.callAndWait("motor.estop", QJsonObject{{"client", "anna on laptop7"}}).ok());
     QTRY_VERIFY2_WITH_TIMEOUT(textOf(window).contains("emergency stop by anna on laptop7"),
                               qPrintable(textOf(window)), 10000);
@@ -278,16 +277,19 @@ void TestEvents::frozenDaemonIsAnError() {
     robot.start("simulator");
     OpenWindow window(robot);
     QVERIFY(window.show());
+    const QString frozen = "error | simulator | It is connected, but does not answer | ";
+    const auto *const line = window.window.findChild<QLabel *>("eventText");
     robot.signal("simulator", SIGSTOP);
-    QTRY_VERIFY2_WITH_TIMEOUT(
-        !rowsOf(window)
-             .filter("error | simulator | It is connected, but does not answer | goes on")
-             .isEmpty(),
-        qPrintable(rowsOf(window).join('\n')), 10000);
+    QTRY_VERIFY2_WITH_TIMEOUT(!rowsOf(window).filter(frozen + "goes on").isEmpty(),
+                              qPrintable(rowsOf(window).join('\n')), 10000);
+    QTRY_VERIFY2(line->text().contains("simulator: It is connected, but does not"), qPrintable(line->text()));
+    QVERIFY(line->styleSheet().contains("#d0100c"));
     robot.signal("simulator", SIGCONT);
-    QTRY_VERIFY2_WITH_TIMEOUT(
-        !rowsOf(window).filter("error | simulator | It is connected, but does not answer | over").isEmpty(),
-        qPrintable(rowsOf(window).join('\n')), 10000);
+    QTRY_VERIFY2_WITH_TIMEOUT(!rowsOf(window).filter(frozen + "over").isEmpty(),
+                              qPrintable(rowsOf(window).join('\n')), 10000);
+    const QRegularExpression over("OVER after \\d+ s: simulator: It is connected");
+    QTRY_VERIFY2(line->text().contains(over), qPrintable(line->text()));
+    QVERIFY(!line->styleSheet().contains("#d0100c"));
     robot.kill("simulator");
     QTRY_VERIFY2_WITH_TIMEOUT(!rowsOf(window).filter("error | simulator | No connection").isEmpty(),
                               qPrintable(rowsOf(window).join('\n')), 10000);

@@ -121,10 +121,10 @@ void TestFrozenDaemons::grabAll(const QString &name) const {
 }
 
 void TestFrozenDaemons::oneInTurn_data() {
-    QTest::addColumn<QString>("who");
+    const Rows<QString> row("who");
     for (const char *who : {"motorcontrol", "scanmatcher", "velodynelogger", "seriallogger", "simulator",
                             "softwaretrigger", "supervisor"})
-        QTest::newRow(who) << QString(who);
+        row(who, QString(who));
 }
 
 void TestFrozenDaemons::oneInTurn() {

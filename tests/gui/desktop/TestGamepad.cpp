@@ -156,12 +156,12 @@ void TestGamepad::measuresWhereSticksRest() {
 }
 
 void TestGamepad::calibrationsThatCannotBe_data() {
-    QTest::addColumn<QVariantList>("list");
+    const Rows<QVariantList> row("list");
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
-    QTest::newRow("nothing") << QVariantList();
-    QTest::newRow("too few") << QVariantList{0, -1, 1, 0.1};
-    QTest::newRow("words") << QVariantList{"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"};
+    row("nothing", QVariantList());
+    row("too few", {0, -1, 1, 0.1});
+    row("words", {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"});
     for (const double wrong : {nan, inf, -inf, 1e300, 2.0, -2.0})
         for (int i = 0; i < 12; ++i) {
             QVariantList list{0, -1, 1, 0.1, 0, -1, 1, 0.1, 0, -1, 1, 0.1};

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 
 #include <QAbstractNativeEventFilter>
 #include <QLibrary>
@@ -82,16 +83,14 @@ void TestHeldKeys::drivesAnew(const QString &key) {
 }
 
 void TestHeldKeys::drivesOnlyOnce_data() {
-    QTest::addColumn<QString>("key");
-    QTest::addColumn<bool>("isKilled");
-    QTest::newRow("killed") << "s" << true;
-    QTest::newRow("frozen") << "Up" << false;
-    QTest::newRow("frozen, turning") << "q" << false;
+    const Rows<QString, bool> row("key", "isKilled");
+    row("killed", "s", true);
+    row("frozen", "Up", false);
+    row("frozen, turning", "q", false);
 }
 
 void TestHeldKeys::drivesOnlyOnce() {
-    QFETCH(QString, key);
-    QFETCH(bool, isKilled);
+    FETCH(QString, key, bool, isKilled);
     hold(key);
     awaitMotion();
     if (isKilled) {
@@ -112,9 +111,7 @@ void TestHeldKeys::drivesOnlyOnce() {
 
 void TestHeldKeys::refusedItDoesNotDriveLater() {
     const QString key = "Up";
-    auto other = std::make_unique<Client>();
-    other->connectTo(robot_->address());
-    QVERIFY(other->waitConnected().ok());
+    auto other = std::make_unique<ConnectedClient>(robot_->address());
     QVERIFY(other->callAndWait("control.acquire", QJsonObject{{"client", "patrol"}, {"timeout_s", 30}}).ok());
     hold(key);
     QTRY_VERIFY(open_->drive.problem().contains("patrol"));

@@ -125,32 +125,32 @@ Q_DECLARE_METATYPE(IsKept)
 
 // Nothing waits for something else to be saved.
 void TestKept::eachByItself_data() {
-    QTest::addColumn<Set>("set");
-    QTest::addColumn<IsKept>("isKept");
+    const Rows<Set, IsKept> row("set", "isKept");
     const auto trigger = [](const char *action) -> Set {
         return [action](LayoutWindow &one) { one.window->findChild<QAction *>(action)->trigger(); };
     };
-    QTest::newRow("Esc") << trigger("escapeStops")
-                         << IsKept([](const QString &file) { return value(file, "escape") == "on"; });
-    QTest::newRow("layer") << trigger("trustLayer") << IsKept([](const QString &file) {
-        return value(file, "layers").contains("\"trustLayer\":true");
-    });
-    QTest::newRow("sounds") << Set([](LayoutWindow &one) {
-        one.window->findChild<QCheckBox *>("sounds")->click();
-    }) << IsKept([](const QString &file) { return value(file, "sounds") == "off"; });
-    QTest::newRow("name of a button") << Set([](LayoutWindow &one) { name(one, "Back"); })
-                                      << IsKept([](const QString &file) { return buttonOf(file) == "Back"; });
-    QTest::newRow("plots") << Set([](LayoutWindow &one) {
-        one.window->findChild<PlotsPanel *>()->board().time().setSpan(7);
-    }) << IsKept([](const QString &file) { return Layouts(file).layout().plots["span_s"] == 7; });
-    QTest::newRow("set of plots") << Set([](LayoutWindow &one) {
-        one.window->findChild<PlotsPanel *>()->sets().save("Wheels", {{"panes", QJsonArray()}});
-    }) << IsKept([](const QString &file) { return value(file, "plotSets").contains("Wheels"); });
+    row("Esc", trigger("escapeStops"), [](const QString &file) { return value(file, "escape") == "on"; });
+    row("layer", trigger("trustLayer"),
+        [](const QString &file) { return value(file, "layers").contains("\"trustLayer\":true"); });
+    row(
+        "sounds", [](LayoutWindow &one) { one.window->findChild<QCheckBox *>("sounds")->click(); },
+        [](const QString &file) { return value(file, "sounds") == "off"; });
+    row(
+        "name of a button", [](LayoutWindow &one) { name(one, "Back"); },
+        [](const QString &file) { return buttonOf(file) == "Back"; });
+    row(
+        "plots", [](LayoutWindow &one) { one.window->findChild<PlotsPanel *>()->board().time().setSpan(7); },
+        [](const QString &file) { return Layouts(file).layout().plots["span_s"] == 7; });
+    row(
+        "set of plots",
+        [](LayoutWindow &one) {
+            one.window->findChild<PlotsPanel *>()->sets().save("Wheels", {{"panes", QJsonArray()}});
+        },
+        [](const QString &file) { return value(file, "plotSets").contains("Wheels"); });
 }
 
 void TestKept::eachByItself() {
-    QFETCH(Set, set);
-    QFETCH(IsKept, isKept);
+    FETCH(Set, set, IsKept, isKept);
     LayoutWindow one(file_, {"127.0.0.1:1"});
     QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty()); // how it began
     QVERIFY(!isKept(file_));
@@ -160,16 +160,16 @@ void TestKept::eachByItself() {
 }
 
 void TestKept::arrangement_data() {
-    QTest::addColumn<Set>("set");
-    QTest::newRow("a panel closed") << Set([](LayoutWindow &one) { one.dock("drive")->close(); });
-    QTest::newRow("a panel in front") << Set([](LayoutWindow &one) { one.dock("events")->raise(); });
-    QTest::newRow("a panel apart") << Set(
-        [](LayoutWindow &one) { one.window->findChild<QDockWidget *>("log")->setFloating(true); });
-    QTest::newRow("a panel wider") << Set([](LayoutWindow &one) {
+    const Rows<Set> row("set");
+    row("a panel closed", [](LayoutWindow &one) { one.dock("drive")->close(); });
+    row("a panel in front", [](LayoutWindow &one) { one.dock("events")->raise(); });
+    row("a panel apart",
+        Set([](LayoutWindow &one) { one.window->findChild<QDockWidget *>("log")->setFloating(true); }));
+    row("a panel wider", [](LayoutWindow &one) {
         one.window->resizeDocks({one.window->findChild<QDockWidget *>("daemons")}, {420}, Qt::Horizontal);
     });
-    QTest::newRow("the window larger") << Set([](LayoutWindow &one) { one.window->resize(1400, 800); });
-    QTest::newRow("all as at first") << Set([](LayoutWindow &one) { one.pick("resetLayout"); });
+    row("the window larger", [](LayoutWindow &one) { one.window->resize(1400, 800); });
+    row("all as at first", [](LayoutWindow &one) { one.pick("resetLayout"); });
 }
 
 void TestKept::arrangement() {

@@ -86,9 +86,9 @@ void TestLateControl::cleanup() {
 }
 
 void TestLateControl::drivesNobody_data() {
-    QTest::addColumn<bool>("takesOver");
-    QTest::newRow("asked for by driving") << false;
-    QTest::newRow("taken over") << true;
+    const Rows<bool> row("takesOver");
+    row("asked for by driving", false);
+    row("taken over", true);
 }
 
 void TestLateControl::drivesNobody() {

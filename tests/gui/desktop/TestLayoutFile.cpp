@@ -1,10 +1,9 @@
 #include "tests/gui/desktop/LayoutWindow.h"
+#include "tests/support/FileSizeLimit.h"
 
 #include <QProcess>
 #include <QRandomGenerator>
 #include <QSettings>
-#include <csignal>
-#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -25,14 +24,8 @@ private Q_SLOTS:
     void linkStaysOne();
 
 private:
-    QByteArray content() const {
-        QFile file(file_);
-        return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-    }
-    void write(const QByteArray &bytes) const {
-        QFile file(file_);
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size());
-    }
+    QByteArray content() const { return contentOf(file_); }
+    void write(const QByteArray &bytes) const { put(file_, bytes); }
 
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
@@ -44,48 +37,44 @@ void TestLayoutFile::init() {
 }
 
 void TestLayoutFile::anyFile_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<bool>("isOurs");
+    const Rows<QByteArray, bool> row("bytes", "isOurs");
     QByteArray noise(10 << 20, 0);
     QRandomGenerator random(1);
     for (char &c : noise)
         c = char(random.bounded(256));
-    QTest::newRow("empty") << QByteArray() << true;
-    QTest::newRow("10 MB of noise") << noise << false;
-    QTest::newRow("a little noise") << noise.left(1000) << false;
-    QTest::newRow("10 MB of lines") << QByteArray("[window]\n") + QByteArray("a=b\n").repeated(2 << 20)
-                                    << false;
+    row("empty", QByteArray(), true);
+    row("10 MB of noise", noise, false);
+    row("a little noise", noise.left(1000), false);
+    row("10 MB of lines", QByteArray("[window]\n") + QByteArray("a=b\n").repeated(2 << 20), false);
     const QByteArray own = "[window]\nlayout=x\n[kept]\na=";
-    QTest::newRow("nearly as large as it may be") << own + QByteArray((1 << 20) - 20000, 'x') << true;
-    QTest::newRow("a byte larger") << own + QByteArray((1 << 20) + 1 - own.size(), 'x') << false;
-    QTest::newRow("one long line") << "[window]\na=" + QByteArray(1000000, 'x') << true;
-    QTest::newRow("another program's") << QByteArray("[Desktop Entry]\nName=x\n") << false;
-    QTest::newRow("a text") << QByteArray("Dear diary,\ntoday I drove.\n") << false;
-    QTest::newRow("an open section") << QByteArray("[window]\nlayout=x\n[kept\na=b\n") << false;
-    QTest::newRow("an open quote") << QByteArray("[window]\nlayout=\"x\n[kept]\na=\"b\"\n") << false;
-    QTest::newRow("a quote in a key") << QByteArray("[window]\nlay\"out=x\n") << false;
-    QTest::newRow("an open end") << QByteArray("[kept]\n[window]\nlayout=x\\\n") << false;
-    QTest::newRow("types of Qt") << QByteArray("[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n")
-                                 << false;
-    QTest::newRow("wrong types") << QByteArray(
-                                        "[window]\ngeometry=1, 2, 3\nstate=@Rect(1 2 3 4)\nlayout=7, 8\n"
-                                        "[layouts]\nsize=many\n1\\name=a, b\n[robots]\naddresses=5\nnames=x\n"
-                                        "chosen=1, 2\n")
-                                 << true;
-    QTest::newRow("more than there are")
-        << QByteArray("[layouts]\nsize=2000000000\n1\\name=x\n1\\state=@ByteArray(\\0\\0\\0\\xff)\n"
-                      "1\\geometry=@ByteArray(\\x1\\xd9\\xd0)\n1\\plots={\\\"fields\\\":5}\n"
-                      "[window]\nlayout=y\n")
-        << true;
-    QTest::newRow("addresses") << "[robots]\naddresses=:, robot:0, http://x, 127.0.0.1:1, " +
-                                      QByteArray("x").repeated(10000) + "\nnames=127.0.0.1:1, " +
-                                      QByteArray("w").repeated(10000) + "\n"
-                               << true;
+    row("nearly as large as it may be", own + QByteArray((1 << 20) - 20000, 'x'), true);
+    row("a byte larger", own + QByteArray((1 << 20) + 1 - own.size(), 'x'), false);
+    row("one long line", "[window]\na=" + QByteArray(1000000, 'x'), true);
+    row("another program's", "[Desktop Entry]\nName=x\n", false);
+    row("a text", "Dear diary,\ntoday I drove.\n", false);
+    row("an open section", "[window]\nlayout=x\n[kept\na=b\n", false);
+    row("an open quote", "[window]\nlayout=\"x\n[kept]\na=\"b\"\n", false);
+    row("a quote in a key", "[window]\nlay\"out=x\n", false);
+    row("an open end", "[kept]\n[window]\nlayout=x\\\n", false);
+    row("types of Qt", "[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n", false);
+    row("wrong types",
+        "[window]\ngeometry=1, 2, 3\nstate=@Rect(1 2 3 4)\nlayout=7, 8\n"
+        "[layouts]\nsize=many\n1\\name=a, b\n[robots]\naddresses=5\nnames=x\n"
+        "chosen=1, 2\n",
+        true);
+    row("more than there are",
+        "[layouts]\nsize=2000000000\n1\\name=x\n1\\state=@ByteArray(\\0\\0\\0\\xff)\n"
+        "1\\geometry=@ByteArray(\\x1\\xd9\\xd0)\n1\\plots={\\\"fields\\\":5}\n"
+        "[window]\nlayout=y\n",
+        true);
+    row("addresses",
+        "[robots]\naddresses=:, robot:0, http://x, 127.0.0.1:1, " + QByteArray("x").repeated(10000) +
+            "\nnames=127.0.0.1:1, " + QByteArray("w").repeated(10000) + "\n",
+        true);
 }
 
 void TestLayoutFile::anyFile() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(bool, isOurs);
+    FETCH(QByteArray, bytes, bool, isOurs);
     QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
     write(bytes);
     QElapsedTimer clock;
@@ -107,9 +96,7 @@ void TestLayoutFile::anyFile() {
 
 // Bytes of a layout, changed or cut at random.
 void TestLayoutFile::anyState() {
-    const quint32 seed = QRandomGenerator::global()->generate();
-    qInfo("seed %u", seed);
-    QRandomGenerator random(seed);
+    QRandomGenerator random(newSeed());
     { LayoutWindow(file_, {"127.0.0.1:1"}).window->close(); }
     QVERIFY(Layouts(file_).damage().isEmpty());
     QSettings file(file_, QSettings::IniFormat);
@@ -133,9 +120,7 @@ void TestLayoutFile::anyState() {
 
 // As this program wrote it, but for some bytes, or the rest.
 void TestLayoutFile::ownFileDamaged() {
-    const quint32 seed = QRandomGenerator::global()->generate();
-    qInfo("seed %u", seed);
-    QRandomGenerator random(seed);
+    QRandomGenerator random(newSeed());
     {
         LayoutWindow one(file_, {"127.0.0.1:1"});
         one.saveAs("Bench");
@@ -176,8 +161,7 @@ void TestLayoutFile::anyValue_data() {
 }
 
 void TestLayoutFile::anyValue() {
-    QFETCH(QString, key);
-    QFETCH(QByteArray, value);
+    FETCH(QString, key, QByteArray, value);
     Layouts layouts(file_);
     layouts.setValue(key, QString::fromUtf8(value));
     QVERIFY(layouts.save());
@@ -227,17 +211,13 @@ void TestLayoutFile::whatCannotBeWrittenIsTold() {
         QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
     }
     LayoutWindow full(file_, {"127.0.0.1:1"});
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit before{};
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit none{0, before.rlim_max};
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &none), 0); // as on a full disk
+    std::optional<FileSizeLimit> disk(0);
     full.saveAs("more");
     const bool isTold = QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
     full.window->close();
     const bool isAsked =
         QTest::qWaitFor([&full] { return full.notice().contains("Close the window once more"); });
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
+    disk.reset();
     QVERIFY2(isTold, qPrintable(full.notice()));
     QVERIFY2(isAsked, qPrintable(full.notice()));
     full.saveAs("when there is room");

@@ -74,17 +74,15 @@ void TestMacroStops::cleanup() {
 }
 
 void TestMacroStops::stopOfAnyRobotThatItGoesTo_data() {
-    QTest::addColumn<bool>("isChosen");
-    QTest::addColumn<bool>("isItsTurn");
-    QTest::newRow("the chosen one, at its step") << true << true;
-    QTest::newRow("the chosen one, at the step of another") << true << false;
-    QTest::newRow("another one, at its step") << false << true;
-    QTest::newRow("another one, at the step of the chosen one") << false << false;
+    const Rows<bool, bool> row("isChosen", "isItsTurn");
+    row("the chosen one, at its step", true, true);
+    row("the chosen one, at the step of another", true, false);
+    row("another one, at its step", false, true);
+    row("another one, at the step of the chosen one", false, false);
 }
 
 void TestMacroStops::stopOfAnyRobotThatItGoesTo() {
-    QFETCH(bool, isChosen);
-    QFETCH(bool, isItsTurn);
+    FETCH(bool, isChosen, bool, isItsTurn);
     FakeDaemon &stoppedOne = isChosen ? *red_ : *blue_, &other = isChosen ? *blue_ : *red_;
     FakeDaemon &first = isItsTurn ? stoppedOne : other, &second = isItsTurn ? other : stoppedOne;
     run({call(first, 30), call(second)});
@@ -107,9 +105,9 @@ void TestMacroStops::stopOfARobotThatItDoesNotGoTo() {
 }
 
 void TestMacroStops::stopOfTheWindow_data() {
-    QTest::addColumn<bool>("goesToTheChosenOne");
-    QTest::newRow("of the chosen robot") << true;
-    QTest::newRow("of another robot") << false;
+    const Rows<bool> row("goesToTheChosenOne");
+    row("of the chosen robot", true);
+    row("of another robot", false);
 }
 
 void TestMacroStops::stopOfTheWindow() {

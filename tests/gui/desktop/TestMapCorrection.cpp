@@ -21,9 +21,9 @@ private Q_SLOTS:
 };
 
 void TestMapCorrection::correctionGlides_data() {
-    QTest::addColumn<QByteArray>("order");
+    const Rows<QByteArray> row("order");
     for (const char *const order : {"mgp", "mpg", "gmp", "gpm", "pmg", "pgm"})
-        QTest::newRow(order) << QByteArray(order);
+        row(order, QByteArray(order));
 }
 
 // Whatever comes first, the picture stands until the lastKeyScan is here, then everything moves at once.
@@ -151,9 +151,9 @@ void TestMapCorrection::correctedAgainWhileItGlides() {
 }
 
 void TestMapCorrection::correctionOfWhichNotAllComes_data() {
-    QTest::addColumn<QByteArray>("what");
+    const Rows<QByteArray> row("what");
     for (const char *const what : {"g", "m", "mg", "pg"})
-        QTest::newRow(what) << QByteArray(what);
+        row(what, QByteArray(what));
 }
 
 // The picture waits, but not for ever, and the path goes on.

@@ -112,11 +112,7 @@ void TestMapGraph::graphWithoutSense_data() {
 }
 
 void TestMapGraph::graphWithoutSense() {
-    QFETCH(std::vector<GraphMessage>, messages);
-    QFETCH(int, ignored);
-    QFETCH(int, size);
-    QFETCH(int, loops);
-    QFETCH(bool, isNext);
+    FETCH(std::vector<GraphMessage>, messages, int, ignored, int, size, int, loops, bool, isNext);
     KeyScanGraph graph;
     quint64 passedOver = 0;
     for (std::size_t i = 0; i < messages.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "tests/gui/desktop/MapWindow.h"
+#include "tests/support/PatientClient.h"
 
 #include <QDialog>
 #include <QFileInfo>
@@ -60,9 +61,9 @@ void TestMapPanel::placedByADrag() {
 }
 
 void TestMapPanel::exported_data() {
-    QTest::addColumn<QString>("name");
-    QTest::newRow("svg") << "view.svg";
-    QTest::newRow("png") << "view.png";
+    const Rows<QString> row("name");
+    row("svg", "view.svg");
+    row("png", "view.png");
 }
 
 void TestMapPanel::exported() {
@@ -177,9 +178,7 @@ void TestMapPanel::matcherGoneAndBack() {
     QTRY_VERIFY_WITH_TIMEOUT(model().edges().size() > 10, 10000);
     // The map of the new one replaces that of the old one; without scans it stands still, to be compared.
     robot_->kill("simulator");
-    Client client;
-    client.connectTo(QString("127.0.0.1:%1").arg(robot_->port("scanmatcher")));
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client(QString("127.0.0.1:%1").arg(robot_->port("scanmatcher")));
     int there = -1, shown = -1;
     const auto areAlike = [&] {
         const auto map = client.callAndWait("map.get");

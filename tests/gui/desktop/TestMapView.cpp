@@ -139,9 +139,7 @@ void TestMapView::poseInNumbers() {
     QTRY_VERIFY(model().covariance());
     const QString file = robot_->path("numbers.svg");
     QVERIFY(panel()->exportTo(file).ok());
-    QFile picture(file);
-    QVERIFY(picture.open(QIODevice::ReadOnly));
-    const QString svg = QString::fromUtf8(picture.readAll());
+    const QString svg = QString::fromUtf8(contentOf(file));
     QVERIFY(svg.contains(poseText(*model().pose()).section(',', 0, 0)));
     QVERIFY(svg.contains("(95 %)"));
 }

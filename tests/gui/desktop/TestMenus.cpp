@@ -41,9 +41,8 @@ static QString topLineOf(const QTextBrowser &text) {
 
 void TestMenus::everyKeyIsInAMenuAndInTheManual() {
     OpenWindow open;
-    QFile file(qEnvironmentVariable("HERMES_SOURCE") + "/docs/desktop.md");
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    const QString manual = QString::fromUtf8(file.readAll());
+    const QString manual =
+        QString::fromUtf8(contentOf(qEnvironmentVariable("HERMES_SOURCE") + "/docs/desktop.md"));
     const QList<QAction *> inMenus = actionsOf(open.window.menuBar()->actions());
     QVERIFY(inMenus.size() > 30);
     int keys = 0;

@@ -125,20 +125,17 @@ void TestPlotPane::linesEndAtTheEdges() {
 }
 
 void TestPlotPane::ticksAreRound_data() {
-    QTest::addColumn<double>("least");
-    QTest::addColumn<double>("most");
-    QTest::addColumn<QStringList>("texts");
-    QTest::newRow("speeds") << -0.1 << 0.52 << QStringList{"0.0", "0.2", "0.4"};
-    QTest::newRow("seconds") << -30.0 << 0.0 << QStringList{"-30", "-20", "-10", "0"};
-    QTest::newRow("volts") << 24.301 << 24.317 << QStringList{"24.305", "24.310", "24.315"};
-    QTest::newRow("large") << -1e15 << 1e15 << QStringList{"-1e+15", "0", "1e+15"};
-    QTest::newRow("nothing") << 1.0 << 1.0 << QStringList{};
-    QTest::newRow("endless") << 0.0 << std::numeric_limits<double>::infinity() << QStringList{};
+    const Rows<double, double, QStringList> row("least", "most", "texts");
+    row("speeds", -0.1, 0.52, {"0.0", "0.2", "0.4"});
+    row("seconds", -30.0, 0.0, {"-30", "-20", "-10", "0"});
+    row("volts", 24.301, 24.317, {"24.305", "24.310", "24.315"});
+    row("large", -1e15, 1e15, {"-1e+15", "0", "1e+15"});
+    row("nothing", 1.0, 1.0, {});
+    row("endless", 0.0, std::numeric_limits<double>::infinity(), {});
 }
 
 void TestPlotPane::ticksAreRound() {
-    QFETCH(double, least);
-    QFETCH(double, most);
+    FETCH(double, least, double, most);
     QStringList texts;
     for (const Tick &tick : ticks(least, most, 4))
         texts.append(tick.text);

@@ -160,8 +160,7 @@ void TestPlots::filesHoldWhatIsShown() {
         const QString file = folder.filePath(name);
         if (const auto done = panel_->exportTo(file); !done)
             return "failed: " + done.error().message.toUtf8();
-        QFile written(file);
-        return written.open(QIODevice::ReadOnly) ? written.readAll() : QByteArray("cannot be read");
+        return contentOf(file);
     };
     const QString daemon = window_->fleet.robots().front()->daemons().front()->name();
     QVERIFY(!daemon.isEmpty() && daemon != address_);
@@ -178,9 +177,7 @@ void TestPlots::filesHoldWhatIsShown() {
     QVERIFY(QMetaObject::invokeMethod(dialog, "accept"));
     auto *const told = panel_->findChild<QLabel *>("message");
     QTRY_VERIFY2(told->text().startsWith("Wrote ") && told->isVisible(), qPrintable(told->text()));
-    QFile byHand(folder.filePath("by-hand.csv"));
-    QVERIFY(byHand.open(QIODevice::ReadOnly));
-    QCOMPARE(byHand.readAll(), expected);
+    QCOMPARE(contentOf(folder.filePath("by-hand.csv")), expected);
 
     const QByteArray svg = read("curves.svg");
     QVERIFY2(svg.contains("<svg") && svg.contains("drive vx") && svg.contains("0.750 m/s") &&

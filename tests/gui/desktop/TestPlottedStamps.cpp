@@ -100,23 +100,18 @@ void TestPlottedStamps::hostileValues() {
 }
 
 void TestPlottedStamps::noNumbersOverCbor_data() {
-    QTest::addColumn<QByteArray>("stamp");
-    QTest::addColumn<QByteArray>("value");
-    QTest::addColumn<QString>("refusal");
+    const Rows<QByteArray, QByteArray, QString> row("stamp", "value", "refusal");
     const QByteArray now = QByteArray::number(stampNow(), 'f', 3);
     for (const char *const word : {"nan", "inf", "-inf"}) { // JSON has none of them
-        QTest::newRow(QByteArray("stamp ") + word) << QByteArray(word) << QByteArray("7") << "not finite";
-        QTest::newRow(QByteArray("value ") + word) << now << QByteArray(word) << "not finite";
+        row(QByteArray("stamp ") + word, QByteArray(word), "7", "not finite");
+        row(QByteArray("value ") + word, now, QByteArray(word), "not finite");
     }
     for (const char *const word : {"1e11", "-1e300"})
-        QTest::newRow(QByteArray("stamp ") + word)
-            << QByteArray(word) << QByteArray("7") << "expected seconds since the Unix epoch";
+        row(QByteArray("stamp ") + word, QByteArray(word), "7", "expected seconds since the Unix epoch");
 }
 
 void TestPlottedStamps::noNumbersOverCbor() {
-    QFETCH(QByteArray, stamp);
-    QFETCH(QByteArray, value);
-    QFETCH(QString, refusal);
+    FETCH(QByteArray, stamp, QByteArray, value, QString, refusal);
     raise();
     QVERIFY(panel_->board().add(field("vx")));
     subscribed("drive");

@@ -173,9 +173,9 @@ void TestReadable::initTestCase() {
 }
 
 void TestReadable::textsFit_data() {
-    QTest::addColumn<QSize>("size");
-    QTest::newRow("1024 x 600") << QSize(1024, 600);
-    QTest::newRow("1920 x 1080") << QSize(1920, 1080);
+    const Rows<QSize> row("size");
+    row("1024 x 600", QSize(1024, 600));
+    row("1920 x 1080", QSize(1920, 1080));
 }
 
 void TestReadable::textsFit() {
@@ -271,9 +271,7 @@ void TestReadable::wordsAreOfAnOperator() {
     QStringList found;
     int texts = 0;
     while (files.hasNext()) {
-        QFile file(files.next());
-        QVERIFY(file.open(QIODevice::ReadOnly));
-        for (auto all = told.globalMatch(QString::fromUtf8(file.readAll())); all.hasNext(); ++texts)
+        for (auto all = told.globalMatch(QString::fromUtf8(contentOf(files.next()))); all.hasNext(); ++texts)
             if (const QString text = all.next().captured(1); text.contains(foreignWords()))
                 found.append(files.fileName() + ": " + text);
     }

@@ -63,9 +63,9 @@ QJsonValue TestRealForms::ask(const QString &daemon, const QString &method, cons
 }
 
 void TestRealForms::addDaemons() {
-    QTest::addColumn<QString>("daemon");
+    const Rows<QString> row("daemon");
     for (const QString &daemon : daemons)
-        QTest::newRow(qPrintable(daemon)) << daemon;
+        row(qPrintable(daemon), daemon);
 }
 
 /// Changes what has the focus in the way that it is made for; false: it is nothing to be changed.

@@ -1,14 +1,12 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/MapPanel.h"
-#include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SessionTable.h"
-#include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/gui/desktop/RecordPanelFixture.h"
+#include "tests/support/PatientClient.h"
 
 #include <QHeaderView>
-#include <QLabel>
 #include <QLineEdit>
-#include <QPushButton>
 #include <QTreeWidget>
 #include <cmath>
 
@@ -16,29 +14,22 @@ using namespace hermes;
 using namespace hermes::desktop;
 
 /// Records what the simulated lidar sends, with a serial logger beside it, and replays it.
-class TestRecordPanel : public QObject {
+class TestRecordPanel : public QObject, RecordPanelFixture {
     Q_OBJECT
 private Q_SLOTS:
     void recordsAsOneAndReplays();
     void aStartThatTimesOutIsTakenBack();
     void aReplayIsShownAndDrivingAsks();
     void aStopIsSentUntilItIsAnswered();
-    void aLoggerThatWasAwayIsStoppedToo();
     void aLoggerThatDiesIsTold();
     void theNextFreeNameIsProposed_data();
     void theNextFreeNameIsProposed();
     void recordingsAreSortedByTheHeader();
     void lossesAreToldByTheirNames();
+    void cleanup() { panel_.reset(); }
 
 private:
-    template <typename T>
-    T *find(const QString &name) const {
-        return panel_->findChild<T *>(name);
-    }
-    void click(const QString &button) { QTest::mouseClick(find<QPushButton>(button), Qt::LeftButton); }
-    QString message() const { return find<QLabel>("message")->text(); }
-
-    std::unique_ptr<RecordPanel> panel_;
+    QString message() const { return text("message"); }
 };
 
 void TestRecordPanel::recordsAsOneAndReplays() {
@@ -47,16 +38,13 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
     Fleet fleet;
     robot.connectTo(fleet);
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
-                find<QLabel>("amount")->text().contains("seriallogger"));
+    open(fleet, {"velodynelogger", "seriallogger"});
 
     OpenWindow::type(find<QLineEdit>("name"), "first");
     click("record");
     QTRY_COMPARE(message(), QString("Recording first."));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("amount")->text().contains("the disk will do for"), 15000);
+    QTRY_COMPARE(button("record"), QString("S&top"));
+    QTRY_VERIFY_WITH_TIMEOUT(text("amount").contains("the disk will do for"), 15000);
     QTRY_VERIFY(find<QPushButton>("mark")->isVisible());
     QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
     Q_EMIT find<QTreeWidget>("sessions")->itemActivated(find<QTreeWidget>("sessions")->topLevelItem(0), 0);
@@ -65,12 +53,11 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     click("mark");
     QTRY_COMPARE(message(), QString("Marked: at the door"));
     click("record");
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(button("record"), QString("Re&cord"));
     QTRY_VERIFY2(message().contains("nothing missing"), qPrintable(message()));
     QVERIFY(!find<QPushButton>("mark")->isVisible());
-    QFile events(robot.path("recordings") + "/first/seriallogger-events.jsonl");
-    QVERIFY(events.open(QIODevice::ReadOnly));
-    QVERIFY(events.readAll().contains("\"text\":\"at the door\""));
+    QVERIFY(contentOf(robot.path("recordings") + "/first/seriallogger-events.jsonl")
+                .contains("\"text\":\"at the door\""));
 
     auto *const sessions = find<QTreeWidget>("sessions");
     QTRY_COMPARE(sessions->topLevelItemCount(), 1); // both loggers, one session
@@ -84,7 +71,7 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     OpenWindow::type(find<QLineEdit>("name"), "first");               // the same name once more
     click("record");
     QTRY_VERIFY(message().startsWith("nothing was begun; "));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(button("record"), QString("Re&cord"));
 
     sessions->setCurrentItem(sessions->topLevelItem(0));
     QTRY_VERIFY(find<QPushButton>("replay")->isEnabled());
@@ -107,12 +94,11 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_VERIFY(!find<QPushButton>("live")->isEnabled());
     sessions->setCurrentItem(sessions->topLevelItem(0)); // the chosen one goes with its loggers
     robot.signal("velodynelogger", SIGSTOP);
-    QTRY_VERIFY(find<QLabel>("amount")->text().startsWith("velodynelogger does not answer"));
+    QTRY_VERIFY(text("amount").startsWith("velodynelogger does not answer"));
     robot.kill("velodynelogger");
     robot.kill("seriallogger");
     QTRY_COMPARE(sessions->topLevelItemCount(), 0);
     QVERIFY(!find<QPushButton>("replay")->isEnabled());
-    panel_.reset();
 }
 
 /// As with hermesctl: see TestSessions.
@@ -120,12 +106,7 @@ void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
     FakeLoggers robot;
     FakeLogger &prompt = robot.add("prompt"), &late = robot.add("late");
     Fleet fleet;
-    for (const auto &logger : robot.loggers)
-        QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("prompt") &&
-                find<QLabel>("amount")->text().contains("late"));
+    open(fleet, robot);
     late.writer.hold = true;
     click("record");
     QTRY_VERIFY(prompt.recording.isActive());
@@ -138,7 +119,6 @@ void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
     const auto *const sessions = find<QTreeWidget>("sessions");
     QTRY_VERIFY(sessions->topLevelItemCount() == 1 && sessions->topLevelItem(0)->text(2) != "goes on");
     QVERIFY2(message().contains("late had begun and was stopped"), qPrintable(message()));
-    panel_.reset();
 }
 
 // Begun by somebody else: the window says so all the same.
@@ -151,10 +131,8 @@ void TestRecordPanel::aReplayIsShownAndDrivingAsks() {
     const auto label = [&](const char *name) { return open.window.findChild<QLabel *>(name); };
     const auto button = [&](const char *name) { return open.window.findChild<QPushButton *>(name); };
     QVERIFY(!label("replayBanner")->isVisible());
-    Client somebody, motors;
-    somebody.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
-    motors.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
-    QVERIFY(somebody.waitConnected().ok() && motors.waitConnected().ok());
+    ConnectedClient somebody(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
+    ConnectedClient motors(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
     const auto speed = [&] {
         return motors.callAndWait("motor.state")->toObject()["target"].toObject()["vx"].toDouble();
     };
@@ -206,20 +184,15 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
     robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
     Fleet fleet;
     robot.connectTo(fleet);
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
-                find<QLabel>("amount")->text().contains("seriallogger"));
-    Client lidar, serial;
-    lidar.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
-    serial.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
-    QVERIFY(lidar.waitConnected().ok() && serial.waitConnected().ok());
+    open(fleet, {"velodynelogger", "seriallogger"});
+    ConnectedClient lidar(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
+    ConnectedClient serial(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
     const auto records = [](Client &client) {
         return client.callAndWait("record.status")->toObject()["recording"].toBool();
     };
     click("record");
     QTRY_COMPARE(message(), QString("Recording run1."));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QTRY_COMPARE(button("record"), QString("S&top"));
     QVERIFY(records(lidar) && records(serial));
     robot.signal("seriallogger", SIGSTOP);
     click("record"); // before anybody knows that it is frozen
@@ -232,37 +205,8 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
     robot.signal("seriallogger", SIGCONT);
     QTRY_VERIFY_WITH_TIMEOUT(!records(serial), 10000);
     QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(button("record"), QString("Re&cord"));
     QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
-    panel_.reset();
-}
-
-/// Its link was gone as Stop was pressed.
-void TestRecordPanel::aLoggerThatWasAwayIsStoppedToo() {
-    FakeLoggers robot;
-    FakeLogger &here = robot.add("here"), &away = robot.add("away");
-    Fleet fleet;
-    for (const auto &logger : robot.loggers)
-        QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("here") &&
-                find<QLabel>("amount")->text().contains("away"));
-    click("record");
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
-    QVERIFY(here.recording.isActive() && away.recording.isActive());
-    DaemonLink *const link = fleet.robot()->withName("away");
-    link->client().close();
-    QTRY_COMPARE(find<QLabel>("lost")->text(), QString("away was recording run1 and is gone."));
-    click("record");
-    QTRY_VERIFY(!here.recording.isActive());
-    QTRY_VERIFY2(message().contains("away: it took part, but does not answer"), qPrintable(message()));
-    QVERIFY(away.recording.isActive());
-    QVERIFY(link->client().connectTo(away.address()).ok());
-    QTRY_VERIFY_WITH_TIMEOUT(!away.recording.isActive(), 15000);
-    QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
-    QVERIFY(!find<QLabel>("lost")->isVisible()); // it had gone on
-    panel_.reset();
 }
 
 void TestRecordPanel::aLoggerThatDiesIsTold() {
@@ -273,54 +217,45 @@ void TestRecordPanel::aLoggerThatDiesIsTold() {
     robot.start("seriallogger", settings);
     Fleet fleet;
     robot.connectTo(fleet);
-    panel_ = std::make_unique<RecordPanel>(fleet);
-    panel_->show();
-    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
-                find<QLabel>("amount")->text().contains("seriallogger"));
+    open(fleet, {"velodynelogger", "seriallogger"});
     auto *const lost = find<QLabel>("lost");
     click("record");
-    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QTRY_COMPARE(button("record"), QString("S&top"));
     QVERIFY(!lost->isVisible());
     robot.kill("seriallogger");
     QTRY_VERIFY(lost->isVisible());
     QCOMPARE(lost->text(), QString("seriallogger was recording run1 and is gone."));
     QVERIFY(lost->palette().color(QPalette::WindowText) != panel_->palette().color(QPalette::WindowText));
-    QCOMPARE(find<QPushButton>("record")->text(), QString("S&top")); // the other goes on
+    QCOMPARE(button("record"), QString("S&top")); // the other goes on
     robot.kill("velodynelogger");
     QTRY_VERIFY2(lost->text().contains("velodynelogger was recording run1 and is gone."),
                  qPrintable(lost->text()));
-    QCOMPARE(find<QLabel>("amount")->text(), QString("No logger is connected."));
+    QCOMPARE(text("amount"), QString("No logger is connected."));
     QVERIFY2(!find<QLabel>("message")->isVisible(), qPrintable(message())); // "Recording run1." of nobody
     robot.start("seriallogger", settings);
     QTRY_VERIFY_WITH_TIMEOUT(lost->text().contains("seriallogger was gone while it recorded run1"), 20000);
-    QTRY_VERIFY(find<QPushButton>("record")->isEnabled() &&
-                !find<QPushButton>("record")->text().contains("top"));
+    QTRY_VERIFY(find<QPushButton>("record")->isEnabled() && !button("record").contains("top"));
     QTRY_COMPARE(find<QLineEdit>("name")->text(), QString("run2"));
     QTRY_COMPARE(message(), QString("The recording run1 has ended.\nseriallogger: it was cut off"));
     click("record"); // who begins anew has seen it
     QTRY_VERIFY(!lost->isVisible());
-    panel_.reset();
 }
 
 void TestRecordPanel::theNextFreeNameIsProposed_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<QStringList>("taken");
-    QTest::addColumn<QString>("next");
-    QTest::newRow("free") << "run1" << QStringList{"run2"} << "run1";
-    QTest::newRow("next") << "run1" << QStringList{"run1"} << "run2";
-    QTest::newRow("gap") << "run1" << QStringList{"run1", "run2", "run4"} << "run3";
-    QTest::newRow("ten") << "run9" << QStringList{"run9"} << "run10";
-    QTest::newRow("zeros") << "run007" << QStringList{"run007"} << "run008";
-    QTest::newRow("no number") << "hall" << QStringList{"hall", "hall2"} << "hall3";
-    QTest::newRow("a number") << "1" << QStringList{"1"} << "2";
-    QTest::newRow("none") << "" << QStringList{"run1"} << "";
-    QTest::newRow("long number") << "run99999999999999999999" << QStringList{"run99999999999999999999"}
-                                 << "run999999999999991000000";
+    const Rows<QString, QStringList, QString> row("name", "taken", "next");
+    row("free", "run1", {"run2"}, "run1");
+    row("next", "run1", {"run1"}, "run2");
+    row("gap", "run1", {"run1", "run2", "run4"}, "run3");
+    row("ten", "run9", {"run9"}, "run10");
+    row("zeros", "run007", {"run007"}, "run008");
+    row("no number", "hall", {"hall", "hall2"}, "hall3");
+    row("a number", "1", {"1"}, "2");
+    row("none", "", {"run1"}, "");
+    row("long number", "run99999999999999999999", {"run99999999999999999999"}, "run999999999999991000000");
 }
 
 void TestRecordPanel::theNextFreeNameIsProposed() {
-    QFETCH(QString, name);
-    QFETCH(QStringList, taken);
+    FETCH(QString, name, QStringList, taken);
     SessionList list;
     for (const QString &one : taken)
         list.sessions.push_back({one, one, 0, 0, {}});
@@ -389,11 +324,10 @@ void TestRecordPanel::lossesAreToldByTheirNames() {
     RecordingState state;
     state.losses = {{"missing", 3}, {"kernel", 3}, {"too_long", 0}, {"disk_bytes", 7}};
     logger.writer.setState(state);
-    QTRY_VERIFY2(find<QLabel>("amount")->text().contains("; lidar lost: disk bytes 7, kernel 3, missing 3"),
-                 qPrintable(find<QLabel>("amount")->text()));
+    QTRY_VERIFY2(text("amount").contains("; lidar lost: disk bytes 7, kernel 3, missing 3"),
+                 qPrintable(text("amount")));
     click("record");
     QTRY_VERIFY(!logger.recording.isActive());
-    panel_.reset();
 }
 
 QTEST_MAIN(TestRecordPanel)

@@ -1,12 +1,9 @@
 #include "common/client/DaemonAddress.h"
-#include "gui/desktop/panels/RecordPanel.h"
-#include "tests/gui/FakeLogger.h"
+#include "tests/gui/desktop/RecordPanelFixture.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 #include "tests/gui/desktop/TcpLink.h"
+#include "tests/support/PatientClient.h"
 
-#include <QLabel>
-#include <QLineEdit>
-#include <QPushButton>
 #include <QRegularExpression>
 #include <QScrollArea>
 #include <QTreeWidget>
@@ -15,12 +12,13 @@ using namespace hermes;
 using namespace hermes::desktop;
 
 /// A recording ends while another robot is chosen, or by others than the window.
-class TestRecordingEnd : public QObject {
+class TestRecordingEnd : public QObject, RecordPanelFixture {
     Q_OBJECT
 private Q_SLOTS:
     void aStopGoesOnWhileAnotherRobotIsChosen();
     void aStopOfARobotThatIsRemoved();
-    void whatWasBegunLaterGoesOn();
+    void aLoggerThatWasAwayIsStoppedToo_data();
+    void aLoggerThatWasAwayIsStoppedToo();
     void aStartWhoseLinkBreaksIsTakenBack();
     void anotherClientEndsIt();
     void aFullDiskEndsIt();
@@ -45,9 +43,8 @@ private:
             fleet.rename(*fleet.robotAt("127.0.0.1"), "red");
             fleet.choose(fleet.robotAt("127.0.0.1"));
             for (const char *const name : {"velodynelogger", "seriallogger"}) {
-                clients.push_back(std::make_unique<Client>());
-                clients.back()->connectTo(asOwner(QString("127.0.0.1:%1").arg(real.port(name))));
-                QVERIFY(clients.back()->waitConnected().ok());
+                clients.push_back(
+                    std::make_unique<ConnectedClient>(asOwner(QString("127.0.0.1:%1").arg(real.port(name)))));
             }
         }
         QString address() const { return other.loggers.front()->address().section("//", -1); }
@@ -65,20 +62,6 @@ private:
         std::vector<std::unique_ptr<Client>> clients;
     };
 
-    void open(Fleet &fleet, const QStringList &loggers) {
-        panel_ = std::make_unique<RecordPanel>(fleet);
-        panel_->show();
-        for (const QString &logger : loggers)
-            QTRY_VERIFY(text("amount").contains(logger));
-    }
-    void open(Fleet &fleet, FakeLoggers &robot) {
-        QStringList names;
-        for (const auto &logger : robot.loggers) {
-            QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
-            names.append(logger->info().name);
-        }
-        open(fleet, names);
-    }
     /// Stop is pressed while the serial logger is frozen, and another robot is chosen.
     void stopAndChooseOther(TwoRobots &robots) {
         open(robots.fleet, {"velodynelogger", "seriallogger"});
@@ -93,23 +76,14 @@ private:
         QTRY_COMPARE(text("amount"), QString("Records with other."));
         QTRY_VERIFY(!robots.lidarRecords());
     }
-    template <typename T>
-    T *find(const QString &name) const {
-        return panel_->findChild<T *>(name);
-    }
-    QString text(const QString &label) const { return find<QLabel>(label)->text(); }
-    QString button(const QString &name) const { return find<QPushButton>(name)->text(); }
     QString length(int row) const {
         const QTreeWidgetItem *const item = find<QTreeWidget>("sessions")->topLevelItem(row);
         return item ? item->text(2) : QString();
     }
-    void click(const QString &button) { QTest::mouseClick(find<QPushButton>(button), Qt::LeftButton); }
     /// So that it has asked all loggers several times.
     bool recordsForSeconds(const QString &name) const {
         return QRegularExpression('^' + name + ": ([4-9]|\\d\\d) s").match(text("amount")).hasMatch();
     }
-
-    std::unique_ptr<RecordPanel> panel_;
 };
 
 void TestRecordingEnd::aStopGoesOnWhileAnotherRobotIsChosen() {
@@ -148,8 +122,15 @@ void TestRecordingEnd::aStopOfARobotThatIsRemoved() {
     QCOMPARE(text("message"), QString("Recording run1.")); // it was said once
 }
 
-/// Its link was gone as Stop was pressed, and others have begun another recording meanwhile.
-void TestRecordingEnd::whatWasBegunLaterGoesOn() {
+void TestRecordingEnd::aLoggerThatWasAwayIsStoppedToo_data() {
+    const Rows<bool> row("isLater"); // others have begun another recording meanwhile, which goes on
+    row("the same recording", false);
+    row("a later one", true);
+}
+
+/// Its link was gone as Stop was pressed.
+void TestRecordingEnd::aLoggerThatWasAwayIsStoppedToo() {
+    QFETCH(bool, isLater);
     FakeLoggers robot;
     FakeLogger &here = robot.add("here"), &away = robot.add("away");
     Fleet fleet;
@@ -161,16 +142,23 @@ void TestRecordingEnd::whatWasBegunLaterGoesOn() {
     link->client().close();
     QTRY_COMPARE(text("lost"), QString("away was recording run1 and is gone."));
     click("record");
+    QTRY_VERIFY(!here.recording.isActive());
     QTRY_VERIFY2(text("message").contains("away: it took part, but does not answer"),
                  qPrintable(text("message")));
-    QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
-    QVERIFY(robot.clients.back()->callAndWait("record.start", QJsonObject{{"name", "later"}}).ok());
-    QVERIFY(link->client().connectTo(away.address()).ok());
-    QTRY_VERIFY_WITH_TIMEOUT(recordsForSeconds("later"), 30000);
     QVERIFY(away.recording.isActive());
-    click("record");
-    QTRY_VERIFY(!away.recording.isActive());
+    if (isLater) {
+        QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
+        QVERIFY(robot.clients.back()->callAndWait("record.start", QJsonObject{{"name", "later"}}).ok());
+    }
+    QVERIFY(link->client().connectTo(away.address()).ok());
+    if (isLater) {
+        QTRY_VERIFY_WITH_TIMEOUT(recordsForSeconds("later"), 30000);
+        QVERIFY(away.recording.isActive());
+        click("record");
+    }
+    QTRY_VERIFY_WITH_TIMEOUT(!away.recording.isActive(), 15000);
     QTRY_COMPARE(text("message"), QString("Stopped, nothing missing."));
+    QVERIFY(isLater || !find<QLabel>("lost")->isVisible()); // it had gone on
 }
 
 /// It has begun, and nobody knows.
@@ -178,9 +166,7 @@ void TestRecordingEnd::aStartWhoseLinkBreaksIsTakenBack() {
     RobotProcesses robot;
     robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
     Fleet fleet;
-    Client client;
-    client.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
     TcpLink link(robot.port("seriallogger"));
     link.cutAfter("record.start");
     QVERIFY(fleet.add(QString("127.0.0.1:%1").arg(link.port())).ok());

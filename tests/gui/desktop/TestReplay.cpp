@@ -2,6 +2,7 @@
 #include "gui/desktop/widgets/Timeline.h"
 #include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/PatientClient.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -300,9 +301,7 @@ void TestReplay::liveEndsTheReplayOfAnother() {
     open_->panel<RecordPanel>("recordings");
     waitForLoggers();
     QVERIFY(!find("live")->isEnabled());
-    Client other;
-    other.connectTo(QString("127.0.0.1:%1").arg(robot_->port("velodynelogger")));
-    QVERIFY(other.waitConnected().ok());
+    ConnectedClient other(QString("127.0.0.1:%1").arg(robot_->port("velodynelogger")));
     for (const double speed : {1.0, 0.0}) {
         const auto opened =
             other.callAndWait("source.open", QJsonObject{{"recording", "run1"}, {"speed", speed}});

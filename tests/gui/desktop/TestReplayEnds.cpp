@@ -202,11 +202,11 @@ void TestReplayEnds::whoPlaysIsNotRemoved() {
 }
 
 void TestReplayEnds::theProgramLeavesTheRobotLive_data() {
-    QTest::addColumn<QString>("end");
-    QTest::newRow("closed by its window") << "close";
-    QTest::newRow("told to end") << "terminate";
-    QTest::newRow("told to end behind a slow link") << "slow";
-    QTest::newRow("told to end while the logger stands still") << "freeze";
+    const Rows<QString> row("end");
+    row("closed by its window", "close");
+    row("told to end", "terminate");
+    row("told to end behind a slow link", "slow");
+    row("told to end while the logger stands still", "freeze");
 }
 
 /// The real program, by real keys.

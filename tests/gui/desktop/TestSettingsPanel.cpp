@@ -1,6 +1,7 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/PatientClient.h"
 
 #include <QComboBox>
 #include <QFile>
@@ -61,8 +62,7 @@ private:
 
 void TestSettingsPanel::init() {
     robot_ = std::make_unique<RobotProcesses>();
-    QFile file(robot_->path("motors.json"));
-    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("{}") == 2 && file.flush());
+    put(robot_->path("motors.json"), "{}");
     const quint16 port = robot_->start("motorcontrol", {}, {"--config", robot_->path("motors.json")});
     robot_->start("scanmatcher");
     window_ = std::make_unique<OpenWindow>(*robot_);
@@ -70,9 +70,7 @@ void TestSettingsPanel::init() {
     panel_ = window_->panel<SettingsPanel>("settings");
     QVERIFY(window_->choose(window_->fleet.robot()->withName("motorcontrol")));
     QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
-    client_ = std::make_unique<Client>();
-    client_->connectTo(asOwner(QString("127.0.0.1:%1").arg(port)));
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(asOwner(QString("127.0.0.1:%1").arg(port)));
 }
 
 void TestSettingsPanel::cleanup() {
@@ -152,9 +150,8 @@ void TestSettingsPanel::saved() {
     QTRY_COMPARE(message(), QString("Applied."));
     OpenWindow::click(panel_, "save");
     QTRY_VERIFY(message().startsWith("Saved"));
-    QFile file(robot_->path("motors.json"));
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(file.readAll())["motion"]["vx"], QJsonValue(0.31));
+    QCOMPARE(QJsonDocument::fromJson(contentOf(robot_->path("motors.json")))["motion"]["vx"],
+             QJsonValue(0.31));
 }
 
 void TestSettingsPanel::changeOfAnotherClientArrives() {
@@ -256,9 +253,9 @@ void TestSettingsPanel::saveAppliesFirst() {
     OpenWindow::click(panel_, "save");
     QTRY_VERIFY2(message().startsWith("Applied. Saved"), qPrintable(message()));
     QCOMPARE(setting("motion.vx"), QJsonValue(0.31));
-    QFile file(robot_->path("motors.json"));
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    QCOMPARE(QJsonDocument::fromJson(file.readAll()).object()["motion"].toObject()["vx"], QJsonValue(0.31));
+    QCOMPARE(
+        QJsonDocument::fromJson(contentOf(robot_->path("motors.json"))).object()["motion"].toObject()["vx"],
+        QJsonValue(0.31));
     const double warning = setting("faults.battery_warning_v").toDouble();
     OpenWindow::type(field("faults.battery_v"), QString::number(warning + 1));
     OpenWindow::click(panel_, "save");
@@ -287,7 +284,7 @@ void TestSettingsPanel::theWheelChangesNothing() {
         QCOMPARE(slider->value(), before);
     }
     auto *const scroll = panel_->findChild<QScrollArea *>()->verticalScrollBar(); // which goes on scrolling
-    QVERIFY(scroll->maximum() > 0);
+    QTRY_VERIFY(scroll->maximum() > 0);                                           // as soon as it is laid out
     wheel(panel_->findChild<QScrollArea *>()->viewport());
     QVERIFY(scroll->value() > 0);
 }

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/SetupPanel.h"
 #include "gui/setup/WheelTurn.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/PatientClient.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -56,9 +57,7 @@ private:
                    : rows[0]->parent()->text(0) + ' ' + rows[0]->text(1) + ' ' + rows[0]->text(2);
     }
     QJsonValue file(const QString &name) const {
-        QFile read(folder_ + '/' + name + ".json");
-        return read.open(QIODevice::ReadOnly) ? QJsonDocument::fromJson(read.readAll()).object()
-                                              : QJsonObject();
+        return QJsonDocument::fromJson(contentOf(folder_ + '/' + name + ".json")).object();
     }
     QJsonValue ask(const QString &daemon, const QString &method, const QJsonObject &params = {}) {
         Client client;
@@ -219,9 +218,9 @@ void TestSetupPanel::stopEndsTheTestOfWheels() {
 }
 
 void TestSetupPanel::outOfSightNoWheelTurns_data() {
-    QTest::addColumn<bool>("isClosed");
-    QTest::newRow("its dock is closed") << true;
-    QTest::newRow("another tab is over it") << false;
+    const Rows<bool> row("isClosed");
+    row("its dock is closed", true);
+    row("another tab is over it", false);
 }
 
 void TestSetupPanel::outOfSightNoWheelTurns() {
@@ -242,9 +241,7 @@ void TestSetupPanel::outOfSightNoWheelTurns() {
 /// While the control is asked for.
 void TestSetupPanel::givenUpEarlyLeavesTheControl() {
     open(true);
-    Client motors;
-    motors.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
-    QVERIFY(motors.waitConnected());
+    ConnectedClient motors(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
     WheelTurn turn(motors, "test", Client::defaultTimeout);
     bool isOver = false;
     Result<double> measured = 0.0;

@@ -80,19 +80,18 @@ void TestSlowDisk::init() {
 }
 
 void TestSlowDisk::whatIsSet_data() {
-    QTest::addColumn<Set>("set");
-    QTest::newRow("layout") << Set([](LayoutWindow &one) { one.saveAs("Bench"); });
-    QTest::newRow("layer") << Set(
-        [](LayoutWindow &one) { one.window->findChild<QAction *>("trustLayer")->trigger(); });
-    QTest::newRow("robot added") << Set([](LayoutWindow &one) { one.fleet.add("127.0.0.1:2"); });
-    QTest::newRow("robot renamed") << Set(
-        [](LayoutWindow &one) { one.fleet.rename(*one.fleet.robots().front(), "Blue"); });
-    QTest::newRow("robot chosen") << Set([](LayoutWindow &one) {
+    const Rows<Set> row("set");
+    row("layout", [](LayoutWindow &one) { one.saveAs("Bench"); });
+    row("layer", Set([](LayoutWindow &one) { one.window->findChild<QAction *>("trustLayer")->trigger(); }));
+    row("robot added", [](LayoutWindow &one) { one.fleet.add("127.0.0.1:2"); });
+    row("robot renamed",
+        Set([](LayoutWindow &one) { one.fleet.rename(*one.fleet.robots().front(), "Blue"); }));
+    row("robot chosen", [](LayoutWindow &one) {
         one.fleet.add("127.0.0.1:2");
         one.fleet.choose(one.fleet.robots().back().get());
     });
-    QTest::newRow("plots") << Set(
-        [](LayoutWindow &one) { one.window->findChild<PlotsPanel *>()->board().time().setSpan(7); });
+    row("plots",
+        Set([](LayoutWindow &one) { one.window->findChild<PlotsPanel *>()->board().time().setSpan(7); }));
 }
 
 void TestSlowDisk::whatIsSet() {
@@ -111,23 +110,16 @@ void TestSlowDisk::whatIsSet() {
 }
 
 void TestSlowDisk::exports_data() {
-    QTest::addColumn<QString>("action");
-    QTest::addColumn<QString>("name");
-    QTest::newRow("map as SVG") << "export"
-                                << "map.svg";
-    QTest::newRow("map as PNG") << "export"
-                                << "map.png";
-    QTest::newRow("plots as SVG") << "picture"
-                                  << "plots.svg";
-    QTest::newRow("plots as PNG") << "picture"
-                                  << "plots.png";
-    QTest::newRow("plots as CSV") << "csv"
-                                  << "plots.csv";
+    const Rows<QString, QString> row("action", "name");
+    row("map as SVG", "export", "map.svg");
+    row("map as PNG", "export", "map.png");
+    row("plots as SVG", "picture", "plots.svg");
+    row("plots as PNG", "picture", "plots.png");
+    row("plots as CSV", "csv", "plots.csv");
 }
 
 void TestSlowDisk::exports() {
-    QFETCH(QString, action);
-    QFETCH(QString, name);
+    FETCH(QString, action, QString, name);
     LayoutWindow one({}, {"127.0.0.1:1"});
     one.window->findChild<QAction *>(action)->trigger();
     auto *const dialog = one.window->findChild<QFileDialog *>();

@@ -4,6 +4,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
+#include "tests/support/PatientClient.h"
 #include "tests/support/ThreadTime.h"
 
 #include <QPlainTextEdit>
@@ -279,17 +280,13 @@ void TestSpeed::memoryOfAnHour() {
     program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
                   {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.ini")});
     QVERIFY(program.waitForStarted());
-    Client client;
-    client.connectTo(QString("127.0.0.1:%1").arg(port));
-    QVERIFY(client.waitConnected().ok());
+    ConnectedClient client(QString("127.0.0.1:%1").arg(port));
     quint64 seen = 0;
     client.subscribe("pose", {{"max_rate_hz", 10}},
                      [&seen](const TopicUpdate &update) { seen = update.seq; });
     QTRY_VERIFY_WITH_TIMEOUT(seen > quint64(messages), 300000);
-    QFile status(QString("/proc/%1/status").arg(program.processId()));
-    QVERIFY(status.open(QIODevice::ReadOnly));
     double resident_mb = 0;
-    for (const QByteArray &line : status.readAll().split('\n'))
+    for (const QByteArray &line : contentOf(QString("/proc/%1/status").arg(program.processId())).split('\n'))
         if (line.startsWith("VmHWM:"))
             resident_mb = line.mid(6).trimmed().split(' ')[0].toDouble() * 1024 / 1e6;
     figure(messages == 36000 ? "memory at most, an hour of a map at 10 Hz" : "memory at most, six minutes",

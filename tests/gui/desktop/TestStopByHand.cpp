@@ -81,9 +81,9 @@ void TestStopByHand::init() {
 const QStringList TestStopByHand::allHands{"mouse", "space", "F12"};
 
 void TestStopByHand::hands() {
-    QTest::addColumn<QString>("hand");
+    const Rows<QString> row("hand");
     for (const QString &hand : allHands)
-        QTest::newRow(qPrintable(hand)) << hand;
+        row(qPrintable(hand), hand);
 }
 
 void TestStopByHand::stopBy(const QString &hand) {

@@ -1,5 +1,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
+#include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
 #include <QLabel>
@@ -83,9 +84,7 @@ private:
 
 void TestStopConfirmed::init() {
     robot_ = std::make_unique<FakeRobot>();
-    client_ = std::make_unique<Client>();
-    client_->connectTo(robot_->address());
-    QVERIFY(client_->waitConnected().ok());
+    client_ = std::make_unique<ConnectedClient>(robot_->address());
 }
 
 void TestStopConfirmed::openWindow(quint16 port) {

@@ -16,9 +16,9 @@ private Q_SLOTS:
 };
 
 void TestStopTold::onlyOfOneThatStands_data() {
-    QTest::addColumn<QString>("cause");
-    QTest::newRow("the stop of another client") << "estop";
-    QTest::newRow("a controller that keeps turning") << "encoder";
+    const Rows<QString> row("cause");
+    row("the stop of another client", "estop");
+    row("a controller that keeps turning", "encoder");
 }
 
 void TestStopTold::onlyOfOneThatStands() {

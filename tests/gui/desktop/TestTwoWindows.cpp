@@ -37,16 +37,13 @@ void TestTwoWindows::initTestCase() {
     const auto one = opened();
     QTest::qWait(1500); // until all is kept as a window begins with it
     one->window->close();
-    QFile file(file_);
-    QVERIFY(file.open(QIODevice::ReadOnly));
-    usual_ = file.readAll();
+    usual_ = contentOf(file_);
 }
 
 void TestTwoWindows::init() {
     folder_ = std::make_unique<QTemporaryDir>();
     file_ = folder_->filePath("gui.ini");
-    QFile file(file_);
-    QVERIFY(file.open(QIODevice::WriteOnly) && file.write(usual_) > 0);
+    put(file_, usual_);
 }
 
 void TestTwoWindows::theFirstKeeps() {

@@ -152,14 +152,10 @@ void TestValueEditors::amountsAreSpoken() {
 }
 
 void TestValueEditors::patternsAndFormats_data() {
-    QTest::addColumn<QByteArray>("schema");
-    QTest::addColumn<QString>("good");
-    QTest::addColumn<QString>("bad");
-    QTest::newRow("pattern") << QByteArray(R"({"type":"string","pattern":"^[a-z]+$"})") << "abc"
-                             << "ab1";
-    const auto format = [](const char *name, const char *good, const char *bad) {
-        QTest::newRow(name) << QByteArray(R"({"type":"string","format":")") + name + R"("})" << QString(good)
-                            << QString(bad);
+    const Rows<QByteArray, QString, QString> row("schema", "good", "bad");
+    row("pattern", R"({"type":"string","pattern":"^[a-z]+$"})", "abc", "ab1");
+    const auto format = [&](const char *name, const char *good, const char *bad) {
+        row(name, QByteArray(R"({"type":"string","format":")") + name + R"("})", QString(good), QString(bad));
     };
     format("date-time", "2026-01-31T12:00:00Z", "2026-02-31T12:00:00Z");
     format("date", "2026-01-31", "31.1.2026");
@@ -169,9 +165,7 @@ void TestValueEditors::patternsAndFormats_data() {
 }
 
 void TestValueEditors::patternsAndFormats() {
-    QFETCH(QByteArray, schema);
-    QFETCH(QString, good);
-    QFETCH(QString, bad);
+    FETCH(QByteArray, schema, QString, good, QString, bad);
     open_->showOne(schema);
     OpenForm::type(open_->seen<QLineEdit>(), bad);
     QVERIFY(!form_->isValid());

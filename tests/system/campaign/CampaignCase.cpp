@@ -25,7 +25,9 @@ const std::vector<std::string> actions{"falls silent",
                                        "gives the control back",
                                        "is taken over",
                                        "changes settings",
-                                       "the process stands still"};
+                                       "the process stands still",
+                                       "is fought by a rival",
+                                       "the motor control is killed"};
 
 /// Numbers that are the same on every machine.
 class Dice {

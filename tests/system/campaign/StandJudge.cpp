@@ -193,8 +193,8 @@ void StandJudge::extend(int controller) {
 
 void StandJudge::watch() {
     const double now = time();
-    if (justified_ && !robot_.engine.drive().haltReason().isEmpty() && !stalledSince_)
-        endJustification("the motor control halted: " + robot_.engine.drive().haltReason().toStdString());
+    if (justified_ && !robot_.engine->drive().haltReason().isEmpty() && !stalledSince_)
+        endJustification("the motor control halted: " + robot_.engine->drive().haltReason().toStdString());
     if (const auto number = lostController())
         endJustification(controllerName(*number) + " has not been heard for " + print("%g s", lost));
     if (justified_ && now >= until_)
@@ -237,7 +237,7 @@ std::optional<int> StandJudge::lostController() const {
 }
 
 void StandJudge::watchGuard() {
-    hermes::motorcontrol::DriveEngine &engine = robot_.engine;
+    hermes::motorcontrol::DriveEngine &engine = *robot_.engine;
     const bool drivable = engine.controller(0).isReady() && engine.controller(1).isReady() && !stalledSince_;
     for (int controller = 0; controller < 2; ++controller) {
         const bool swapped = sinceOf("controllers", "swapped").has_value();
@@ -253,7 +253,7 @@ void StandJudge::watchGuard() {
 }
 
 void StandJudge::watchRunaways(double step) {
-    if (std::exchange(resets_, robot_.engine.drive().resets()) != robot_.engine.drive().resets())
+    if (std::exchange(resets_, robot_.engine->drive().resets()) != robot_.engine->drive().resets())
         ranAway_ = {};
     for (int wheel = 0; wheel < 4 && justified_ && !stalledSince_; ++wheel) {
         double &seconds = ranAway_[std::size_t(wheel)];

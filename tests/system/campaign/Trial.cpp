@@ -20,6 +20,7 @@ constexpr double commandPeriod = 0.05;
 constexpr double recovery = 8;  // once all is mended, the robot drives within
 constexpr double readiness = 3; // undisturbed, it drives within
 constexpr double slow = 0.05;   // m/s: slower it does not drive
+constexpr quint64 bystander = 1077, rival = 1099;
 
 /// Settings with their defaults where the case says nothing.
 MotorSettings settingsOf(const Case &c, QJsonObject more = {}) {
@@ -114,6 +115,8 @@ private:
             if (robot_.now() >= start + nextCommand_) {
                 if (time() >= silentUntil_)
                     command(time());
+                if (time() < foughtUntil_)
+                    fight();
                 nextCommand_ += commandPeriod;
             }
         }
@@ -129,17 +132,19 @@ private:
             failure_ = "it does not drive though nothing is wrong: " + reason();
     }
     std::string reason() {
-        return (robot_.engine.drive().haltReason() + "; " + robot_.engine.controller(0).error() + "; " +
-                robot_.engine.controller(1).error())
+        return (robot_.engine->drive().haltReason() + "; " + robot_.engine->controller(0).error() + "; " +
+                robot_.engine->controller(1).error())
             .toStdString();
     }
 
     /// One command of the client, made then.
     void command(double made) {
-        Drive &drive = robot_.engine.drive();
+        Drive &drive = robot_.engine->drive();
         const double now = robot_.now();
         if (!drive.lease().isHeldBy(client_)) {
-            if (case_.resets || recovers_)
+            if (recovers_) // a person
+                release();
+            else if (case_.resets && drive.mayReset(client_, false, now))
                 drive.resetEmergencyStop();
             if (!drive.acquire(client_, "driver", case_.lease_s, now))
                 return robot_.obey();
@@ -149,12 +154,45 @@ private:
         const Twist2D twist{case_.vx * share, case_.vy * share, case_.omega * share};
         const double age = case_.stamps ? time() - made : 0;
         if (drive.driveTwist(client_, twist, age, now))
-            judge_.justify(case_.stamps ? made : time()); // without a stamp it is good from when it comes
+            accept(case_.stamps ? made : time()); // without a stamp it is good from when it comes
         robot_.obey();
+    }
+    void accept(double made) {
+        if (isHeld_ && failure_.empty())
+            failure_ = "a command was accepted though nobody who may has released the emergency stop";
+        judge_.justify(made);
+    }
+    void release() {
+        robot_.engine->drive().resetEmergencyStop();
+        isHeld_ = false;
+    }
+    /// Another client does all that it can to drive.
+    void fight() {
+        Drive &drive = robot_.engine->drive();
+        const double now = robot_.now();
+        if (drive.mayReset(rival, false, now))
+            drive.resetEmergencyStop();
+        if (drive.acquire(rival, "rival", case_.lease_s, now))
+            judge_.endJustification("the rival acquired the control");
+        if (drive.driveTwist(rival, {case_.vx, case_.vy, case_.omega}, 0, now))
+            accept(time());
+        robot_.obey();
+    }
+    void endProcess(double seconds) {
+        const StopLatch latch = robot_.engine->drive().latch();
+        judge_.endJustification("the motor control ended");
+        judge_.setStalled(true);
+        robot_.stall(robot_.now() + seconds, [this] { watch(); });
+        judge_.setStalled(false);
+        robot_.restart(settings_, latch.has(Drive::emergencyCause)
+                                      ? std::optional(latch.reason(Drive::emergencyCause))
+                                      : std::nullopt);
+        ++client_;
+        nextCommand_ = time();
     }
 
     void act(const Step &step) {
-        Drive &drive = robot_.engine.drive();
+        Drive &drive = robot_.engine->drive();
         const std::string &a = step.action;
         const auto ends = [&] { judge_.endJustification(a); };
         if (a == "falls silent") {
@@ -164,12 +202,20 @@ private:
             silentUntil_ = time() + step.amount;
             ends();
         } else if (a == "is stopped by another") {
-            drive.stop(77, "bystander");
+            drive.stop(bystander, "bystander");
             ends();
         } else if (a == "emergency stop") {
-            drive.emergencyStop(77, "bystander", time());
+            drive.emergencyStop(bystander, "bystander", robot_.now());
+            isHeld_ = true;
             ends();
-            events_.emplace(time() + step.amount, [this] { robot_.engine.drive().resetEmergencyStop(); });
+            events_.emplace(time() + Drive::holdOff_s + step.amount, [this] {
+                if (robot_.engine->drive().mayReset(bystander, true, robot_.now()))
+                    release();
+            });
+        } else if (a == "is fought by a rival") {
+            foughtUntil_ = time() + 2 * step.amount;
+        } else if (a == "the motor control is killed") {
+            return endProcess(step.amount);
         } else if (a == "loses its connection") {
             drive.clientGone(client_);
             ++client_;
@@ -191,7 +237,7 @@ private:
     }
     void takeOver(const Step &step) {
         ++client_;
-        if (robot_.engine.drive().takeOver(client_, "another", case_.lease_s, robot_.now())) {
+        if (robot_.engine->drive().takeOver(client_, "another", case_.lease_s, robot_.now())) {
             judge_.endJustification("is taken over");
             silentUntil_ = time() + step.amount / 4;
         }
@@ -199,7 +245,7 @@ private:
     void change(const Step &step) {
         const double timeout = std::ceil(step.amount * 2.5) / 10; // 0.1 to 0.5 s
         const MotorSettings changed = settingsOf(case_, {{"timeout_s", timeout}});
-        robot_.engine.configure(changed);
+        robot_.engine->configure(changed);
         judge_.reconfigure();
     }
     /// Whether the client sends nothing then, for what it does while the process stands still.
@@ -216,7 +262,7 @@ private:
         judge_.setStalled(false);
         const bool isVoid = seconds > settings_.drive.commandTimeout_s;
         if (isVoid) {
-            robot_.engine.drive().stoodStill("the drive loop stood still");
+            robot_.engine->drive().stoodStill("the drive loop stood still");
             judge_.endJustification("the process stood still");
             robot_.obey();
         }
@@ -309,8 +355,8 @@ private:
     StandJudge judge_;
     std::multimap<double, std::function<void()>> events_;
     quint64 client_ = 1;
-    double nextCommand_ = 0, silentUntil_ = 0, drove_ = 0;
-    bool recovers_ = false;
+    double nextCommand_ = 0, silentUntil_ = 0, drove_ = 0, foughtUntil_ = 0;
+    bool recovers_ = false, isHeld_ = false; ///< by an emergency stop that nobody who may has released
     int stops_ = 0;
     std::string failure_;
 };

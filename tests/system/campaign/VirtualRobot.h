@@ -8,6 +8,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <optional>
 
 namespace campaign {
 
@@ -20,16 +21,29 @@ public:
 
     VirtualRobot(const hermes::motorcontrol::MotorSettings &settings,
                  const hermes::simulator::Drivetrain::Options &options)
-        : engine(settings)
-        , robot(options) {
-        if (options.ownLines) {
-            lines_.emplace_back(std::vector{&engine.controller(0)});
-            lines_.emplace_back(std::vector{&engine.controller(1)});
+        : robot(options)
+        , ownLines_(options.ownLines) {
+        restart(settings, std::nullopt);
+    }
+
+    /// As another process, which knows nothing of before but the emergency stop.
+    void restart(const hermes::motorcontrol::MotorSettings &settings, const std::optional<QString> &stop) {
+        std::vector<bool> pulled;
+        for (const Line &line : lines_)
+            pulled.push_back(line.pulled);
+        lines_.clear();
+        engine.emplace(settings);
+        if (ownLines_) {
+            lines_.emplace_back(std::vector{&engine->controller(0)});
+            lines_.emplace_back(std::vector{&engine->controller(1)});
         } else {
-            lines_.emplace_back(std::vector{&engine.controller(0), &engine.controller(1)});
+            lines_.emplace_back(std::vector{&engine->controller(0), &engine->controller(1)});
         }
-        for (Line &line : lines_)
-            line.master.setOpen();
+        for (std::size_t i = 0; i < lines_.size(); ++i)
+            setPulled(int(i), i < pulled.size() && pulled[i]);
+        if (stop)
+            engine->drive().restoreStop(*stop, now_);
+        nextCycle_ = now_;
     }
 
     double now() const { return now_; }
@@ -43,7 +57,7 @@ public:
             pass(next, watch);
             if (now_ >= nextCycle_) {
                 nextCycle_ += period;
-                engine.cycle(now_);
+                engine->cycle(now_);
             }
             exchange();
         }
@@ -55,7 +69,7 @@ public:
     }
     /// After a command, as the drive loop does it.
     void obey() {
-        engine.obey();
+        engine->obey();
         exchange();
     }
     /// The host finds a line again a quarter of a second after it came back, at the latest.
@@ -70,7 +84,7 @@ public:
     }
     bool isPulled(int line) const { return lines_[std::size_t(line)].pulled; }
 
-    hermes::motorcontrol::DriveEngine engine;
+    std::optional<hermes::motorcontrol::DriveEngine> engine;
     hermes::simulator::Drivetrain robot;
 
 private:
@@ -137,6 +151,7 @@ private:
         }
     }
 
+    const bool ownLines_;
     std::deque<Line> lines_;
     double now_ = 1, nextCycle_ = 1;
 };

@@ -1,0 +1,150 @@
+// hermesctl stop and estop: every robot that is there, at once.
+#include "common/client/DaemonAddress.h"
+#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/NetworkBrowser.h"
+#include "gui/hermesctl/Output.h"
+#include "protocol/messages/Motors.h"
+#include "protocol/messages/Processes.h"
+#include "protocol/wire/Fields.h"
+
+#include <QEventLoop>
+#include <QJsonArray>
+#include <QSet>
+#include <QTimer>
+
+namespace hermes::ctl {
+namespace {
+
+/// Stops whoever has the command, each as soon as it is connected: nobody waits for another one.
+class Stopping {
+public:
+    Stopping(const Arguments &arguments, const QString &method)
+        : arguments_(arguments)
+        , method_(method) {}
+
+    void stop(const QString &address) {
+        if (asked_.contains(address))
+            return;
+        asked_.insert(address);
+        Client *const client = clients_.emplace_back(std::make_unique<Client>()).get();
+        ++open_;
+        QObject::connect(client, &Client::connected, &loop_, [this, client] {
+            waiting_.insert(client);
+            client->call(
+                method_, QJsonObject{{QStringLiteral("wait_s"), wait_s}},
+                [this, client](const Result<QJsonValue> &result) { take(client, result); },
+                arguments_.timeout, Client::Repeats::AtOnce);
+        });
+        QObject::connect(client, &Client::disconnected, &loop_, [this, client] {
+            if (!waiting_.contains(client)) // else its call tells
+                finish(client);
+        });
+        if (!client->connectTo(asOwner(address)))
+            finish(client);
+    }
+
+    void wait() {
+        QTimer::singleShot(arguments_.timeout, &loop_, &QEventLoop::quit);
+        if (open_ > 0)
+            loop_.exec();
+    }
+
+    Result<void> outcome() {
+        for (const Client *client : qAsConst(waiting_))
+            note(client->address(), false, QStringLiteral("does not answer"));
+        if (arguments_.json)
+            printJson(told_);
+        if (told_.isEmpty())
+            return Error(
+                ErrorCode::Disconnected,
+                QStringLiteral("no robot is there: no daemon at %1, or announced on the network, has "
+                               "%2; hermesctl call HOST:PORT %2 calls another one")
+                    .arg(arguments_.host, method_));
+        return unconfirmed_.isEmpty()
+                   ? Result<void>()
+                   : Error(ErrorCode::DeviceFault, unconfirmed_.join(QStringLiteral("; ")));
+    }
+
+private:
+    static constexpr double wait_s = 2; // for the wheels to stand
+
+    void take(Client *client, const Result<QJsonValue> &result) {
+        if (!result && result.error().is(ErrorCode::MethodNotFound)) // perhaps one who knows others
+            return client->call(
+                QStringLiteral("process.list"), QJsonObject(),
+                [this, client](const Result<QJsonValue> &list) {
+                    for (const QJsonValue &process : list ? (*list)["processes"].toArray() : QJsonArray())
+                        if (const int port = process["port"].toInt(); port != 0)
+                            stop(QStringLiteral("%1:%2").arg(arguments_.host).arg(port));
+                    finish(client);
+                },
+                arguments_.timeout);
+        ReadReport report;
+        const auto told = result ? readMessage<StandConfirmation>(WireValue(*result), report) : std::nullopt;
+        note(client->address(), told && told->confirmed,
+             !result           ? result.error().message
+             : !told           ? report.text()
+             : told->confirmed ? QStringLiteral("stands")
+                               : told->text);
+        finish(client);
+    }
+
+    void note(const QString &address, bool stands, const QString &text) {
+        told_.append(QJsonObject{{QStringLiteral("address"), address},
+                                 {QStringLiteral("confirmed"), stands},
+                                 {QStringLiteral("text"), text}});
+        if (!stands)
+            unconfirmed_.append(address + QStringLiteral(": ") + text);
+        else if (!arguments_.json)
+            printLine(printable(address + QStringLiteral(": ") + text));
+    }
+
+    void finish(Client *client) {
+        waiting_.remove(client);
+        QObject::disconnect(client, nullptr, &loop_, nullptr);
+        if (--open_ == 0)
+            loop_.quit();
+    }
+
+    const Arguments &arguments_;
+    const QString method_;
+    QEventLoop loop_;
+    QSet<QString> asked_;
+    QSet<Client *> waiting_; // for an answer
+    int open_ = 0;           // that may still answer, or be connected
+    QJsonArray told_;
+    QStringList unconfirmed_;
+    std::vector<std::unique_ptr<Client>> clients_; // go first: what ends with them is still told
+};
+
+Result<void> stopAll(const Arguments &arguments, const QString &method) {
+    Stopping stopping(arguments, method);
+    for (const QString &daemon : arguments.words.isEmpty() ? daemonNames() : arguments.words) {
+        const auto address = daemonAddress(daemon, arguments.host);
+        if (!address)
+            return address.error();
+        stopping.stop(*address);
+    }
+    constexpr std::chrono::milliseconds shortly{300};
+    if (arguments.words.isEmpty()) {
+        if (const auto found = NetworkBrowser().look(shortly)) // those from before are on their way
+            for (const QJsonObject &daemon : *found)
+                stopping.stop(QStringLiteral("%1:%2")
+                                  .arg(daemon[QStringLiteral("address")].toString())
+                                  .arg(daemon[QStringLiteral("port")].toInt()));
+    }
+    stopping.wait();
+    return stopping.outcome();
+}
+
+} // namespace
+
+Result<void> stopRobots(const Arguments &arguments) {
+    return stopAll(arguments, QStringLiteral("motor.stop"));
+}
+
+Result<void> emergencyStopRobots(const Arguments &arguments) {
+    return stopAll(arguments, QStringLiteral("motor.estop"));
+}
+
+} // namespace hermes::ctl
