@@ -312,8 +312,10 @@ void DriveControl::giveBack() {
 
 /// The control, as the next state will tell; one that was asked for before tells nothing of it.
 void DriveControl::lose() {
-    if (isHolding_)
+    if (isHolding_) {
         hold_.control.held = false;
+        lost_.start();
+    }
     isHolding_ = false;
     ++losses_;
 }
@@ -414,6 +416,9 @@ void DriveControl::onState(const QJsonValue &state) {
     stateAge_.heard(motors_);
     const bool wasStopped = isStopped(), wasLatched = !hold_.latched.isEmpty();
     hold_ = std::move(*hold);
+    if (!isHolding_ && hold_.control.holder == ownName() && lost_.isValid() &&
+        !lost_.hasExpired(qint64(1000 * lease_s)))
+        hold_.control.held = false; // the state is older than the release
     target_ = readMessage<Twist2D>(WireValue(state["target"]), report).value_or(Twist2D());
     if (!isDriving_ && hold_.control.holder != ownName())
         isHolding_ = false; // it ran out

@@ -142,6 +142,7 @@ private:
     DriveInputs inputs_;
     SecondPress confirmation_;
     QElapsedTimer ticked_;   ///< the last turn of the timer
+    QElapsedTimer lost_;     ///< since the control was given back
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;
