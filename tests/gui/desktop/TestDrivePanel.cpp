@@ -50,6 +50,8 @@ private Q_SLOTS:
     void theLimitIsKept();
     void aRefusedLimitHidesNothing();
     void theBatteryIsTold();
+    void theManualListsEachText();
+    void noTextOutlivesItsRobot();
 
 private:
     template <typename T>
@@ -88,6 +90,8 @@ private:
         repeating_->start(20);
     }
     void open(const QString &layoutFile = {});
+    /// Of the manual: their names with their sources.
+    static QMap<QString, QString> listedTexts();
     void awaitRest() { QTRY_VERIFY(!drive_->mustLetGo()); }
 
     std::unique_ptr<QTimer> repeating_;
@@ -585,6 +589,59 @@ void TestDrivePanel::aRefusedLimitHidesNothing() {
                  qPrintable(find<QLabel>("problem")->text()));
     robot_->thaw();
     letGo();
+}
+
+QMap<QString, QString> TestDrivePanel::listedTexts() {
+    QFile page(TEST_DATA_DIR "/../../docs/desktop.md");
+    if (!page.open(QIODevice::ReadOnly))
+        return {};
+    const QString section =
+        QString::fromUtf8(page.readAll()).section("## What each text says\n", 1).section("\n## ", 0, 0);
+    static const QRegularExpression line("^\\| `(\\w+)` \\| [^|]+ \\| ([^|]+) \\| [^|]+ \\|$",
+                                         QRegularExpression::MultilineOption);
+    QMap<QString, QString> found;
+    for (auto row = line.globalMatch(section); row.hasNext();) {
+        const QRegularExpressionMatch match = row.next();
+        found[match.captured(1)] = match.captured(2);
+    }
+    return found;
+}
+
+// With its source and its end. Texts of forms are those of their values.
+void TestDrivePanel::theManualListsEachText() {
+    QSet<QString> shown;
+    for (const QLabel *const label : window_->findChildren<QLabel *>())
+        if (QString name = label->objectName(); !name.isEmpty() && !name.startsWith("qt_") &&
+                                                !name.contains('/') && name != "heading" &&
+                                                name != "description")
+            shown.insert(name.remove(QRegularExpression("[0-9]$")));
+    const QStringList keys = listedTexts().keys();
+    const QSet<QString> listed(keys.begin(), keys.end());
+    const auto told = [](const QSet<QString> &names) { return QStringList(names.values()).join(' '); };
+    QVERIFY2((shown - listed).isEmpty(), qPrintable("not listed: " + told(shown - listed)));
+    QVERIFY2((listed - shown).isEmpty(), qPrintable("not there: " + told(listed - shown)));
+}
+
+// What a robot has told is gone, grey or struck out when the robot is gone.
+void TestDrivePanel::noTextOutlivesItsRobot() {
+    const auto labels = window_->findChildren<QLabel *>();
+    const QMap<QString, QString> listed = listedTexts();
+    const auto told = [&] {
+        QStringList all;
+        for (const QLabel *const label : labels)
+            if (const QString name = QString(label->objectName()).remove(QRegularExpression("[0-9]$"));
+                listed.value(name).contains("robot") && label->isVisible() && label->isEnabled() &&
+                !label->text().isEmpty() && !label->text().startsWith("no", Qt::CaseInsensitive) &&
+                label->text() != "0.00")
+                all.append(name + ": " + label->text());
+        return all;
+    };
+    press(0, 1);
+    awaitMotion();
+    QVERIFY2(told().size() >= 4, qPrintable(told().join('\n')));
+    letGo();
+    robot_->end();
+    QTRY_VERIFY2_WITH_TIMEOUT(told().isEmpty(), qPrintable(told().join('\n')), 10000);
 }
 
 void TestDrivePanel::theBatteryIsTold() {

@@ -31,6 +31,7 @@ private Q_SLOTS:
     void tabLeadsToWhatIsSeen();
     void whatIsOutOfSightGetsNoKeys();
     void docksComeByNumber();
+    void whatWasToldHasItsTime();
     void keysThatDriveNothingAreTold();
     void enterPressesAndTicks();
     void bannersFitALowScreen();
@@ -225,6 +226,23 @@ void TestKeyboard::bannersFitALowScreen() {
         QVERIFY2(window_->height() == 600, qPrintable(QString::number(window_->height())));
         QCOMPARE(places(), before);
     }
+}
+
+// A minute later; here at once.
+void TestKeyboard::whatWasToldHasItsTime() {
+    auto *const panel = window_->findChild<QDockWidget *>("daemons");
+    auto *const message = panel->findChild<QLabel *>("message");
+    panel->findChild<QLineEdit *>("address")->setText("999.1.1.1");
+    panel->findChild<QPushButton *>("add")->click();
+    const QString told = message->text();
+    QVERIFY2(told.contains("999.1.1.1") && message->isEnabled(), qPrintable(told));
+    auto *const old = message->findChild<QTimer *>();
+    QVERIFY(old->isActive() && old->interval() >= 10000);
+    old->start(0);
+    QTRY_VERIFY(!message->isEnabled());
+    QVERIFY2(QRegularExpression("^\\d\\d:\\d\\d:\\d\\d  ").match(message->text()).hasMatch() &&
+                 message->text().endsWith(told),
+             qPrintable(message->text()));
 }
 
 void TestKeyboard::keysThatDriveNothingAreTold() {
