@@ -11,7 +11,6 @@ namespace hermes::desktop {
 namespace {
 
 const QString driveMethod = "motor.drive";
-constexpr int mostKept = 200; // limits of robots
 
 } // namespace
 
@@ -85,7 +84,10 @@ void DriveControl::follow() {
     motors_ = found;
     if (found && found != driven_) { // the limit is another robot's
         most_ = usualMost;
-        limit_ = limits_.value(found->address(), scaled(usualMost, usualShare));
+        limit_ = scaled(usualMost, usualShare);
+        if (const QJsonValue kept = limits_.value(found->address()); kept.isArray())
+            limit_ = {qMax(0.0, kept[0].toDouble()), qMax(0.0, kept[1].toDouble()),
+                      qMax(0.0, kept[2].toDouble())};
     }
     if (found)
         driven_ = found;
@@ -164,24 +166,8 @@ bool DriveControl::setLimit(double share) {
 void DriveControl::putLimit(const Twist2D &limit) {
     limit_ = limit;
     if (driven_)
-        limits_[driven_->address()] = limit;
-    if (limits_.size() > mostKept)
-        limits_.erase(limits_.begin());
+        limits_[driven_->address()] = QJsonArray{limit.vx, limit.vy, limit.omega};
     Q_EMIT changed();
-}
-
-QJsonObject DriveControl::limits() const {
-    QJsonObject all;
-    for (auto limit = limits_.begin(); limit != limits_.end(); ++limit)
-        all[limit.key()] = QJsonArray{limit->vx, limit->vy, limit->omega};
-    return all;
-}
-
-void DriveControl::setLimits(const QJsonObject &limits) {
-    for (auto limit = limits.begin(); limit != limits.end(); ++limit) {
-        const auto speed = [limit](int i) { return qBound(0.0, limit->toArray()[i].toDouble(), 100.0); };
-        limits_[limit.key()] = {speed(0), speed(1), speed(2)};
-    }
 }
 
 Twist2D DriveControl::wish() const {

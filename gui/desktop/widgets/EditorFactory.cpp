@@ -12,7 +12,9 @@ bool isNumber(const QJsonObject &schema) {
     return (type == "number" || type == "integer") && !schema["enum"].isArray();
 }
 
-ValueEditor *makeFitting(const QJsonObject &schema, const EditorPlace &place) {
+} // namespace
+
+ValueEditor *makeEditor(const QJsonObject &schema, const EditorPlace &place) {
     using Kind = LineEditor::Kind;
     const QString type = schema["type"].toString();
     const QJsonArray choices = ChoiceEditor::choicesOf(schema);
@@ -31,14 +33,6 @@ ValueEditor *makeFitting(const QJsonObject &schema, const EditorPlace &place) {
                           : isNumber(schema) ? Kind::Number
                                              : Kind::Any,
                           place.empty);
-}
-
-} // namespace
-
-ValueEditor *makeEditor(const QJsonObject &schema, const EditorPlace &place) {
-    ValueEditor *const editor = makeFitting(schema, place);
-    editor->setEnabled(!schema["readOnly"].toBool());
-    return editor;
 }
 
 } // namespace hermes::desktop

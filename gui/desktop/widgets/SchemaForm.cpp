@@ -115,6 +115,7 @@ void SchemaForm::addRow(const QString &path, const QJsonObject &schema, bool isR
         !isRequired && !schema.contains("default") && valueAt(baseline_, path).isUndefined();
     row.editor = makeEditor(schema, {room_, 0, isOptional, LineEditor::Empty::Absent});
     row.editor->setObjectName(path);
+    row.editor->setEnabled(!schema["readOnly"].toBool());
     row.title->setBuddy(row.editor);
     row.note = new PlainLabel;
     row.note->setObjectName(path + "/note");
