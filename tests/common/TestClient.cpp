@@ -35,6 +35,7 @@ private Q_SLOTS:
     void init();
     void callsAndFails();
     void timesOut();
+    void aReplyThatIsTooLargeEndsItsCall();
     void failsWhenNotConnected();
     void pendingCallFailsWithTheConnection();
     void reconnectsAndSubscribesAgain();
@@ -86,6 +87,24 @@ void TestClient::timesOut() {
     QVERIFY(result.error().is(ErrorCode::TimedOut));
     daemon->kept[0].result("too late");
     QVERIFY(client.callAndWait("echo", QJsonArray{1})); // the late reply is not taken for this one
+}
+
+void TestClient::aReplyThatIsTooLargeEndsItsCall() {
+    Client client;
+    client.setFrameLimit(1000);
+    client.connectTo(address);
+    QVERIFY(client.waitConnected().ok());
+    const auto result =
+        client.callAndWait("echo", QJsonObject{{"value", QString(5000, 'x')}}, std::chrono::hours(1));
+    QVERIFY(!result);
+    QCOMPARE(result.error().code, int(ErrorCode::OverLimit));
+    QVERIFY2(result.error().message.contains("1000 bytes"), qPrintable(result.error().message));
+    client.setFrameLimit(1 << 20);
+    QJsonValue deep;
+    for (int i = 0; i < 300; ++i)
+        deep = QJsonArray{deep};
+    QVERIFY(!client.callAndWait("echo", QJsonObject{{"value", deep}}, std::chrono::hours(1)));
+    QVERIFY(client.callAndWait("echo", QJsonObject{{"value", 1}}).ok()); // the next one is read
 }
 
 void TestClient::failsWhenNotConnected() {
