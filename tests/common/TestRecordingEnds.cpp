@@ -201,6 +201,10 @@ void TestRecordingEnds::whatLinksLeadToStays() {
     const bool isCompleted = QTest::qWaitFor([&] { return next.level("recording") == "warn"; }, 2000);
     QCOMPARE(isCompleted, !isElsewhere);
     next.call("record.start", {{"name", "cut"}, {"session", "s"}});
+    QVERIFY(QDir(other.path()).mkdir("empty") &&
+            QFile::link(other.filePath("empty"), root.filePath("elsewhere")));
+    QVERIFY(!next.call("record.start", {{"name", "elsewhere"}}).ok());
+    QVERIFY(QDir(other.path()).rmdir("empty")); // nothing is in it
     QCOMPARE(QDir(other.path()).entryList(QDir::AllEntries | QDir::NoDotAndDotDot),
              QStringList(isElsewhere ? QStringList{"cut", "victim"} : QStringList{"victim"}));
     QFile victim(other.filePath("victim"));
