@@ -99,17 +99,14 @@ void TestValueEditors::numbersStepAndKeepTheirDigits() {
 }
 
 void TestValueEditors::digitsThatWouldBeLostAreRefused_data() {
-    QTest::addColumn<QByteArray>("schema");
-    QTest::addColumn<QString>("text");
-    QTest::newRow("number") << QByteArray(R"({"type":"integer","default":1})") << "9007199254740995";
-    QTest::newRow("list") << QByteArray(R"({"type":"array","items":{"type":"integer"}})")
-                          << "1, -9007199254740993";
-    QTest::newRow("any") << QByteArray(R"({"default":0})") << R"({"a": 12345678901234567})";
+    const Rows<QByteArray, QString> row("schema", "text");
+    row("number", R"({"type":"integer","default":1})", "9007199254740995");
+    row("list", R"({"type":"array","items":{"type":"integer"}})", "1, -9007199254740993");
+    row("any", R"({"default":0})", R"({"a": 12345678901234567})");
 }
 
 void TestValueEditors::digitsThatWouldBeLostAreRefused() {
-    QFETCH(QByteArray, schema);
-    QFETCH(QString, text);
+    FETCH(QByteArray, schema, QString, text);
     open_->showOne(schema);
     OpenForm::type(open_->seen<QLineEdit>(), text);
     QVERIFY2(!form_->isValid(), open_->value());
