@@ -143,7 +143,6 @@ void DriveKeys::hold(const QKeyEvent &key) {
     held.seen.start();
 }
 
-// A release may never be told.
 void DriveKeys::ask() {
     const bool isAnswered = held_.ask(window_);
     if (down_.isEmpty())
