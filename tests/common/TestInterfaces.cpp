@@ -234,6 +234,19 @@ void TestInterfaces::udpKeepsToItsSender() {
         QCOMPARE(reader->strangers().names,
                  QStringList{both.arg(stranger.localAddress().toString()).arg(stranger.localPort())});
     }
+    // At one address: who takes another port each time is one sender, who comes back is one of two.
+    const auto fourth = interface("first");
+    QSignalSpy received(fourth.get(), &Interface::received);
+    fourth->open();
+    QUdpSocket other;
+    for (int i = 0; i < 20; ++i)
+        QUdpSocket().writeDatagram("new", QHostAddress("127.0.0.1"), fourth->localPort());
+    QTRY_COMPARE(received.count(), 20);
+    for (int i = 0; i < 10; ++i)
+        for (QUdpSocket *sender : {&one, &other})
+            sender->writeDatagram("x", QHostAddress("127.0.0.1"), fourth->localPort());
+    QTRY_COMPARE(received.count() + int(fourth->strangers().datagrams), 40);
+    QCOMPARE(int(fourth->strangers().datagrams), 8); // but those until it was seen
     const auto wrong = interface("somebody");
     QSignalSpy closed(wrong.get(), &Interface::closed);
     wrong->open();
