@@ -196,6 +196,23 @@ private Q_SLOTS:
         QSignalSpy closed(wrong.get(), &Interface::closed);
         wrong->open();
         QVERIFY2(closed[0][0].toString().contains("somebody"), qPrintable(closed[0][0].toString()));
+        // At one address: who takes another port each time is one sender, who comes back is one of two.
+        const auto fourth = interface("first");
+        QSignalSpy received(fourth.get(), &Interface::received);
+        fourth->open();
+        QUdpSocket other;
+        for (int i = 0; i < 20; ++i)
+            QUdpSocket().writeDatagram("new", QHostAddress("127.0.0.1"), fourth->localPort());
+        QTRY_COMPARE(received.count(), 20);
+        for (int i = 0; i < 10; ++i)
+            for (QUdpSocket *sender : {&one, &other})
+                sender->writeDatagram("x", QHostAddress("127.0.0.1"), fourth->localPort());
+        QTRY_COMPARE(received.count() + int(fourth->strangers().datagrams), 40);
+        QCOMPARE(int(fourth->strangers().datagrams), 8); // but those until it was seen
+        const auto wrong = interface("somebody");
+        QSignalSpy closed(wrong.get(), &Interface::closed);
+        wrong->open();
+        QVERIFY2(closed[0][0].toString().contains("somebody"), qPrintable(closed[0][0].toString()));
     }
 
     void localSocketsNameTheirPeer() {
