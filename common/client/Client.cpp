@@ -312,12 +312,26 @@ void Client::onMessage(const QJsonValue &message, const WireValue &topicData) {
 void Client::refuse(const RpcError &error) {
     ++refused_.unreadable;
     refused_.last = error.message;
+    if (error.is(ErrorCode::OverLimit) || error.is(ErrorCode::ParseError))
+        failFirst(
+            Error(ErrorCode(error.code), QStringLiteral("what came is no usable reply: ") + error.message));
+}
+
+// What is too large or nested too deeply is not read, here or there, and so not even whose it is. Without
+// topics, over a connection, it is that of the first call.
+void Client::failFirst(const Error &error) {
+    if (!channel_ || channel_->isLossy() || !subscriptions_.empty() || waiting_.isEmpty())
+        return;
+    const auto ids = waiting_.keys();
+    finish(*std::min_element(ids.begin(), ids.end()), error);
 }
 
 void Client::onResponse(const RpcResponse &response) {
     const qint64 id = toCount(response.id);
     if (!waiting_.contains(id))
         ++refused_.unasked;
+    if (response.failed && response.id.isNull())
+        return failFirst(response.error);
     repeater_.end(id, true);
     if (waiting_.contains(id))
         finish(id, response.failed ? Result<QJsonValue>(response.error) : response.result);

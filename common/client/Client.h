@@ -135,6 +135,7 @@ private:
     void deliver(int handle, const QJsonObject &params, const WireValue &data);
     void sendSubscription(int handle);
     void lookWhoIsThere();
+    void failFirst(const Error &error);
     void finish(qint64 id, const Result<QJsonValue> &result);
 
     Channel *channel_ = nullptr;

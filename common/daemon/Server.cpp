@@ -51,7 +51,7 @@ void keepMemory() {
 
 /// That all clients together may take.
 qint64 memoryOfClients() {
-    rlimit room{};
+    rlimit room{RLIM_INFINITY, RLIM_INFINITY};
     ::getrlimit(RLIMIT_AS, &room);
     const rlim_t there = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGESIZE));
     return qint64(std::min(there, room.rlim_cur) / 8);

@@ -18,8 +18,15 @@ bool Listener::isScarce(qintptr descriptor) {
     constexpr int last = 8; // a client that comes makes another one in a kept place go before
     if (descriptorsLeftAfter(descriptor) > last)
         return false;
-    logWarning(QStringLiteral("server"),
-               QStringLiteral("a client is turned away: nearly no file descriptors are left"));
+    static quint64 turnedAway = 0;
+    static double told = -1e9; // all are in the main thread
+    ++turnedAway;
+    if (const double now = monotonicNow(); now - told > 1) { // many may come
+        told = now;
+        logWarning(QStringLiteral("server"),
+                   QStringLiteral("a client is turned away: nearly no file descriptors are left; %1 in all")
+                       .arg(turnedAway));
+    }
     return true;
 }
 

@@ -99,9 +99,20 @@ void UdpInterface::readAll() {
 
 bool UdpInterface::isRead(const QHostAddress &address, quint16 port) {
     constexpr qint64 longestSilence_ms = 3000;
-    constexpr int mostNames = 5;
+    constexpr int mostNames = 5, mostPorts = 4, enoughReturns = 3;
     if (keepsToFirst_ && (from_.isNull() || sinceFrom_.elapsed() > longestSilence_ms)) {
         from_ = address;
+        fromPort_ = port;
+        leftPorts_.clear();
+        returns_ = 0;
+    }
+    // Some programs send each datagram from another port, which may come again by chance. Ports that come
+    // back again and again show that there are two senders.
+    if (keepsToFirst_ && from_.isEqual(address) && port != fromPort_ && returns_ < enoughReturns) {
+        returns_ = leftPorts_.contains(port) ? returns_ + 1 : 0;
+        leftPorts_.append(fromPort_);
+        if (leftPorts_.size() > mostPorts)
+            leftPorts_.removeFirst();
         fromPort_ = port;
     }
     if (from_.isNull() || (from_.isEqual(address) && (fromPort_ == 0 || fromPort_ == port))) {

@@ -42,8 +42,10 @@ private:
     quint16 peerPort_ = 0;
     bool peerFixed_ = false;
     bool keepsToFirst_ = false;
-    QHostAddress from_;    ///< who is read; null: all, or the next
-    quint16 fromPort_ = 0; ///< 0: any of it
+    QHostAddress from_;          ///< who is read; null: all, or the next
+    quint16 fromPort_ = 0;       ///< 0: any of it
+    QVector<quint16> leftPorts_; ///< of its, from which it sent before; the last ones
+    int returns_ = 0;            ///< of such ports, without a new one between
     QElapsedTimer sinceFrom_;
     Strangers strangers_;
 };

@@ -233,7 +233,7 @@ void Recording::checked(const Result<double> &room, const Result<void> &there,
         end(RecordingEnd::Failed, there.error());
     else if (phase_ == Phase::Recording && failure)
         end(RecordingEnd::Failed, failure);
-    else if (phase_ == Phase::Recording && free_ && *free_ <= floor)
+    else if (phase_ == Phase::Recording && floor > 0 && free_ && *free_ <= floor)
         end(RecordingEnd::FreeSpace,
             diskError(
                 QString("%1: the recording was ended at %2 MB of free space (record.free_floor_bytes is %3 "

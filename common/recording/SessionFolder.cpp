@@ -32,6 +32,8 @@ Result<void> checkFolder(const QString &folder, const SessionName &session, cons
     if (!QFileInfo(folder).isDir())
         return diskError(folder + ": the folder of the recording cannot be made: a file has this name",
                          folder);
+    if (QFileInfo(folder).isSymLink())
+        return diskError(folder + ": it is a link; recordings are not written elsewhere", folder);
     const bool fresh = QDir(folder).entryList({logger + ".json", logger + "-*"}, QDir::Files).isEmpty();
     const bool empty = QDir(folder).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::NoDotAndDotDot);
     if (!fresh || (session.session.isEmpty() && !empty))

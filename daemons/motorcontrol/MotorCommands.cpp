@@ -150,7 +150,8 @@ void MotorControl::declareMotorCommands() {
                            loop.drive().mayReset(call.client, call.flag("confirm"), monotonicNow());
                        if (!may)
                            return may.error();
-                       if (const QString turning = turningOf(loop.telemetry()); !turning.isEmpty())
+                       if (const QString turning = turningOf(loop.telemetry());
+                           loop.drive().latch().isSet() && !turning.isEmpty())
                            return Error(ErrorCode::NotReady,
                                         turning + ", expected wheels that stand before it is released");
                        loop.drive().resetEmergencyStop(callerName(call));

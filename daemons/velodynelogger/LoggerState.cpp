@@ -1,5 +1,7 @@
 // What the Velodyne logger tells about itself: the topic lidar, status of source and recording, health.
+#include "common/Time.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
+#include "protocol/nmea/UtcTime.h"
 
 namespace hermes::velodynelogger {
 
@@ -199,9 +201,16 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
                                    .arg(settings().integer("decode.laser"))
                                    .arg(counts.model->name)
                                    .arg(counts.model->lasers - 1));
-    else
-        set(faults_.level(double(wrong + lost + counts.gps.wrongValue + counts.gps.badNmea)),
-            "packets come from " + source_.name() + pastText(wrong, lost, counts.gps));
+    else {
+        const HealthLevel level =
+            faults_.level(double(wrong + lost + counts.gps.wrongValue + counts.gps.badNmea));
+        const auto utc_ns = feed_.gps().utc_ns;
+        const bool isRolledOver = utc_ns && source_.state() == State::Live &&
+                                  nmea::isRolledOver(double(*utc_ns) * 1e-9, stampNow());
+        set(isRolledOver && level == HealthLevel::Ok ? HealthLevel::Warn : level,
+            "packets come from " + source_.name() + pastText(wrong, lost, counts.gps) +
+                (isRolledOver ? "; the date of the GPS is 1024 weeks off the clock (week roll-over)" : ""));
+    }
 }
 
 } // namespace hermes::velodynelogger

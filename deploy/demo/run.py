@@ -22,6 +22,7 @@ from drive import DriveError, PathFollower, PoseTopic, drive  # of docs/examples
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 WORLDS = os.path.join(ROOT, "deploy", "worlds")
+MOST_STUCK_S = 90.0  # without getting on: the attendant may need a minute
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(ROOT, "build", "release", "bin"))
 
 
@@ -141,9 +142,10 @@ class Demo:
 
     def follow(self, follower, steered_by, watch):
         """To the end of the path, with somebody beside the robot who helps it on."""
+        onwards = watched(watch)
         while True:
             try:
-                return drive(self.motors, steered_by, follower, "the demo", watch)
+                return drive(self.motors, steered_by, follower, "the demo", onwards)
             except DriveError as error:
                 self.attendant.help(error)
 
@@ -172,6 +174,21 @@ class Demo:
     def stop(self):
         """In order: first what drives, then the sources, then who listens to them."""
         return {process.name: process.stop() for process in reversed(self.processes)}
+
+
+def watched(watch, limit_s=MOST_STUCK_S):
+    """The watch of a drive, which ends one that does not come on: wheels may turn for ever on the spot."""
+    best, since = -1.0, time.monotonic()
+
+    def look(follower):
+        nonlocal best, since
+        if follower.progress > best:
+            best, since = follower.progress, time.monotonic()
+        elif time.monotonic() - since > limit_s:
+            raise RuntimeError(f"the robot has not come on for {limit_s:.0f} s, with {100 * best:.0f} % of its path behind it: "
+                               "something is in its way, or another sender disturbs its scans")
+        watch(follower)
+    return look
 
 
 def pose_of(message):

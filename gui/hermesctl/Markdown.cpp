@@ -50,13 +50,17 @@ QString expected(const QJsonObject &schema) {
     return expectation(schema) + (more.isEmpty() ? more : QStringLiteral("; ") + more);
 }
 
-/// A line for each field, those of inner objects by their path; nothing where the schema has none.
-QString fieldLines(const QJsonObject &schema, const QString &path) {
+/// A line for each field, those of inner objects by their path; nothing where the schema has none. What lies
+/// deeper than anything that a person reads is left out.
+QString fieldLines(const QJsonObject &schema, const QString &path, int depth = 0) {
+    constexpr int deepest = 12;
+    if (depth > deepest)
+        return {};
     if (schema.contains(QStringLiteral("items")))
-        return fieldLines(schema[QStringLiteral("items")].toObject(), path + QStringLiteral("[]"));
+        return fieldLines(schema[QStringLiteral("items")].toObject(), path + QStringLiteral("[]"), depth + 1);
     const QString prefix = path.isEmpty() ? path : path + QLatin1Char('.');
     const QJsonObject others = schema[QStringLiteral("additionalProperties")].toObject();
-    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + QLatin1Char('*'));
+    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + QLatin1Char('*'), depth + 1);
     const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
     const QJsonArray required = schema[QStringLiteral("required")].toArray();
     for (auto property = properties.begin(); property != properties.end(); ++property) {
@@ -67,7 +71,7 @@ QString fieldLines(const QJsonObject &schema, const QString &path) {
                      .arg(name, cell(expected(below)),
                           mayBeMissing ? QStringLiteral("; may be missing") : QString(),
                           cell(text(below, "description")));
-        lines += fieldLines(below, name);
+        lines += fieldLines(below, name, depth + 1);
     }
     return lines;
 }

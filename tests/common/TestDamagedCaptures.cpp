@@ -55,96 +55,90 @@ class TestDamagedCaptures : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void damagedFilesDoNoHarm();
-    void limits_data();
-    void limits();
-    void framesOfUnknownLinksAreSkipped();
-    void withoutAKnownLinkItIsRefused();
-    void errorsNameTheByteOfTheRecord();
-};
-
-/// Cut or with other bytes in it: records before the damage are those of the whole file.
-void TestDamagedCaptures::damagedFilesDoNoHarm() {
-    Generator generator(newSeed());
-    for (int round = 0; round < 5000; ++round) {
-        const QByteArray content = round % 2 ? generator.pcapng() : generator.classic();
-        const Reading whole = ours(content),
-                      cut = ours(content.left(int(generator.below(quint32(content.size())))));
-        QVERIFY(cut.records.size() <= whole.records.size());
-        QVERIFY(std::equal(cut.records.begin(), cut.records.end(), whole.records.begin()));
-        QByteArray damaged = content;
-        for (int i = 0; i < 3; ++i)
-            damaged[int(generator.below(quint32(damaged.size())))] = char(generator.below(256));
-        ours(damaged);
+    /// Cut or with other bytes in it: records before the damage are those of the whole file.
+    void damagedFilesDoNoHarm() {
+        Generator generator(newSeed());
+        for (int round = 0; round < 5000; ++round) {
+            const QByteArray content = round % 2 ? generator.pcapng() : generator.classic();
+            const Reading whole = ours(content),
+                          cut = ours(content.left(int(generator.below(quint32(content.size())))));
+            QVERIFY(cut.records.size() <= whole.records.size());
+            QVERIFY(std::equal(cut.records.begin(), cut.records.end(), whole.records.begin()));
+            QByteArray damaged = content;
+            for (int i = 0; i < 3; ++i)
+                damaged[int(generator.below(quint32(damaged.size())))] = char(generator.below(256));
+            ours(damaged);
+        }
     }
-}
 
-void TestDamagedCaptures::limits_data() {
-    const Rows<QByteArray, int> row("content", "length"); // length: of the frame that is read; -1: none
-    const auto frame = [](int size) { return QByteArray(size, 'x'); };
-    row("classic, cut at the limit", classic(45, 52), 45);
-    row("classic, no limit", classic(0, 52), 52);
-    row("classic, longest frame", classic(400000, 262144), 262144);
-    row("classic, longer", classic(400000, 262145), -1);
-    row("classic, version 2.5", classic(400000, 52, 5), -1);
-    row("longest frame", pcapng({1}) + packet(0, frame(262144)), 262144);
-    row("longer", pcapng({1}) + packet(0, frame(262148)), -1);
-    row("longest of the interface", pcapng({1}, 300000) + packet(0, frame(300000)), 300000);
-    row("longer than the interface's", pcapng({1}, 300000) + packet(0, frame(300004)), -1);
-    row("simple, cut at the interface's",
-        pcapng({1}, 20) + block(3, Writer(false).word(52).content + frame(52)), 20);
-    row("longest block", pcapng({1}) + block(77, frame((16 << 20) - 12)) + packet(0, frame(9)), 9);
-    row("longer block", pcapng({1}) + block(77, frame((16 << 20) - 8)) + packet(0, frame(9)), -1);
-    row("ticks of 10^-19 s", pcapng({1}, 0, resolution(19)) + packet(0, frame(9)), 9);
-    row("ticks of 10^-20 s", pcapng({1}, 0, resolution(20)) + packet(0, frame(9)), -1);
-    row("ticks of 2^-63 s", pcapng({1}, 0, resolution(0x80 | 63)) + packet(0, frame(9)), 9);
-    row("ticks of 2^-64 s", pcapng({1}, 0, resolution(0x80 | 64)) + packet(0, frame(9)), -1);
-}
+    void limits_data() {
+        const Rows<QByteArray, int> row("content", "length"); // length: of the frame that is read; -1: none
+        const auto frame = [](int size) { return QByteArray(size, 'x'); };
+        row("classic, cut at the limit", classic(45, 52), 45);
+        row("classic, no limit", classic(0, 52), 52);
+        row("classic, longest frame", classic(400000, 262144), 262144);
+        row("classic, longer", classic(400000, 262145), -1);
+        row("classic, version 2.5", classic(400000, 52, 5), -1);
+        row("longest frame", pcapng({1}) + packet(0, frame(262144)), 262144);
+        row("longer", pcapng({1}) + packet(0, frame(262148)), -1);
+        row("longest of the interface", pcapng({1}, 300000) + packet(0, frame(300000)), 300000);
+        row("longer than the interface's", pcapng({1}, 300000) + packet(0, frame(300004)), -1);
+        row("simple, cut at the interface's",
+            pcapng({1}, 20) + block(3, Writer(false).word(52).content + frame(52)), 20);
+        row("longest block", pcapng({1}) + block(77, frame((16 << 20) - 12)) + packet(0, frame(9)), 9);
+        row("longer block", pcapng({1}) + block(77, frame((16 << 20) - 8)) + packet(0, frame(9)), -1);
+        row("ticks of 10^-19 s", pcapng({1}, 0, resolution(19)) + packet(0, frame(9)), 9);
+        row("ticks of 10^-20 s", pcapng({1}, 0, resolution(20)) + packet(0, frame(9)), -1);
+        row("ticks of 2^-63 s", pcapng({1}, 0, resolution(0x80 | 63)) + packet(0, frame(9)), 9);
+        row("ticks of 2^-64 s", pcapng({1}, 0, resolution(0x80 | 64)) + packet(0, frame(9)), -1);
+    }
 
-void TestDamagedCaptures::limits() {
-    FETCH(QByteArray, content, int, length);
-    const Reading reading = ours(content);
-    QCOMPARE(reading.isOpened && !reading.failed, length >= 0);
-    QCOMPARE(int(reading.records.size()), length >= 0 ? 1 : 0);
-    if (length >= 0)
-        QCOMPARE(reading.records.front().frame.size(), length);
-}
+    void limits() {
+        FETCH(QByteArray, content, int, length);
+        const Reading reading = ours(content);
+        QCOMPARE(reading.isOpened && !reading.failed, length >= 0);
+        QCOMPARE(int(reading.records.size()), length >= 0 ? 1 : 0);
+        if (length >= 0)
+            QCOMPARE(reading.records.front().frame.size(), length);
+    }
 
-void TestDamagedCaptures::framesOfUnknownLinksAreSkipped() {
-    std::istringstream stream(
-        (pcapng({147, 1}) + packet(0, datagramFrame) + packet(1, datagramFrame)).toStdString());
-    PcapReader reader;
-    QVERIFY2(reader.open(stream, "two"), reader.error().c_str());
-    Datagram datagram;
-    QCOMPARE(reader.next(datagram), PcapReader::Next::Datagram);
-    QCOMPARE(reader.next(datagram), PcapReader::Next::End);
-    QCOMPARE(reader.counts().unknownLinks, std::uint64_t(1));
-    QCOMPARE(reader.counts().records, std::uint64_t(2));
-}
-
-void TestDamagedCaptures::withoutAKnownLinkItIsRefused() {
-    std::istringstream stream((pcapng({147, 148}) + packet(0, datagramFrame)).toStdString());
-    PcapReader reader;
-    QVERIFY(!reader.open(stream, "none"));
-    QVERIFY2(reader.error().find("link type 147 is not read") != std::string::npos, reader.error().c_str());
-}
-
-/// Not that of the statistics before it.
-void TestDamagedCaptures::errorsNameTheByteOfTheRecord() {
-    const QByteArray before =
-        pcapng({1}, 0, resolution(0)) + packet(0, datagramFrame) + block(5, "statistics..");
-    const QByteArray late = packet(0, datagramFrame, quint64(1) << 40);
-    for (const QByteArray &damaged : {before + late, before + late.left(late.size() - 1)}) {
-        std::istringstream stream(damaged.toStdString());
+    void framesOfUnknownLinksAreSkipped() {
+        std::istringstream stream(
+            (pcapng({147, 1}) + packet(0, datagramFrame) + packet(1, datagramFrame)).toStdString());
         PcapReader reader;
-        QVERIFY2(reader.open(stream, "late"), reader.error().c_str());
+        QVERIFY2(reader.open(stream, "two"), reader.error().c_str());
         Datagram datagram;
         QCOMPARE(reader.next(datagram), PcapReader::Next::Datagram);
-        QCOMPARE(reader.next(datagram), PcapReader::Next::Failed);
-        const std::string place = "late: record 2 at byte " + std::to_string(before.size()) + ' ';
-        QVERIFY2(reader.error().rfind(place, 0) == 0, reader.error().c_str());
+        QCOMPARE(reader.next(datagram), PcapReader::Next::End);
+        QCOMPARE(reader.counts().unknownLinks, std::uint64_t(1));
+        QCOMPARE(reader.counts().records, std::uint64_t(2));
     }
-}
+
+    void withoutAKnownLinkItIsRefused() {
+        std::istringstream stream((pcapng({147, 148}) + packet(0, datagramFrame)).toStdString());
+        PcapReader reader;
+        QVERIFY(!reader.open(stream, "none"));
+        QVERIFY2(reader.error().find("link type 147 is not read") != std::string::npos,
+                 reader.error().c_str());
+    }
+
+    /// Not that of the statistics before it.
+    void errorsNameTheByteOfTheRecord() {
+        const QByteArray before =
+            pcapng({1}, 0, resolution(0)) + packet(0, datagramFrame) + block(5, "statistics..");
+        const QByteArray late = packet(0, datagramFrame, quint64(1) << 40);
+        for (const QByteArray &damaged : {before + late, before + late.left(late.size() - 1)}) {
+            std::istringstream stream(damaged.toStdString());
+            PcapReader reader;
+            QVERIFY2(reader.open(stream, "late"), reader.error().c_str());
+            Datagram datagram;
+            QCOMPARE(reader.next(datagram), PcapReader::Next::Datagram);
+            QCOMPARE(reader.next(datagram), PcapReader::Next::Failed);
+            const std::string place = "late: record 2 at byte " + std::to_string(before.size()) + ' ';
+            QVERIFY2(reader.error().rfind(place, 0) == 0, reader.error().c_str());
+        }
+    }
+};
 
 QTEST_APPLESS_MAIN(TestDamagedCaptures)
 #include "TestDamagedCaptures.moc"

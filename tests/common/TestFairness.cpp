@@ -37,10 +37,54 @@ QByteArray request(const QJsonValue &id, const QString &method) {
 class TestFairness : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void floodDoesNotHoldUpAnother();
-    void unansweredRequestsAreLimited();
-    void whatWasSaidBeforeClosingIsDone();
+    void init() {
+        daemon = std::make_unique<BusyDaemon>();
+        QVERIFY(!daemon->prepare({"busy", "--listen", "tcp://127.0.0.1:0", "--set", "limits.pending=4",
+                                  "--set", "log.level=error"}));
+        QVERIFY(daemon->launch());
+    }
+
+    void floodDoesNotHoldUpAnother() {
+        constexpr int many = 50000;
+        const auto flooder = client(), other = client();
+        QTRY_COMPARE(daemon->server().counters()["clients"].toInt(), 2);
+        flooder->write(compactJson(makeNotification("count", QJsonObject())).append('\n').repeated(many));
+        QTRY_VERIFY(daemon->counted > 0);
+        const int before = daemon->counted;
+        int meanwhile = -1; // until the answer came, not until QTRY looks
+        connect(other.get(), &QTcpSocket::readyRead, this, [&] {
+            if (meanwhile < 0)
+                meanwhile = daemon->counted - before;
+        });
+        other->write(request(1, "daemon.info"));
+        QTRY_VERIFY(meanwhile >= 0);
+        QVERIFY2(meanwhile < many / 5, qPrintable(QString("%1 requests went before").arg(meanwhile)));
+        QTRY_COMPARE(daemon->counted, many);
+    }
+
+    void unansweredRequestsAreLimited() {
+        const auto asking = client(), other = client();
+        asking->write(request(1, "later").repeated(20) + request(2, "count"));
+        QTRY_COMPARE(daemon->replies.size(), size_t(4));
+        other->write(request(1, "daemon.info"));
+        QTRY_VERIFY(other->canReadLine());
+        QCOMPARE(daemon->replies.size(), size_t(4));
+        for (size_t answered = 0; answered < 20; ++answered) {
+            QTRY_VERIFY(daemon->replies.size() > answered);
+            daemon->replies[answered].result(QJsonValue());
+            QVERIFY(daemon->replies.size() <= answered + 5);
+        }
+        QTRY_COMPARE(daemon->counted, 1);
+    }
+
+    void whatWasSaidBeforeClosingIsDone() {
+        const auto leaving = client();
+        leaving->write(request(QJsonValue::Undefined, "later").repeated(4)); // it has to wait from here on
+        leaving->write(request(1, "count").repeated(1000));
+        leaving->disconnectFromHost();
+        QTRY_COMPARE(daemon->counted, 1000);
+        QTRY_COMPARE(daemon->server().counters()["clients"].toInt(), 0);
+    }
 
 private:
     std::unique_ptr<QTcpSocket> client() const {
@@ -51,55 +95,6 @@ private:
     }
     std::unique_ptr<BusyDaemon> daemon;
 };
-
-void TestFairness::init() {
-    daemon = std::make_unique<BusyDaemon>();
-    QVERIFY(!daemon->prepare(
-        {"busy", "--listen", "tcp://127.0.0.1:0", "--set", "limits.pending=4", "--set", "log.level=error"}));
-    QVERIFY(daemon->launch());
-}
-
-void TestFairness::floodDoesNotHoldUpAnother() {
-    constexpr int many = 50000;
-    const auto flooder = client(), other = client();
-    QTRY_COMPARE(daemon->server().counters()["clients"].toInt(), 2);
-    flooder->write(compactJson(makeNotification("count", QJsonObject())).append('\n').repeated(many));
-    QTRY_VERIFY(daemon->counted > 0);
-    const int before = daemon->counted;
-    int meanwhile = -1; // until the answer came, not until QTRY looks
-    connect(other.get(), &QTcpSocket::readyRead, this, [&] {
-        if (meanwhile < 0)
-            meanwhile = daemon->counted - before;
-    });
-    other->write(request(1, "daemon.info"));
-    QTRY_VERIFY(meanwhile >= 0);
-    QVERIFY2(meanwhile < many / 5, qPrintable(QString("%1 requests went before").arg(meanwhile)));
-    QTRY_COMPARE(daemon->counted, many);
-}
-
-void TestFairness::unansweredRequestsAreLimited() {
-    const auto asking = client(), other = client();
-    asking->write(request(1, "later").repeated(20) + request(2, "count"));
-    QTRY_COMPARE(daemon->replies.size(), size_t(4));
-    other->write(request(1, "daemon.info"));
-    QTRY_VERIFY(other->canReadLine());
-    QCOMPARE(daemon->replies.size(), size_t(4));
-    for (size_t answered = 0; answered < 20; ++answered) {
-        QTRY_VERIFY(daemon->replies.size() > answered);
-        daemon->replies[answered].result(QJsonValue());
-        QVERIFY(daemon->replies.size() <= answered + 5);
-    }
-    QTRY_COMPARE(daemon->counted, 1);
-}
-
-void TestFairness::whatWasSaidBeforeClosingIsDone() {
-    const auto leaving = client();
-    leaving->write(request(QJsonValue::Undefined, "later").repeated(4)); // it has to wait from here on
-    leaving->write(request(1, "count").repeated(1000));
-    leaving->disconnectFromHost();
-    QTRY_COMPARE(daemon->counted, 1000);
-    QTRY_COMPARE(daemon->server().counters()["clients"].toInt(), 0);
-}
 
 QTEST_GUILESS_MAIN(TestFairness)
 #include "TestFairness.moc"

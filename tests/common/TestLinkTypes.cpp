@@ -65,87 +65,81 @@ class TestLinkTypes : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void datagramsAreRead_data();
-    void datagramsAreRead();
-    void tsharkSeesTheSame_data();
-    void tsharkSeesTheSame();
-    void theMessageListsExactlyWhatIsRead();
-    void otherProtocolsAreCounted();
-};
-
-void TestLinkTypes::datagramsAreRead_data() {
-    QTest::addColumn<QByteArray>("content");
-    for (auto link = linkHeaders.begin(); link != linkHeaders.end(); ++link) {
-        QTest::addRow("pcap %d", link.key()) << pcapFile(link.key(), link.value() + ipFrame);
-        QTest::addRow("pcapng %d", link.key()) << pcapngFile(link.key(), link.value() + ipFrame);
+    void datagramsAreRead_data() {
+        QTest::addColumn<QByteArray>("content");
+        for (auto link = linkHeaders.begin(); link != linkHeaders.end(); ++link) {
+            QTest::addRow("pcap %d", link.key()) << pcapFile(link.key(), link.value() + ipFrame);
+            QTest::addRow("pcapng %d", link.key()) << pcapngFile(link.key(), link.value() + ipFrame);
+        }
     }
-}
 
-void TestLinkTypes::datagramsAreRead() {
-    QFETCH(QByteArray, content);
-    QTemporaryDir folder;
-    PcapReader reader;
-    QVERIFY2(reader.open(write(folder, content)), reader.error().c_str());
-    Datagram datagram;
-    QCOMPARE(reader.next(datagram), PcapReader::Next::Datagram);
-    QCOMPARE(datagram.source, 0xC0A801C9u);
-    QCOMPARE(datagram.sourcePort, quint16(2368));
-    QCOMPARE(datagram.destinationPort, quint16(2369));
-    QCOMPARE(QByteArray(reinterpret_cast<const char *>(datagram.payload), int(datagram.size)),
-             QByteArray("payload"));
-    QCOMPARE(reader.next(datagram), PcapReader::Next::End);
-}
-
-void TestLinkTypes::tsharkSeesTheSame_data() {
-    QTest::addColumn<int>("link");
-    for (const int link : linkHeaders.keys()) {
-        if (link != int(LinkType::RawOpenBsd)) // it does not know this one
-            QTest::addRow("%d", link) << link;
-    }
-}
-
-void TestLinkTypes::tsharkSeesTheSame() {
-    if (QStandardPaths::findExecutable("tshark").isEmpty())
-        QSKIP("tshark is not installed");
-    QFETCH(int, link);
-    const QByteArray content = pcapFile(link, linkHeaders[link] + ipFrame);
-    QTemporaryDir folder;
-    QProcess tshark;
-    tshark.start("tshark", {"-r", QString::fromStdString(write(folder, content)), "-T", "fields", "-e",
-                            "ip.src", "-e", "udp.dstport", "-e", "udp.length"});
-    QVERIFY(tshark.waitForFinished(60000));
-    QCOMPARE(tshark.readAllStandardOutput().trimmed(), QByteArray("192.168.1.201\t2369\t15"));
-}
-
-void TestLinkTypes::theMessageListsExactlyWhatIsRead() {
-    QTemporaryDir folder;
-    QList<int> read;
-    QString message;
-    for (int link = 0; link < 400; ++link) {
+    void datagramsAreRead() {
+        QFETCH(QByteArray, content);
+        QTemporaryDir folder;
         PcapReader reader;
-        if (reader.open(write(folder, pcapFile(link, linkHeaders.value(link) + ipFrame))))
-            read.append(link);
-        else if (link == 105)
-            message = QString::fromStdString(reader.error());
+        QVERIFY2(reader.open(write(folder, content)), reader.error().c_str());
+        Datagram datagram;
+        QCOMPARE(reader.next(datagram), PcapReader::Next::Datagram);
+        QCOMPARE(datagram.source, 0xC0A801C9u);
+        QCOMPARE(datagram.sourcePort, quint16(2368));
+        QCOMPARE(datagram.destinationPort, quint16(2369));
+        QCOMPARE(QByteArray(reinterpret_cast<const char *>(datagram.payload), int(datagram.size)),
+                 QByteArray("payload"));
+        QCOMPARE(reader.next(datagram), PcapReader::Next::End);
     }
-    QVERIFY2(message.contains("link type 105 is not read; read are "), qPrintable(message));
-    QList<int> listed;
-    auto numbers = QRegularExpression("\\((\\d+)\\)").globalMatch(message.section("read are ", 1));
-    while (numbers.hasNext())
-        listed.append(numbers.next().captured(1).toInt());
-    QCOMPARE(listed, read);
-    QCOMPARE(read, linkHeaders.keys());
-}
 
-void TestLinkTypes::otherProtocolsAreCounted() {
-    QTemporaryDir folder;
-    PcapReader reader;
-    const QByteArray ipv6 = QByteArray::fromHex("60000000000f1140") + QByteArray(32, '\0') + ipFrame.mid(20);
-    QVERIFY2(reader.open(write(folder, pcapFile(101, ipv6))), reader.error().c_str());
-    Datagram datagram;
-    QCOMPARE(reader.next(datagram), PcapReader::Next::End);
-    QCOMPARE(reader.counts().notUdp, std::uint64_t(1));
-}
+    void tsharkSeesTheSame_data() {
+        QTest::addColumn<int>("link");
+        for (const int link : linkHeaders.keys()) {
+            if (link != int(LinkType::RawOpenBsd)) // it does not know this one
+                QTest::addRow("%d", link) << link;
+        }
+    }
+
+    void tsharkSeesTheSame() {
+        if (QStandardPaths::findExecutable("tshark").isEmpty())
+            QSKIP("tshark is not installed");
+        QFETCH(int, link);
+        const QByteArray content = pcapFile(link, linkHeaders[link] + ipFrame);
+        QTemporaryDir folder;
+        QProcess tshark;
+        tshark.start("tshark", {"-r", QString::fromStdString(write(folder, content)), "-T", "fields", "-e",
+                                "ip.src", "-e", "udp.dstport", "-e", "udp.length"});
+        QVERIFY(tshark.waitForFinished(60000));
+        QCOMPARE(tshark.readAllStandardOutput().trimmed(), QByteArray("192.168.1.201\t2369\t15"));
+    }
+
+    void theMessageListsExactlyWhatIsRead() {
+        QTemporaryDir folder;
+        QList<int> read;
+        QString message;
+        for (int link = 0; link < 400; ++link) {
+            PcapReader reader;
+            if (reader.open(write(folder, pcapFile(link, linkHeaders.value(link) + ipFrame))))
+                read.append(link);
+            else if (link == 105)
+                message = QString::fromStdString(reader.error());
+        }
+        QVERIFY2(message.contains("link type 105 is not read; read are "), qPrintable(message));
+        QList<int> listed;
+        auto numbers = QRegularExpression("\\((\\d+)\\)").globalMatch(message.section("read are ", 1));
+        while (numbers.hasNext())
+            listed.append(numbers.next().captured(1).toInt());
+        QCOMPARE(listed, read);
+        QCOMPARE(read, linkHeaders.keys());
+    }
+
+    void otherProtocolsAreCounted() {
+        QTemporaryDir folder;
+        PcapReader reader;
+        const QByteArray ipv6 =
+            QByteArray::fromHex("60000000000f1140") + QByteArray(32, '\0') + ipFrame.mid(20);
+        QVERIFY2(reader.open(write(folder, pcapFile(101, ipv6))), reader.error().c_str());
+        Datagram datagram;
+        QCOMPARE(reader.next(datagram), PcapReader::Next::End);
+        QCOMPARE(reader.counts().notUdp, std::uint64_t(1));
+    }
+};
 
 QTEST_APPLESS_MAIN(TestLinkTypes)
 #include "TestLinkTypes.moc"

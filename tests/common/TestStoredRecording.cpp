@@ -34,12 +34,67 @@ QJsonObject with(const char *member, const QJsonValue &value) {
 class TestStoredRecording : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void initTestCase();
-    void tellsFilesAndTime();
-    void lengths_data();
-    void lengths();
-    void refusals_data();
-    void refusals();
+    void initTestCase() {
+        QDir(folder_.path()).mkpath("run");
+        put(folder_.filePath("run/logger-0001.pcap"), "packets");
+        put(folder_.filePath("run/b"), "");
+        QVERIFY(QFile::link("/etc/passwd", folder_.filePath("run/link")));
+        QCOMPARE(::mkfifo(QFile::encodeName(folder_.filePath("run/pipe")).constData(), 0600), 0);
+    }
+
+    void tellsFilesAndTime() {
+        const Result<StoredRecording> found = find(usual());
+        QVERIFY2(found.ok(), found ? "" : qPrintable(found.error().message));
+        QCOMPARE(found->start_s, 1000.5);
+        QCOMPARE(found->length_s, 2.5);
+        QCOMPARE(*found->files(),
+                 QStringList({folder_.filePath("run/logger-0001.pcap"), folder_.filePath("run/b")}));
+        QVERIFY(find(with("files", QJsonArray()))->files()->isEmpty());
+    }
+
+    void lengths_data() {
+        const Rows<QJsonObject, double> row("sidecar", "length");
+        row("the clock was set meanwhile", with("end", 5000), 2.5);
+        row("cut off, without end_mono", with("end_mono", QJsonValue()), 2.5);
+        row("ends before it begins", with("end_mono", 1), 0.0);
+        row("of no use", with("end_mono", 1e300), 1e7);
+    }
+
+    void lengths() {
+        QFETCH(QJsonObject, sidecar);
+        QTEST(find(sidecar)->length_s, "length");
+    }
+
+    void refusals_data() {
+        QTest::addColumn<QJsonObject>("sidecar");
+        QTest::addColumn<QString>("name");
+        QTest::addColumn<int>("code");
+        const auto row = [](const char *title, const QJsonObject &sidecar, ErrorCode code,
+                            const char *name = "run") {
+            QTest::newRow(title) << sidecar << name << int(code);
+        };
+        row("being recorded", with("ended", QJsonValue()), ErrorCode::NotReady);
+        row("another name", usual(), ErrorCode::InputOutput, "walk");
+        row("a path", usual(), ErrorCode::InvalidParams, "../run");
+        row("no sidecar", with("format", "x"), ErrorCode::InputOutput);
+        row("no start", with("start", "now"), ErrorCode::InputOutput);
+        row("a start beyond all stamps", with("start", 1e18), ErrorCode::InputOutput);
+        row("a file elsewhere", with("files", QJsonArray{QJsonObject{{"name", "../secret"}}}),
+            ErrorCode::InputOutput);
+        row("a pipe", with("files", QJsonArray{QJsonObject{{"name", "pipe"}}}), ErrorCode::InputOutput);
+        row("a link out", with("files", QJsonArray{QJsonObject{{"name", "link"}}}), ErrorCode::InputOutput);
+        row("a file that is missing", with("files", QJsonArray{QJsonObject{{"name", "c"}}}),
+            ErrorCode::InputOutput);
+        row("a file without name", with("files", QJsonArray{1}), ErrorCode::InputOutput);
+    }
+
+    void refusals() {
+        FETCH(QJsonObject, sidecar, QString, name);
+        const Result<StoredRecording> found = find(sidecar, name);
+        const Error error = !found ? found.error() : found->files() ? Error() : found->files().error();
+        QTEST(error.code, "code");
+        QVERIFY2(error.message.contains(name.section('/', -1)), qPrintable(error.message));
+    }
 
 private:
     Result<StoredRecording> find(const QJsonObject &content, const QString &name = "run") {
@@ -50,66 +105,6 @@ private:
 
     QTemporaryDir folder_;
 };
-
-void TestStoredRecording::initTestCase() {
-    QDir(folder_.path()).mkpath("run");
-    put(folder_.filePath("run/logger-0001.pcap"), "packets");
-    put(folder_.filePath("run/b"), "");
-    QVERIFY(QFile::link("/etc/passwd", folder_.filePath("run/link")));
-    QCOMPARE(::mkfifo(QFile::encodeName(folder_.filePath("run/pipe")).constData(), 0600), 0);
-}
-
-void TestStoredRecording::tellsFilesAndTime() {
-    const Result<StoredRecording> found = find(usual());
-    QVERIFY2(found.ok(), found ? "" : qPrintable(found.error().message));
-    QCOMPARE(found->start_s, 1000.5);
-    QCOMPARE(found->length_s, 2.5);
-    QCOMPARE(*found->files(),
-             QStringList({folder_.filePath("run/logger-0001.pcap"), folder_.filePath("run/b")}));
-    QVERIFY(find(with("files", QJsonArray()))->files()->isEmpty());
-}
-
-void TestStoredRecording::lengths_data() {
-    const Rows<QJsonObject, double> row("sidecar", "length");
-    row("the clock was set meanwhile", with("end", 5000), 2.5);
-    row("cut off, without end_mono", with("end_mono", QJsonValue()), 2.5);
-    row("ends before it begins", with("end_mono", 1), 0.0);
-    row("of no use", with("end_mono", 1e300), 1e7);
-}
-
-void TestStoredRecording::lengths() {
-    QFETCH(QJsonObject, sidecar);
-    QTEST(find(sidecar)->length_s, "length");
-}
-
-void TestStoredRecording::refusals_data() {
-    QTest::addColumn<QJsonObject>("sidecar");
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<int>("code");
-    const auto row = [](const char *title, const QJsonObject &sidecar, ErrorCode code,
-                        const char *name = "run") { QTest::newRow(title) << sidecar << name << int(code); };
-    row("being recorded", with("ended", QJsonValue()), ErrorCode::NotReady);
-    row("another name", usual(), ErrorCode::InputOutput, "walk");
-    row("a path", usual(), ErrorCode::InvalidParams, "../run");
-    row("no sidecar", with("format", "x"), ErrorCode::InputOutput);
-    row("no start", with("start", "now"), ErrorCode::InputOutput);
-    row("a start beyond all stamps", with("start", 1e18), ErrorCode::InputOutput);
-    row("a file elsewhere", with("files", QJsonArray{QJsonObject{{"name", "../secret"}}}),
-        ErrorCode::InputOutput);
-    row("a pipe", with("files", QJsonArray{QJsonObject{{"name", "pipe"}}}), ErrorCode::InputOutput);
-    row("a link out", with("files", QJsonArray{QJsonObject{{"name", "link"}}}), ErrorCode::InputOutput);
-    row("a file that is missing", with("files", QJsonArray{QJsonObject{{"name", "c"}}}),
-        ErrorCode::InputOutput);
-    row("a file without name", with("files", QJsonArray{1}), ErrorCode::InputOutput);
-}
-
-void TestStoredRecording::refusals() {
-    FETCH(QJsonObject, sidecar, QString, name);
-    const Result<StoredRecording> found = find(sidecar, name);
-    const Error error = !found ? found.error() : found->files() ? Error() : found->files().error();
-    QTEST(error.code, "code");
-    QVERIFY2(error.message.contains(name.section('/', -1)), qPrintable(error.message));
-}
 
 QTEST_GUILESS_MAIN(TestStoredRecording)
 #include "TestStoredRecording.moc"

@@ -33,49 +33,47 @@ TimedScan scanOf(const velodyne::Turn &turn) {
 class TestDrivenMap : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void isTheStoredOne();
-};
+    void isTheStoredOne() {
+        Simulation simulation(pillars(), {}, start_ns);
+        QVERIFY(simulation.drive());
+        ScanTracker tracker;
+        tracker.place(simulation.truth().pose);
+        int turns = 0;
+        velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
+            TimedScan scan = scanOf(turn);
+            if (!turn.partial && ++turns)
+                tracker.process(scan);
+        });
+        while (!simulation.truth().finished)
+            assembler.feed(simulation.nextPacket().data(), velodyne::packetSize, simulation.now_ns());
+        const Pose2D at = tracker.builder.report().pose, truth = simulation.truth().pose;
+        const double off = std::hypot(at.x - truth.x, at.y - truth.y);
+        QVERIFY(turns > 200);
+        QVERIFY2(off < 0.15, qPrintable(QString::number(off))); // of the last turn's middle
 
-void TestDrivenMap::isTheStoredOne() {
-    Simulation simulation(pillars(), {}, start_ns);
-    QVERIFY(simulation.drive());
-    ScanTracker tracker;
-    tracker.place(simulation.truth().pose);
-    int turns = 0;
-    velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
-        TimedScan scan = scanOf(turn);
-        if (!turn.partial && ++turns)
-            tracker.process(scan);
-    });
-    while (!simulation.truth().finished)
-        assembler.feed(simulation.nextPacket().data(), velodyne::packetSize, simulation.now_ns());
-    const Pose2D at = tracker.builder.report().pose, truth = simulation.truth().pose;
-    const double off = std::hypot(at.x - truth.x, at.y - truth.y);
-    QVERIFY(turns > 200);
-    QVERIFY2(off < 0.15, qPrintable(QString::number(off))); // of the last turn's middle
-
-    const std::string name =
-        qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/tests/data/driven-map.csv";
-    std::ifstream file(name);
-    const auto stored = readMapCsv(file, name);
-    std::ofstream made("driven-map.csv"); // for a look at it, and to be stored where the change is meant
-    std::vector<MapEdge> map;
-    for (const MapEdge &edge : tracker.builder.map.slots())
-        if (edge.observations > 0)
-            map.push_back(edge);
-    writeMapCsv(made, map);
-    QVERIFY2(stored, stored ? "" : stored.error().message().c_str());
-    QCOMPARE(map.size(), stored->size());
-    double worst = 0;
-    for (std::size_t i = 0; i < map.size(); ++i) {
-        QCOMPARE(map[i].id, (*stored)[i].id);
-        const auto &a = map[i].segment, &b = (*stored)[i].segment;
-        worst = std::max({worst, (a.begin() - b.begin()).norm(), (a.end() - b.end()).norm()});
+        const std::string name =
+            qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/tests/data/driven-map.csv";
+        std::ifstream file(name);
+        const auto stored = readMapCsv(file, name);
+        std::ofstream made("driven-map.csv"); // for a look at it, and to be stored where the change is meant
+        std::vector<MapEdge> map;
+        for (const MapEdge &edge : tracker.builder.map.slots())
+            if (edge.observations > 0)
+                map.push_back(edge);
+        writeMapCsv(made, map);
+        QVERIFY2(stored, stored ? "" : stored.error().message().c_str());
+        QCOMPARE(map.size(), stored->size());
+        double worst = 0;
+        for (std::size_t i = 0; i < map.size(); ++i) {
+            QCOMPARE(map[i].id, (*stored)[i].id);
+            const auto &a = map[i].segment, &b = (*stored)[i].segment;
+            worst = std::max({worst, (a.begin() - b.begin()).norm(), (a.end() - b.end()).norm()});
+        }
+        qInfo("%d turns, %zu walls, %.1f um from the stored ones, the pose %.1f mm off", turns, map.size(),
+              worst * 1e6, off * 1e3);
+        QVERIFY2(worst < most, qPrintable(QString("%1 m").arg(worst)));
     }
-    qInfo("%d turns, %zu walls, %.1f um from the stored ones, the pose %.1f mm off", turns, map.size(),
-          worst * 1e6, off * 1e3);
-    QVERIFY2(worst < most, qPrintable(QString("%1 m").arg(worst)));
-}
+};
 
 QTEST_APPLESS_MAIN(TestDrivenMap)
 #include "TestDrivenMap.moc"

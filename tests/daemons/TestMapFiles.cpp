@@ -54,10 +54,96 @@ class TestMapFiles : public QObject, MatcherFixture {
 private Q_SLOTS:
     void init() { setUp(); }
     void cleanup() { tearDown(); }
-    void largeMapsHoldNothingUp();
-    void aSlowDiskHoldsNothingUp();
-    void filesAreWrittenInTheOrderOfTheCommands();
-    void aMatcherKilledWhileItWritesLeavesAWholeMap();
+
+    void largeMapsHoldNothingUp() {
+        const int edges = std::max(150000 / slowness, qEnvironmentVariableIntValue("HERMES_MAP_EDGES"));
+        writeMap(folder->filePath("large.csv"), edges);
+        LoopWatch loop;
+        const auto within = [&](const char *what) {
+            const double ms = loop.longestCpu_ms();
+            qInfo("%s of %d edges: the event loop was busy for at most %.1f ms", what, edges, ms);
+            loop.restart();
+            return ms < 50 * slowness;
+        };
+        loop.restart();
+        QCOMPARE(answer("map.load", {{"path", "large.csv"}})["segments"].toInt(), edges);
+        QVERIFY(within("map.load"));
+        QCOMPARE(answer("map.save", {{"path", "saved.csv"}})["segments"].toInt(), edges);
+        QVERIFY(within("map.save"));
+        answer("map.export", {{"path", "saved.svg"}, {"format", "svg"}});
+        QVERIFY(within("map.export"));
+        answer("map.clear", {});
+        QVERIFY(within("map.clear"));
+        QCOMPARE(contentOf(folder->filePath("saved.csv")), contentOf(folder->filePath("large.csv")));
+    }
+
+    void aSlowDiskHoldsNothingUp() {
+        writeMap(folder->filePath("slow.csv"), 10);
+        diskHolds = true;
+        const auto release = qScopeGuard([] { diskHolds = false; });
+        std::optional<Result<QJsonValue>> loaded;
+        client_->call("map.load", QJsonObject{{"path", "slow.csv"}},
+                      [&](const Result<QJsonValue> &result) { loaded = result; });
+        for (int i = 0; i < 20; ++i)
+            QVERIFY(call("daemon.info").contains("name"));
+        QVERIFY(!loaded);
+        QCOMPARE(call("matcher.state")["map_segments"].toInt(), 0);
+        diskHolds = false;
+        QTRY_VERIFY(loaded);
+        QCOMPARE((*loaded)->toObject()["segments"].toInt(), 10);
+        QCOMPARE(call("matcher.state")["map_segments"].toInt(), 10);
+    }
+
+    void filesAreWrittenInTheOrderOfTheCommands() {
+        writeMap(folder->filePath("ten.csv"), 10);
+        writeMap(folder->filePath("five.csv"), 5);
+        const auto send = [&](const char *method, const QJsonObject &params) {
+            client_->call(method, params, [](const Result<QJsonValue> &) {});
+        };
+        send("map.load", {{"path", "ten.csv"}});
+        send("map.save", {{"path", "a.csv"}});
+        send("map.load", {{"path", "five.csv"}});
+        send("map.save", {{"path", "a.csv"}, {"force", true}});
+        send("map.save", {{"path", "b.csv"}});
+        send("map.clear", {});
+        QCOMPARE(answer("map.export", {{"path", "c.csv"}, {"format", "csv"}})["segments"].toInt(), 0);
+        QCOMPARE(contentOf(folder->filePath("a.csv")), contentOf(folder->filePath("five.csv")));
+        QCOMPARE(contentOf(folder->filePath("b.csv")), contentOf(folder->filePath("five.csv")));
+    }
+
+    void aMatcherKilledWhileItWritesLeavesAWholeMap() {
+        writeMap(folder->filePath("new.csv"), 20000);
+        const QByteArray after = contentOf(folder->filePath("new.csv"));
+        const QString path = folder->filePath("map.csv");
+        const int last = 6;
+        for (int trial = 0; trial <= last; ++trial) {
+            QFile::remove(path);
+            writeMap(path, 10);
+            const QByteArray before = contentOf(path);
+            QProcess process;
+            process.setProcessChannelMode(QProcess::MergedChannels);
+            process.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-scanmatcher",
+                          {"--listen", "tcp://127.0.0.1:0", "--set", "map.folder=" + folder->path()});
+            QVERIFY(process.waitForStarted());
+            QString log;
+            const QRegularExpression listens("127.0.0.1:(\\d+),");
+            QTRY_VERIFY((log += process.readAll()).contains(listens));
+            ConnectedClient other(asOwner("127.0.0.1:" + listens.match(log).captured(1)));
+            QVERIFY(other.callAndWait("map.load", QJsonObject{{"path", "new.csv"}}).ok());
+            bool saved = false;
+            other.call("map.save", QJsonObject{{"path", "map.csv"}, {"force", true}},
+                       [&](const Result<QJsonValue> &result) { saved = result.ok(); });
+            if (trial < last)
+                QTest::qWait(8 * trial); // somewhere between the call and the answer
+            else
+                QTRY_VERIFY(saved);
+            process.kill();
+            QVERIFY(process.waitForFinished());
+            const QByteArray found = contentOf(path);
+            QVERIFY2(found == after || (found == before && !saved),
+                     qPrintable(QString("%1: %2 bytes").arg(trial).arg(found.size())));
+        }
+    }
 
 private:
     /// Calls, and waits in the event loop for the result.
@@ -69,96 +155,6 @@ private:
         return (*got)->toObject();
     }
 };
-
-void TestMapFiles::largeMapsHoldNothingUp() {
-    const int edges = std::max(150000 / slowness, qEnvironmentVariableIntValue("HERMES_MAP_EDGES"));
-    writeMap(folder->filePath("large.csv"), edges);
-    LoopWatch loop;
-    const auto within = [&](const char *what) {
-        const double ms = loop.longestCpu_ms();
-        qInfo("%s of %d edges: the event loop was busy for at most %.1f ms", what, edges, ms);
-        loop.restart();
-        return ms < 50 * slowness;
-    };
-    loop.restart();
-    QCOMPARE(answer("map.load", {{"path", "large.csv"}})["segments"].toInt(), edges);
-    QVERIFY(within("map.load"));
-    QCOMPARE(answer("map.save", {{"path", "saved.csv"}})["segments"].toInt(), edges);
-    QVERIFY(within("map.save"));
-    answer("map.export", {{"path", "saved.svg"}, {"format", "svg"}});
-    QVERIFY(within("map.export"));
-    answer("map.clear", {});
-    QVERIFY(within("map.clear"));
-    QCOMPARE(contentOf(folder->filePath("saved.csv")), contentOf(folder->filePath("large.csv")));
-}
-
-void TestMapFiles::aSlowDiskHoldsNothingUp() {
-    writeMap(folder->filePath("slow.csv"), 10);
-    diskHolds = true;
-    const auto release = qScopeGuard([] { diskHolds = false; });
-    std::optional<Result<QJsonValue>> loaded;
-    client_->call("map.load", QJsonObject{{"path", "slow.csv"}},
-                  [&](const Result<QJsonValue> &result) { loaded = result; });
-    for (int i = 0; i < 20; ++i)
-        QVERIFY(call("daemon.info").contains("name"));
-    QVERIFY(!loaded);
-    QCOMPARE(call("matcher.state")["map_segments"].toInt(), 0);
-    diskHolds = false;
-    QTRY_VERIFY(loaded);
-    QCOMPARE((*loaded)->toObject()["segments"].toInt(), 10);
-    QCOMPARE(call("matcher.state")["map_segments"].toInt(), 10);
-}
-
-void TestMapFiles::filesAreWrittenInTheOrderOfTheCommands() {
-    writeMap(folder->filePath("ten.csv"), 10);
-    writeMap(folder->filePath("five.csv"), 5);
-    const auto send = [&](const char *method, const QJsonObject &params) {
-        client_->call(method, params, [](const Result<QJsonValue> &) {});
-    };
-    send("map.load", {{"path", "ten.csv"}});
-    send("map.save", {{"path", "a.csv"}});
-    send("map.load", {{"path", "five.csv"}});
-    send("map.save", {{"path", "a.csv"}, {"force", true}});
-    send("map.save", {{"path", "b.csv"}});
-    send("map.clear", {});
-    QCOMPARE(answer("map.export", {{"path", "c.csv"}, {"format", "csv"}})["segments"].toInt(), 0);
-    QCOMPARE(contentOf(folder->filePath("a.csv")), contentOf(folder->filePath("five.csv")));
-    QCOMPARE(contentOf(folder->filePath("b.csv")), contentOf(folder->filePath("five.csv")));
-}
-
-void TestMapFiles::aMatcherKilledWhileItWritesLeavesAWholeMap() {
-    writeMap(folder->filePath("new.csv"), 20000);
-    const QByteArray after = contentOf(folder->filePath("new.csv"));
-    const QString path = folder->filePath("map.csv");
-    const int last = 6;
-    for (int trial = 0; trial <= last; ++trial) {
-        QFile::remove(path);
-        writeMap(path, 10);
-        const QByteArray before = contentOf(path);
-        QProcess process;
-        process.setProcessChannelMode(QProcess::MergedChannels);
-        process.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-scanmatcher",
-                      {"--listen", "tcp://127.0.0.1:0", "--set", "map.folder=" + folder->path()});
-        QVERIFY(process.waitForStarted());
-        QString log;
-        const QRegularExpression listens("127.0.0.1:(\\d+),");
-        QTRY_VERIFY((log += process.readAll()).contains(listens));
-        ConnectedClient other(asOwner("127.0.0.1:" + listens.match(log).captured(1)));
-        QVERIFY(other.callAndWait("map.load", QJsonObject{{"path", "new.csv"}}).ok());
-        bool saved = false;
-        other.call("map.save", QJsonObject{{"path", "map.csv"}, {"force", true}},
-                   [&](const Result<QJsonValue> &result) { saved = result.ok(); });
-        if (trial < last)
-            QTest::qWait(8 * trial); // somewhere between the call and the answer
-        else
-            QTRY_VERIFY(saved);
-        process.kill();
-        QVERIFY(process.waitForFinished());
-        const QByteArray found = contentOf(path);
-        QVERIFY2(found == after || (found == before && !saved),
-                 qPrintable(QString("%1: %2 bytes").arg(trial).arg(found.size())));
-    }
-}
 
 QTEST_GUILESS_MAIN(TestMapFiles)
 #include "TestMapFiles.moc"

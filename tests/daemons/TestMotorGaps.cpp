@@ -8,24 +8,6 @@
 using namespace hermes;
 using namespace hermes::simulator;
 
-class TestMotorGaps : public QObject, StopTrials {
-    Q_OBJECT
-private Q_SLOTS:
-    void init() { setUp(); }
-    void cleanup() { tearDown(); }
-    void whatWasSentMeanwhileIsVoid_data();
-    void whatWasSentMeanwhileIsVoid();
-    void whoGoesOnMovesAfterAWhile();
-    void shortGapDoesNotDisturb();
-
-private:
-    void startClient(int lease_s);
-    void tell(const char *what);
-    void freeze(double seconds);
-    int moving(double since, double until);
-    QByteArray toldState() const;
-};
-
 namespace {
 
 // Commands at 20 Hz; "pause" and "go" on its input are answered when obeyed.
@@ -47,102 +29,111 @@ while True:
 
 } // namespace
 
-void TestMotorGaps::startClient(int lease_s) {
-    driver_ = std::make_unique<QProcess>();
-    driver_->start("python3", {"-c", blind, host_, port_, QString::number(lease_s)});
-    QTRY_VERIFY_WITH_TIMEOUT(isDriving(), 20000);
-}
+class TestMotorGaps : public QObject, StopTrials {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { setUp(); }
+    void cleanup() { tearDown(); }
 
-void TestMotorGaps::tell(const char *what) {
-    driver_->write(QByteArray(what) + '\n');
-    QByteArray answer;
-    QTRY_VERIFY((answer += driver_->readAllStandardOutput()).contains("done"));
-}
-
-void TestMotorGaps::freeze(double seconds) {
-    QCOMPARE(::kill(pid_t(daemon_->processId()), SIGSTOP), 0);
-    QTest::qWait(int(1000 * seconds)); // how long it is stopped is the matter
-}
-
-// Set-points other than zero.
-int TestMotorGaps::moving(double since, double until) {
-    int count = 0;
-    for (const RoboClawRig::SetPoint &s : rig_->heard())
-        count += s.time > since && s.time < until && !s.isZero();
-    return count;
-}
-
-QByteArray TestMotorGaps::toldState() const {
-    QProcess asks;
-    asks.start(qEnvironmentVariable("HERMES_BIN") + "/hermesctl", {host_ + ':' + port_, "motor.state"});
-    asks.waitForFinished();
-    return asks.readAllStandardOutput() + asks.readAllStandardError();
-}
-
-void TestMotorGaps::whatWasSentMeanwhileIsVoid_data() {
-    const Rows<double, int, int> row("seconds", "lease_s", "times");
-    const QString gaps = qEnvironmentVariable("HERMES_GAPS", "1 3");
-    int lease_s = 60;
-    for (const QString &seconds : gaps.split(' ')) {
-        QTest::addRow("%s s, lease of %d s", qPrintable(seconds), lease_s)
-            << seconds.toDouble() << lease_s << 1;
-        lease_s = 70 - lease_s; // 10 and 60 in turn
-    }
-    row("three in a row", 0.6, 60, 3);
-}
-
-void TestMotorGaps::whatWasSentMeanwhileIsVoid() {
-    FETCH(double, seconds, int, lease_s, int, times);
-    startClient(lease_s);
-    for (int trial = 0; trial < trials(); ++trial) {
-        if (QTest::currentTestFailed())
-            return;
-        QVERIFY2(QTest::qWaitFor([this] { return isDriving(); }, 5000), toldState().constData());
-        double first = 0, lastResumed = 0;
-        for (int i = 0; i < times; ++i) {
-            freeze(seconds);
-            if (i == times - 1)
-                tell("pause");
-            lastResumed = RoboClawRig::now();
-            first = first > 0 ? first : lastResumed;
-            QCOMPARE(::kill(pid_t(daemon_->processId()), SIGCONT), 0);
-            if (i < times - 1)
-                QTest::qWait(3 * trial); // it has not read all yet
+    void whatWasSentMeanwhileIsVoid_data() {
+        const Rows<double, int, int> row("seconds", "lease_s", "times");
+        const QString gaps = qEnvironmentVariable("HERMES_GAPS", "1 3");
+        int lease_s = 60;
+        for (const QString &seconds : gaps.split(' ')) {
+            QTest::addRow("%s s, lease of %d s", qPrintable(seconds), lease_s)
+                << seconds.toDouble() << lease_s << 1;
+            lease_s = 70 - lease_s; // 10 and 60 in turn
         }
-        QTest::qWait(1000); // all that it received has been read
-        // One may have been on its way into the line when the process was stopped; stops follow it at once.
-        QVERIFY(moving(first, RoboClawRig::now()) <= times);
-        QCOMPARE(moving(lastResumed + 0.05, RoboClawRig::now()), 0);
-        QVERIFY(rig_->zeroSince() < RoboClawRig::now()); // it sends set-points
-        tell("go");
+        row("three in a row", 0.6, 60, 3);
     }
-    QTRY_VERIFY_WITH_TIMEOUT(isDriving(), 5000);
-}
 
-// What comes a quarter of a second later was sent after the gap.
-void TestMotorGaps::whoGoesOnMovesAfterAWhile() {
-    startClient(10);
-    freeze(1);
-    const double goesOn = RoboClawRig::now();
-    QCOMPARE(::kill(pid_t(daemon_->processId()), SIGCONT), 0);
-    QTRY_VERIFY_WITH_TIMEOUT(moving(goesOn, RoboClawRig::now()) > 0, 5000);
-    QCOMPARE(moving(goesOn, goesOn + 0.25), 0);
-}
-
-void TestMotorGaps::shortGapDoesNotDisturb() {
-    startClient(10);
-    for (int attempt = 0;; ++attempt) {
+    void whatWasSentMeanwhileIsVoid() {
+        FETCH(double, seconds, int, lease_s, int, times);
+        startClient(lease_s);
+        for (int trial = 0; trial < trials(); ++trial) {
+            if (QTest::currentTestFailed())
+                return;
+            QVERIFY2(QTest::qWaitFor([this] { return isDriving(); }, 5000), toldState().constData());
+            double first = 0, lastResumed = 0;
+            for (int i = 0; i < times; ++i) {
+                freeze(seconds);
+                if (i == times - 1)
+                    tell("pause");
+                lastResumed = RoboClawRig::now();
+                first = first > 0 ? first : lastResumed;
+                QCOMPARE(::kill(pid_t(daemon_->processId()), SIGCONT), 0);
+                if (i < times - 1)
+                    QTest::qWait(3 * trial); // it has not read all yet
+            }
+            QTest::qWait(1000); // all that it received has been read
+            // One may have been on its way into the line when the process was stopped; stops follow it at
+            // once.
+            QVERIFY(moving(first, RoboClawRig::now()) <= times);
+            QCOMPARE(moving(lastResumed + 0.05, RoboClawRig::now()), 0);
+            QVERIFY(rig_->zeroSince() < RoboClawRig::now()); // it sends set-points
+            tell("go");
+        }
         QTRY_VERIFY_WITH_TIMEOUT(isDriving(), 5000);
-        beginTrial();
-        freeze(0.2);
+    }
+
+    // What comes a quarter of a second later was sent after the gap.
+    void whoGoesOnMovesAfterAWhile() {
+        startClient(10);
+        freeze(1);
         const double goesOn = RoboClawRig::now();
         QCOMPARE(::kill(pid_t(daemon_->processId()), SIGCONT), 0);
         QTRY_VERIFY_WITH_TIMEOUT(moving(goesOn, RoboClawRig::now()) > 0, 5000);
-        if (moving(goesOn, goesOn + 0.15) > 0)
-            return;
-        QVERIFY(attempt < 3 && !endTrial()); // only where the machine stood still longer
+        QCOMPARE(moving(goesOn, goesOn + 0.25), 0);
     }
-}
+
+    void shortGapDoesNotDisturb() {
+        startClient(10);
+        for (int attempt = 0;; ++attempt) {
+            QTRY_VERIFY_WITH_TIMEOUT(isDriving(), 5000);
+            beginTrial();
+            freeze(0.2);
+            const double goesOn = RoboClawRig::now();
+            QCOMPARE(::kill(pid_t(daemon_->processId()), SIGCONT), 0);
+            QTRY_VERIFY_WITH_TIMEOUT(moving(goesOn, RoboClawRig::now()) > 0, 5000);
+            if (moving(goesOn, goesOn + 0.15) > 0)
+                return;
+            QVERIFY(attempt < 3 && !endTrial()); // only where the machine stood still longer
+        }
+    }
+
+private:
+    void startClient(int lease_s) {
+        driver_ = std::make_unique<QProcess>();
+        driver_->start("python3", {"-c", blind, host_, port_, QString::number(lease_s)});
+        QTRY_VERIFY_WITH_TIMEOUT(isDriving(), 20000);
+    }
+
+    void tell(const char *what) {
+        driver_->write(QByteArray(what) + '\n');
+        QByteArray answer;
+        QTRY_VERIFY((answer += driver_->readAllStandardOutput()).contains("done"));
+    }
+
+    void freeze(double seconds) {
+        QCOMPARE(::kill(pid_t(daemon_->processId()), SIGSTOP), 0);
+        QTest::qWait(int(1000 * seconds)); // how long it is stopped is the matter
+    }
+
+    // Set-points other than zero.
+    int moving(double since, double until) {
+        int count = 0;
+        for (const RoboClawRig::SetPoint &s : rig_->heard())
+            count += s.time > since && s.time < until && !s.isZero();
+        return count;
+    }
+
+    QByteArray toldState() const {
+        QProcess asks;
+        asks.start(qEnvironmentVariable("HERMES_BIN") + "/hermesctl", {host_ + ':' + port_, "motor.state"});
+        asks.waitForFinished();
+        return asks.readAllStandardOutput() + asks.readAllStandardError();
+    }
+};
 
 QTEST_GUILESS_MAIN(TestMotorGaps)
 #include "TestMotorGaps.moc"

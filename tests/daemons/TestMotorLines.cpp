@@ -104,166 +104,155 @@ void pass(Simulation &simulation, double seconds) {
 class TestMotorLines : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void answersOnThePseudoTerminal();
-    void slowAnswersAreRepeated();
-    void damagedAnswersAreRepeated();
-    void pulledLineIsFoundAgain();
-    void badLinkIsNamed();
-    void sentencesThatNobodyReadsAreLost();
-    void claimOfAKilledProgramIsDropped();
-    void wheelsDriveTheSimulation();
-    void followingIgnoresTheWheels();
-    void wallStopsTheSimulation();
+    void answersOnThePseudoTerminal() {
+        Robot robot;
+        QVERIFY(robot.connectEnds());
+        const auto version = robot.ask(0x80, Command::ReadVersion);
+        QCOMPARE(version.result, Bus::Result::Done);
+        QCOMPARE(QByteArray(version.reply.text.data()), QByteArray("RoboClaw 2x45A v4.2.8"));
+        std::vector<double> waits;
+        for (int i = 0; i < 200; ++i) {
+            const std::uint8_t address = i % 2 ? 0x80 : 0x81;
+            const auto done = robot.ask(address, i % 4 < 2 ? Command::Speed : Command::ReadEncoders,
+                                        i % 4 < 2 ? Values{100, 100} : Values{});
+            QCOMPARE(done.result, Bus::Result::Done);
+            waits.push_back(done.received - done.sent);
+        }
+        std::sort(waits.begin(), waits.end());
+        QVERIFY2(waits[100] < 0.01, qPrintable(QString::number(waits[100])));
+        QCOMPARE(robot.ask(0x82, Command::ReadEncoders).result, Bus::Result::TimedOut);
+    }
+
+    void slowAnswersAreRepeated() {
+        Robot robot;
+        QVERIFY(robot.connectEnds());
+        robot.drivetrain.controller(0).faults().delay = 0.2;
+        QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::TimedOut);
+        robot.drivetrain.controller(0).faults().delay = 0;
+        QTRY_COMPARE(int(robot.bus.strayBytes()), 3 * 4); // the late answers come, and are nobody's
+        QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::Done);
+    }
+
+    void damagedAnswersAreRepeated() {
+        Robot robot;
+        QVERIFY(robot.connectEnds());
+        robot.drivetrain.controller(0).faults().corrupt = 0.2;
+        int done = 0;
+        for (int i = 0; i < 50; ++i)
+            done += robot.ask(0x80, Command::ReadEncoders).result == Bus::Result::Done;
+        QVERIFY(done >= 45); // each has three attempts
+        QVERIFY(robot.bus.counts(0x80).crcErrors > 0 && robot.bus.counts(0x80).retries > 0);
+    }
+
+    void pulledLineIsFoundAgain() {
+        Robot robot;
+        QVERIFY(robot.connectEnds());
+        QCOMPARE(robot.ask(0x80, Command::SetEncoderM1, {1234}).result, Bus::Result::Done);
+        robot.lines.setPulled(0, true);
+        QCOMPARE(robot.ask(0x80, Command::ReadEncoders).result, Bus::Result::LineClosed);
+        QVERIFY(robot.lines.state()[0].device.isEmpty());
+        robot.lines.setPulled(0, false);
+        QTRY_VERIFY(robot.serial->isOpen());
+        const auto counts = robot.ask(0x80, Command::ReadEncoders);
+        QCOMPARE(counts.result, Bus::Result::Done);
+        QCOMPARE(counts.reply[0], std::int64_t(1234));
+    }
+
+    void badLinkIsNamed() {
+        Robot robot;
+        const auto opened = robot.lines.open({"/proc/none/motors"});
+        QVERIFY(!opened);
+        QVERIFY2(opened.error().message.contains("/proc/none"), qPrintable(opened.error().message));
+        QCOMPARE(robot.lines.count(), 0);
+    }
+
+    void sentencesThatNobodyReadsAreLost() {
+        GpsLine line;
+        QVERIFY(line.open("").ok());
+        QFile near(line.state().line.device);
+        QVERIFY(near.open(QIODevice::ReadOnly | QIODevice::Unbuffered));
+        const auto unread = [&near] {
+            int size = 0;
+            return ::ioctl(near.handle(), FIONREAD, &size) == 0 ? size : -1;
+        };
+        int left = 0;
+        for (int i = 0; i < 30; ++i) { // each arrives before the next is sent
+            line.send(QByteArray::number(i).rightJustified(98, '.') + "\r\n");
+            left = left > 2048 ? 100 : left + 100;
+            QTRY_COMPARE_WITH_TIMEOUT(unread(), left, 2000);
+        }
+        QByteArray latest(8192, '\0'); // QFile would wait for all of it
+        latest.resize(int(::read(near.handle(), latest.data(), std::size_t(latest.size()))));
+        QVERIFY(latest.size() == left && latest.endsWith("29\r\n"));
+        QCOMPARE(line.state().bytes, qint64(3000));
+        QCOMPARE(line.state().unreadLost, qint64(3000 - left));
+    }
+
+    void claimOfAKilledProgramIsDropped() {
+        GpsLine line;
+        QVERIFY(line.open("").ok());
+        const QByteArray device = line.state().line.device.toLocal8Bit();
+        const int claimed = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+        QVERIFY(claimed >= 0 && ::ioctl(claimed, TIOCEXCL) == 0);
+        ::close(claimed);
+        line.send("$GPRMC*4B\r\n");
+        int exclusive = 1;
+        const int again = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+        QVERIFY(again >= 0);
+        const int told = ::ioctl(again, TIOCGEXCL, &exclusive), reason = told == 0 ? 0 : errno;
+        ::close(again);
+        if (reason == ENOTTY)
+            QSKIP("whether a line is claimed is not told here (TIOCGEXCL): QEMU does not know it");
+        QCOMPARE(reason, 0);
+        QCOMPARE(exclusive, 0);
+    }
+
+    void wheelsDriveTheSimulation() {
+        Simulation simulation(room(), {}, 0);
+        const std::int64_t speed = 30240; // 0.5 m/s
+        driveWheels(simulation, {-speed, speed, speed, -speed}, 120000);
+        pass(simulation, 2);
+        const auto truth = simulation.truth();
+        QVERIFY2(std::abs(truth.pose.y - 0.9375) < 0.03, qPrintable(QString::number(truth.pose.y)));
+        QVERIFY(std::abs(truth.pose.x) < 0.01 && std::abs(truth.pose.theta) < 0.01);
+        QVERIFY(std::abs(truth.twist.vy - 0.5) < 0.01 && simulation.isPlaced());
+        driveWheels(simulation, {0, 0, 0, 0}, 240000);
+        pass(simulation, 1);
+        const auto standing = simulation.truth();
+        pass(simulation, 1);
+        QCOMPARE(simulation.truth().pose.y, standing.pose.y);
+        // What the wheels' encoders counted is the way that the robot made.
+        const double way = double(simulation.drivetrain().wheel(1).count()) / 38000 * 2 * M_PI * 0.1;
+        QVERIFY2(std::abs(standing.pose.y - way) < 0.001,
+                 qPrintable(QString("%1 %2").arg(standing.pose.y).arg(way)));
+    }
+
+    void followingIgnoresTheWheels() {
+        Simulation simulation(room(), {}, 0);
+        QVERIFY(simulation.drive());
+        driveWheels(simulation, {30000, 30000, 30000, 30000}, 120000);
+        pass(simulation, 1);
+        QVERIFY(!simulation.isPlaced());
+        driveWheels(simulation, {0, 0, 0, 0}, 240000);
+        pass(simulation, 5);
+        QVERIFY(simulation.truth().finished);
+        QCOMPARE(simulation.truth().pose.x, 2.0);
+        driveWheels(simulation, {-30000, -30000, -30000, -30000}, 120000);
+        pass(simulation, 1);
+        QVERIFY(simulation.isPlaced() && simulation.truth().pose.x < 1.8); // on from where it was
+    }
+
+    void wallStopsTheSimulation() {
+        Simulation simulation(room(), {}, 0);
+        simulation.place({4.5, 0, 0});
+        driveWheels(simulation, {30000, 30000, 30000, 30000}, 120000);
+        pass(simulation, 2);
+        const auto truth = simulation.truth();
+        QVERIFY2(std::abs(truth.pose.x - 4.7) < 1e-6, qPrintable(QString::number(truth.pose.x, 'g', 10)));
+        QVERIFY(truth.touching);
+        QVERIFY(simulation.drivetrain().wheel(0).count() > 40000); // the wheels slip
+    }
 };
-
-void TestMotorLines::answersOnThePseudoTerminal() {
-    Robot robot;
-    QVERIFY(robot.connectEnds());
-    const auto version = robot.ask(0x80, Command::ReadVersion);
-    QCOMPARE(version.result, Bus::Result::Done);
-    QCOMPARE(QByteArray(version.reply.text.data()), QByteArray("RoboClaw 2x45A v4.2.8"));
-    std::vector<double> waits;
-    for (int i = 0; i < 200; ++i) {
-        const std::uint8_t address = i % 2 ? 0x80 : 0x81;
-        const auto done = robot.ask(address, i % 4 < 2 ? Command::Speed : Command::ReadEncoders,
-                                    i % 4 < 2 ? Values{100, 100} : Values{});
-        QCOMPARE(done.result, Bus::Result::Done);
-        waits.push_back(done.received - done.sent);
-    }
-    std::sort(waits.begin(), waits.end());
-    QVERIFY2(waits[100] < 0.01, qPrintable(QString::number(waits[100])));
-    QCOMPARE(robot.ask(0x82, Command::ReadEncoders).result, Bus::Result::TimedOut);
-}
-
-void TestMotorLines::slowAnswersAreRepeated() {
-    Robot robot;
-    QVERIFY(robot.connectEnds());
-    robot.drivetrain.controller(0).faults().delay = 0.2;
-    QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::TimedOut);
-    robot.drivetrain.controller(0).faults().delay = 0;
-    QTRY_COMPARE(int(robot.bus.strayBytes()), 3 * 4); // the late answers come, and are nobody's
-    QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::Done);
-}
-
-void TestMotorLines::damagedAnswersAreRepeated() {
-    Robot robot;
-    QVERIFY(robot.connectEnds());
-    robot.drivetrain.controller(0).faults().corrupt = 0.2;
-    int done = 0;
-    for (int i = 0; i < 50; ++i)
-        done += robot.ask(0x80, Command::ReadEncoders).result == Bus::Result::Done;
-    QVERIFY(done >= 45); // each has three attempts
-    QVERIFY(robot.bus.counts(0x80).crcErrors > 0 && robot.bus.counts(0x80).retries > 0);
-}
-
-void TestMotorLines::pulledLineIsFoundAgain() {
-    Robot robot;
-    QVERIFY(robot.connectEnds());
-    QCOMPARE(robot.ask(0x80, Command::SetEncoderM1, {1234}).result, Bus::Result::Done);
-    robot.lines.setPulled(0, true);
-    QCOMPARE(robot.ask(0x80, Command::ReadEncoders).result, Bus::Result::LineClosed);
-    QVERIFY(robot.lines.state()[0].device.isEmpty());
-    robot.lines.setPulled(0, false);
-    QTRY_VERIFY(robot.serial->isOpen());
-    const auto counts = robot.ask(0x80, Command::ReadEncoders);
-    QCOMPARE(counts.result, Bus::Result::Done);
-    QCOMPARE(counts.reply[0], std::int64_t(1234));
-}
-
-void TestMotorLines::badLinkIsNamed() {
-    Robot robot;
-    const auto opened = robot.lines.open({"/proc/none/motors"});
-    QVERIFY(!opened);
-    QVERIFY2(opened.error().message.contains("/proc/none"), qPrintable(opened.error().message));
-    QCOMPARE(robot.lines.count(), 0);
-}
-
-void TestMotorLines::sentencesThatNobodyReadsAreLost() {
-    GpsLine line;
-    QVERIFY(line.open("").ok());
-    QFile near(line.state().line.device);
-    QVERIFY(near.open(QIODevice::ReadOnly | QIODevice::Unbuffered));
-    const auto unread = [&near] {
-        int size = 0;
-        return ::ioctl(near.handle(), FIONREAD, &size) == 0 ? size : -1;
-    };
-    int left = 0;
-    for (int i = 0; i < 30; ++i) { // each arrives before the next is sent
-        line.send(QByteArray::number(i).rightJustified(98, '.') + "\r\n");
-        left = left > 2048 ? 100 : left + 100;
-        QTRY_COMPARE_WITH_TIMEOUT(unread(), left, 2000);
-    }
-    QByteArray latest(8192, '\0'); // QFile would wait for all of it
-    latest.resize(int(::read(near.handle(), latest.data(), std::size_t(latest.size()))));
-    QVERIFY(latest.size() == left && latest.endsWith("29\r\n"));
-    QCOMPARE(line.state().bytes, qint64(3000));
-    QCOMPARE(line.state().unreadLost, qint64(3000 - left));
-}
-
-void TestMotorLines::claimOfAKilledProgramIsDropped() {
-    GpsLine line;
-    QVERIFY(line.open("").ok());
-    const QByteArray device = line.state().line.device.toLocal8Bit();
-    const int claimed = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    QVERIFY(claimed >= 0 && ::ioctl(claimed, TIOCEXCL) == 0);
-    ::close(claimed);
-    line.send("$GPRMC*4B\r\n");
-    int exclusive = 1;
-    const int again = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    QVERIFY(again >= 0);
-    const int told = ::ioctl(again, TIOCGEXCL, &exclusive), reason = told == 0 ? 0 : errno;
-    ::close(again);
-    if (reason == ENOTTY)
-        QSKIP("whether a line is claimed is not told here (TIOCGEXCL): QEMU does not know it");
-    QCOMPARE(reason, 0);
-    QCOMPARE(exclusive, 0);
-}
-
-void TestMotorLines::wheelsDriveTheSimulation() {
-    Simulation simulation(room(), {}, 0);
-    const std::int64_t speed = 30240; // 0.5 m/s
-    driveWheels(simulation, {-speed, speed, speed, -speed}, 120000);
-    pass(simulation, 2);
-    const auto truth = simulation.truth();
-    QVERIFY2(std::abs(truth.pose.y - 0.9375) < 0.03, qPrintable(QString::number(truth.pose.y)));
-    QVERIFY(std::abs(truth.pose.x) < 0.01 && std::abs(truth.pose.theta) < 0.01);
-    QVERIFY(std::abs(truth.twist.vy - 0.5) < 0.01 && simulation.isPlaced());
-    driveWheels(simulation, {0, 0, 0, 0}, 240000);
-    pass(simulation, 1);
-    const auto standing = simulation.truth();
-    pass(simulation, 1);
-    QCOMPARE(simulation.truth().pose.y, standing.pose.y);
-    // What the wheels' encoders counted is the way that the robot made.
-    const double way = double(simulation.drivetrain().wheel(1).count()) / 38000 * 2 * M_PI * 0.1;
-    QVERIFY2(std::abs(standing.pose.y - way) < 0.001,
-             qPrintable(QString("%1 %2").arg(standing.pose.y).arg(way)));
-}
-
-void TestMotorLines::followingIgnoresTheWheels() {
-    Simulation simulation(room(), {}, 0);
-    QVERIFY(simulation.drive());
-    driveWheels(simulation, {30000, 30000, 30000, 30000}, 120000);
-    pass(simulation, 1);
-    QVERIFY(!simulation.isPlaced());
-    driveWheels(simulation, {0, 0, 0, 0}, 240000);
-    pass(simulation, 5);
-    QVERIFY(simulation.truth().finished);
-    QCOMPARE(simulation.truth().pose.x, 2.0);
-    driveWheels(simulation, {-30000, -30000, -30000, -30000}, 120000);
-    pass(simulation, 1);
-    QVERIFY(simulation.isPlaced() && simulation.truth().pose.x < 1.8); // on from where it was
-}
-
-void TestMotorLines::wallStopsTheSimulation() {
-    Simulation simulation(room(), {}, 0);
-    simulation.place({4.5, 0, 0});
-    driveWheels(simulation, {30000, 30000, 30000, 30000}, 120000);
-    pass(simulation, 2);
-    const auto truth = simulation.truth();
-    QVERIFY2(std::abs(truth.pose.x - 4.7) < 1e-6, qPrintable(QString::number(truth.pose.x, 'g', 10)));
-    QVERIFY(truth.touching);
-    QVERIFY(simulation.drivetrain().wheel(0).count() > 40000); // the wheels slip
-}
 
 QTEST_GUILESS_MAIN(TestMotorLines)
 #include "TestMotorLines.moc"

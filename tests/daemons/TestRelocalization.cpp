@@ -72,24 +72,219 @@ Q_DECLARE_METATYPE(vectorlib::Pose2D)
 class TestRelocalization : public QObject, MatcherFixture {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
+    void init() {
+        setUp();
+        call("matcher.start", {{"mode", "localization"}});
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        set("relocalize_after", 0);
+        scanner = vectorlib::SimulatedScanner<float>(7);
+        scanner.rays = 1000;
+        scans = loaded = 0;
+    }
+
     void cleanup() { tearDown(); }
-    void findsTheKidnappedRobot_data();
-    void findsTheKidnappedRobot();
-    void onlyTellsWhereItIs();
-    void refusesWhatFitsInSeveralPlaces();
-    void refusesWhatFitsNowhere();
-    void saysThatThereIsNoScanOrMap();
-    void saysThatTheScanShowsTooLittle();
-    void recoversByItselfAfterLostScans();
-    void triesSeldomWhereItCannotRecover();
-    void neverTriesWhereItIsSwitchedOff();
-    void theMapMayGrowOnlyBeforeItHoldsTheScan();
-    void largeMapTakesNoLongerThanPermitted();
+
+    void findsTheKidnappedRobot_data() {
+        QTest::addColumn<Pose2D>("pose");
+        const Pose2D poses[] = {{1, 0.9, 0},      {4.35, 0.9, 2}, {8.4, 2.1, -1.4}, {7.4, 3.7, 3},
+                                {3.4, 3.6, 0.75}, {1, 6.5, -2.5}, {5.2, 4, 1.5},    {8.9, 7, -3.1}};
+        for (const Pose2D &p : poses)
+            QTest::addRow("%g, %g, %g", p.x, p.y, p.theta) << p;
+    }
+
+    void findsTheKidnappedRobot() {
+        QFETCH(Pose2D, pose);
+        load(pillars());
+        call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}}); // far away
+        scan(pillars(), pose);
+        const QJsonObject found = call("pose.relocalize");
+        QVERIFY2(isNear(poseOf(found["pose"].toObject()), pose), QJsonDocument(found).toJson());
+        QVERIFY(found["accepted"].toBool() && found["applied"].toBool());
+        QVERIFY(found["reliability"].toDouble() > 0.5);
+        QVERIFY(found["candidates"].toArray().size() >= 1);
+        for (const char *member : {"ambiguity", "discrepancy", "matched_share", "score", "ms"})
+            QVERIFY2(found[member].isDouble(), member);
+        QJsonObject next;
+        client_->subscribe("pose", {}, [&](const TopicUpdate &update) { next = update.json().toObject(); });
+        QTRY_VERIFY(matcher->hasSubscribers("pose"));
+        const Pose2D then{pose.x + 0.05, pose.y, pose.theta + 0.02};
+        scan(pillars(), then);
+        QTRY_COMPARE(next["scan"].toInt(), 2);
+        QVERIFY2(isNear(poseOf(next), then), QJsonDocument(next).toJson());
+        QCOMPARE(next["outcome"].toString(), QString("matched"));
+        QCOMPARE(healthItem("tracking")["level"].toString(), QString("ok"));
+    }
+
+    void onlyTellsWhereItIs() {
+        load(pillars());
+        call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
+        scan(pillars(), {1, 0.9, 0});
+        const QJsonObject found = call("pose.relocalize", {{"apply", false}});
+        QVERIFY(isNear(poseOf(found["pose"].toObject()), {1, 0.9, 0}));
+        QVERIFY(!found["applied"].toBool(true));
+        scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(call("matcher.state")["lost"].toInt(), 2);
+    }
+
+    void refusesWhatFitsInSeveralPlaces() {
+        load(square());
+        const Pose2D truth{1, 0.5, 0.3};
+        scan(square(), truth);
+        const Error error = failure("pose.relocalize", {});
+        QVERIFY(error.is(ErrorCode::NotReady));
+        QVERIFY2(error.message.contains("4 places"), qPrintable(error.message));
+        const QJsonObject data = error.data.toObject();
+        QCOMPARE(data["outcome"].toString(), QString("ambiguous"));
+        for (int quarter = 0; quarter < 4; ++quarter) { // the room looks the same after every quarter turn
+            const Pose2D place = (vectorlib::Transformation2D(0, 0, quarter * vectorlib::pi / 2) *
+                                  vectorlib::Transformation2D(truth))
+                                     .pose();
+            int matches = 0;
+            for (const QJsonValue &c : data["candidates"].toArray())
+                matches += isNear(poseOf(c.toObject()["pose"].toObject()), place);
+            QCOMPARE(matches, 1);
+        }
+        // A person chooses.
+        call("pose.set", {{"x", truth.x}, {"y", truth.y}, {"theta", truth.theta}});
+        scan(square(), truth);
+        QCOMPARE(healthItem("tracking")["values"].toObject()["lost_in_a_row"].toInt(), 0);
+    }
+
+    void refusesWhatFitsNowhere() {
+        load(pillars());
+        scan({{{-1, -2}, {5, -1}}, {{5, -1}, {2, 7}}, {{2, 7}, {-1, -2}}}, {2, 1, 0}); // three walls aslant
+        const Error error = failure("pose.relocalize", {});
+        QVERIFY(error.is(ErrorCode::NotReady));
+        QCOMPARE(error.data.toObject()["outcome"].toString(), QString("nowhere"));
+    }
+
+    void saysThatThereIsNoScanOrMap() {
+        const Error noScan = failure("pose.relocalize", {});
+        QVERIFY(noScan.is(ErrorCode::NotReady));
+        QCOMPARE(noScan.data.toObject()["outcome"].toString(), QString("no_scan"));
+        scan(square(), {});
+        const Error noMap = failure("pose.relocalize", {});
+        QVERIFY(noMap.is(ErrorCode::NotReady));
+        QCOMPARE(noMap.data.toObject()["outcome"].toString(), QString("no_map"));
+        QVERIFY2(noMap.message.contains("map is empty"), qPrintable(noMap.message));
+    }
+
+    void saysThatTheScanShowsTooLittle() {
+        load(pillars());
+        scan({{{-2, -1}, {2, -1}}}, {});
+        QCOMPARE(failure("pose.relocalize", {}).data.toObject()["outcome"].toString(), QString("too_little"));
+    }
+
+    void recoversByItselfAfterLostScans() {
+        load(pillars());
+        set("relocalize_after", 4);
+        call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
+        for (int i = 0; i < 6; ++i)
+            scan(pillars(), {1 + 0.02 * i, 0.9, 0});
+        const QJsonObject state = call("matcher.state");
+        QCOMPARE(state["lost"].toInt(), 4);
+        QCOMPARE(state["matched"].toInt(), 2);
+        QCOMPARE(state["recoveries"].toInt(), 1);
+        QCOMPARE(state["recovered"].toInt(), 1);
+        const auto log = client_->callAndWait("log.tail");
+        QVERIFY(log.ok());
+        const QByteArray text = QJsonDocument(QJsonArray{*log}).toJson();
+        QVERIFY2(text.contains("found in the whole map after 4 lost scans"), text);
+    }
+
+    void triesSeldomWhereItCannotRecover() {
+        load(square());
+        set("relocalize_after", 1);
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0.8}});
+        QElapsedTimer time;
+        time.start();
+        for (int i = 0; i < 20; ++i)
+            scan(square(), {2, -1.5, 0});
+        QCOMPARE(call("matcher.state")["lost"].toInt(), 20);
+        const int tried = call("matcher.state")["recoveries"].toInt();
+        QVERIFY2(tried >= 1 && tried <= 1 + time.elapsed() / 1000, qPrintable(QString::number(tried)));
+        const QJsonObject tracking = healthItem("tracking");
+        QCOMPARE(tracking["level"].toString(), QString("error"));
+        QVERIFY2(tracking["message"].toString().contains("4 places"),
+                 qPrintable(tracking["message"].toString()));
+    }
+
+    void neverTriesWhereItIsSwitchedOff() {
+        load(pillars());
+        call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
+        for (int i = 0; i < 12; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(lost(), 12);
+        QCOMPARE(call("matcher.state")["recoveries"].toInt(), 0);
+    }
+
+    void theMapMayGrowOnlyBeforeItHoldsTheScan() {
+        load(pillars());
+        call("matcher.start", {{"mode", "mapping"}});
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        set("relocalize_after", 2);
+        call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
+        for (int i = 0; i < 3; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(call("matcher.state")["matched"].toInt(), 1);
+        QCOMPARE(call("matcher.state")["recovered"].toInt(), 1);
+        set("relocalize_after", 3); // too late: the third lost scan is in the map
+        call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
+        for (int i = 0; i < 3; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(call("matcher.state")["lost"].toInt(), 2 + 3);
+        QCOMPARE(call("matcher.state")["recoveries"].toInt(), 1);
+    }
+
+    void largeMapTakesNoLongerThanPermitted() {
+        load(building());
+        qInfo("%zu edges", building().size());
+        set("relocalize_s", std::min(3 * slowness, 20)); // 3 is the default, 20 the most
+        scan(building(), {23.4, 21.6, 0.75});
+        const QJsonObject found = call("pose.relocalize");
+        QVERIFY2(isNear(poseOf(found["pose"].toObject()), {23.4, 21.6, 0.75}), QJsonDocument(found).toJson());
+        qInfo("%d parts, %.0f ms", found["parts"].toInt(), found["ms"].toDouble());
+        set("relocalize_s", 0.01);
+        Segments town; // of which not even the index is made in that time
+        for (int house = 0; house < 100; ++house)
+            for (const auto &wall : building()) {
+                const Point at(60.0 * (house % 10), 50.0 * (house / 10));
+                town.emplace_back(wall.begin() + at, wall.end() + at);
+            }
+        load(town);
+        scan(building(), {23.4, 21.6, 0.75});
+        const Error error = failure("pose.relocalize", {});
+        QCOMPARE(error.data.toObject()["outcome"].toString(), QString("unfinished"));
+        QVERIFY(error.data.toObject()["searched"].toInt() < error.data.toObject()["parts"].toInt());
+    }
 
 private:
-    void load(const Segments &walls);
-    void scan(const Segments &walls, const Pose2D &pose);
+    void load(const Segments &walls) {
+        std::vector<vectorlib::MapEdge> map;
+        for (const auto &wall : walls)
+            map.emplace_back(int64_t(map.size()), edgeOf(wall), 10);
+        std::ofstream file(folder->filePath("map.csv").toStdString());
+        vectorlib::writeMapCsv(file, map);
+        file.close();
+        QCOMPARE(call("map.load", {{"path", "map.csv"}})["segments"].toInt(), int(walls.size()));
+        loaded = scans;
+    }
+
+    void scan(const Segments &walls, const Pose2D &pose) {
+        std::vector<vectorlib::LineSegment2D<float>> world;
+        for (const auto &wall : walls)
+            world.emplace_back(vectorlib::Vector2D<float>(wall.begin()),
+                               vectorlib::Vector2D<float>(wall.end()));
+        QJsonArray x, y;
+        for (const auto &point : scanner(world, pose)) {
+            x.append(double(point.x));
+            y.append(double(point.y));
+        }
+        const double stamp = 0.1 * ++scans;
+        source->publish("scan2d", QJsonObject{{"stamp", stamp}, {"turn", scans}, {"x", x}, {"y", y}}, stamp);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), scans - loaded);
+    }
+
     void set(const QString &name, const QJsonValue &value) {
         QVERIFY(!call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{name, value}}}}}})
                      .contains("failed"));
@@ -99,214 +294,6 @@ private:
     vectorlib::SimulatedScanner<float> scanner;
     int scans = 0, loaded = 0;
 };
-
-void TestRelocalization::init() {
-    setUp();
-    call("matcher.start", {{"mode", "localization"}});
-    QTRY_VERIFY(source->hasSubscribers("scan2d"));
-    set("relocalize_after", 0);
-    scanner = vectorlib::SimulatedScanner<float>(7);
-    scanner.rays = 1000;
-    scans = loaded = 0;
-}
-
-void TestRelocalization::load(const Segments &walls) {
-    std::vector<vectorlib::MapEdge> map;
-    for (const auto &wall : walls)
-        map.emplace_back(int64_t(map.size()), edgeOf(wall), 10);
-    std::ofstream file(folder->filePath("map.csv").toStdString());
-    vectorlib::writeMapCsv(file, map);
-    file.close();
-    QCOMPARE(call("map.load", {{"path", "map.csv"}})["segments"].toInt(), int(walls.size()));
-    loaded = scans;
-}
-
-void TestRelocalization::scan(const Segments &walls, const Pose2D &pose) {
-    std::vector<vectorlib::LineSegment2D<float>> world;
-    for (const auto &wall : walls)
-        world.emplace_back(vectorlib::Vector2D<float>(wall.begin()), vectorlib::Vector2D<float>(wall.end()));
-    QJsonArray x, y;
-    for (const auto &point : scanner(world, pose)) {
-        x.append(double(point.x));
-        y.append(double(point.y));
-    }
-    const double stamp = 0.1 * ++scans;
-    source->publish("scan2d", QJsonObject{{"stamp", stamp}, {"turn", scans}, {"x", x}, {"y", y}}, stamp);
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), scans - loaded);
-}
-
-void TestRelocalization::findsTheKidnappedRobot_data() {
-    QTest::addColumn<Pose2D>("pose");
-    const Pose2D poses[] = {{1, 0.9, 0},      {4.35, 0.9, 2}, {8.4, 2.1, -1.4}, {7.4, 3.7, 3},
-                            {3.4, 3.6, 0.75}, {1, 6.5, -2.5}, {5.2, 4, 1.5},    {8.9, 7, -3.1}};
-    for (const Pose2D &p : poses)
-        QTest::addRow("%g, %g, %g", p.x, p.y, p.theta) << p;
-}
-
-void TestRelocalization::findsTheKidnappedRobot() {
-    QFETCH(Pose2D, pose);
-    load(pillars());
-    call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}}); // far away
-    scan(pillars(), pose);
-    const QJsonObject found = call("pose.relocalize");
-    QVERIFY2(isNear(poseOf(found["pose"].toObject()), pose), QJsonDocument(found).toJson());
-    QVERIFY(found["accepted"].toBool() && found["applied"].toBool());
-    QVERIFY(found["reliability"].toDouble() > 0.5);
-    QVERIFY(found["candidates"].toArray().size() >= 1);
-    for (const char *member : {"ambiguity", "discrepancy", "matched_share", "score", "ms"})
-        QVERIFY2(found[member].isDouble(), member);
-    QJsonObject next;
-    client_->subscribe("pose", {}, [&](const TopicUpdate &update) { next = update.json().toObject(); });
-    QTRY_VERIFY(matcher->hasSubscribers("pose"));
-    const Pose2D then{pose.x + 0.05, pose.y, pose.theta + 0.02};
-    scan(pillars(), then);
-    QTRY_COMPARE(next["scan"].toInt(), 2);
-    QVERIFY2(isNear(poseOf(next), then), QJsonDocument(next).toJson());
-    QCOMPARE(next["outcome"].toString(), QString("matched"));
-    QCOMPARE(healthItem("tracking")["level"].toString(), QString("ok"));
-}
-
-void TestRelocalization::onlyTellsWhereItIs() {
-    load(pillars());
-    call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-    scan(pillars(), {1, 0.9, 0});
-    const QJsonObject found = call("pose.relocalize", {{"apply", false}});
-    QVERIFY(isNear(poseOf(found["pose"].toObject()), {1, 0.9, 0}));
-    QVERIFY(!found["applied"].toBool(true));
-    scan(pillars(), {1, 0.9, 0});
-    QCOMPARE(call("matcher.state")["lost"].toInt(), 2);
-}
-
-void TestRelocalization::refusesWhatFitsInSeveralPlaces() {
-    load(square());
-    const Pose2D truth{1, 0.5, 0.3};
-    scan(square(), truth);
-    const Error error = failure("pose.relocalize", {});
-    QVERIFY(error.is(ErrorCode::NotReady));
-    QVERIFY2(error.message.contains("4 places"), qPrintable(error.message));
-    const QJsonObject data = error.data.toObject();
-    QCOMPARE(data["outcome"].toString(), QString("ambiguous"));
-    for (int quarter = 0; quarter < 4; ++quarter) { // the room looks the same after every quarter turn
-        const Pose2D place = (vectorlib::Transformation2D(0, 0, quarter * vectorlib::pi / 2) *
-                              vectorlib::Transformation2D(truth))
-                                 .pose();
-        int matches = 0;
-        for (const QJsonValue &c : data["candidates"].toArray())
-            matches += isNear(poseOf(c.toObject()["pose"].toObject()), place);
-        QCOMPARE(matches, 1);
-    }
-    // A person chooses.
-    call("pose.set", {{"x", truth.x}, {"y", truth.y}, {"theta", truth.theta}});
-    scan(square(), truth);
-    QCOMPARE(healthItem("tracking")["values"].toObject()["lost_in_a_row"].toInt(), 0);
-}
-
-void TestRelocalization::refusesWhatFitsNowhere() {
-    load(pillars());
-    scan({{{-1, -2}, {5, -1}}, {{5, -1}, {2, 7}}, {{2, 7}, {-1, -2}}}, {2, 1, 0}); // three walls aslant
-    const Error error = failure("pose.relocalize", {});
-    QVERIFY(error.is(ErrorCode::NotReady));
-    QCOMPARE(error.data.toObject()["outcome"].toString(), QString("nowhere"));
-}
-
-void TestRelocalization::saysThatThereIsNoScanOrMap() {
-    const Error noScan = failure("pose.relocalize", {});
-    QVERIFY(noScan.is(ErrorCode::NotReady));
-    QCOMPARE(noScan.data.toObject()["outcome"].toString(), QString("no_scan"));
-    scan(square(), {});
-    const Error noMap = failure("pose.relocalize", {});
-    QVERIFY(noMap.is(ErrorCode::NotReady));
-    QCOMPARE(noMap.data.toObject()["outcome"].toString(), QString("no_map"));
-    QVERIFY2(noMap.message.contains("map is empty"), qPrintable(noMap.message));
-}
-
-void TestRelocalization::saysThatTheScanShowsTooLittle() {
-    load(pillars());
-    scan({{{-2, -1}, {2, -1}}}, {});
-    QCOMPARE(failure("pose.relocalize", {}).data.toObject()["outcome"].toString(), QString("too_little"));
-}
-
-void TestRelocalization::recoversByItselfAfterLostScans() {
-    load(pillars());
-    set("relocalize_after", 4);
-    call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-    for (int i = 0; i < 6; ++i)
-        scan(pillars(), {1 + 0.02 * i, 0.9, 0});
-    const QJsonObject state = call("matcher.state");
-    QCOMPARE(state["lost"].toInt(), 4);
-    QCOMPARE(state["matched"].toInt(), 2);
-    QCOMPARE(state["recoveries"].toInt(), 1);
-    QCOMPARE(state["recovered"].toInt(), 1);
-    const auto log = client_->callAndWait("log.tail");
-    QVERIFY(log.ok());
-    const QByteArray text = QJsonDocument(QJsonArray{*log}).toJson();
-    QVERIFY2(text.contains("found in the whole map after 4 lost scans"), text);
-}
-
-void TestRelocalization::triesSeldomWhereItCannotRecover() {
-    load(square());
-    set("relocalize_after", 1);
-    call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0.8}});
-    QElapsedTimer time;
-    time.start();
-    for (int i = 0; i < 20; ++i)
-        scan(square(), {2, -1.5, 0});
-    QCOMPARE(call("matcher.state")["lost"].toInt(), 20);
-    const int tried = call("matcher.state")["recoveries"].toInt();
-    QVERIFY2(tried >= 1 && tried <= 1 + time.elapsed() / 1000, qPrintable(QString::number(tried)));
-    const QJsonObject tracking = healthItem("tracking");
-    QCOMPARE(tracking["level"].toString(), QString("error"));
-    QVERIFY2(tracking["message"].toString().contains("4 places"), qPrintable(tracking["message"].toString()));
-}
-
-void TestRelocalization::neverTriesWhereItIsSwitchedOff() {
-    load(pillars());
-    call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-    for (int i = 0; i < 12; ++i)
-        scan(pillars(), {1, 0.9, 0});
-    QCOMPARE(lost(), 12);
-    QCOMPARE(call("matcher.state")["recoveries"].toInt(), 0);
-}
-
-void TestRelocalization::theMapMayGrowOnlyBeforeItHoldsTheScan() {
-    load(pillars());
-    call("matcher.start", {{"mode", "mapping"}});
-    QTRY_VERIFY(source->hasSubscribers("scan2d"));
-    set("relocalize_after", 2);
-    call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-    for (int i = 0; i < 3; ++i)
-        scan(pillars(), {1, 0.9, 0});
-    QCOMPARE(call("matcher.state")["matched"].toInt(), 1);
-    QCOMPARE(call("matcher.state")["recovered"].toInt(), 1);
-    set("relocalize_after", 3); // too late: the third lost scan is in the map
-    call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-    for (int i = 0; i < 3; ++i)
-        scan(pillars(), {1, 0.9, 0});
-    QCOMPARE(call("matcher.state")["lost"].toInt(), 2 + 3);
-    QCOMPARE(call("matcher.state")["recoveries"].toInt(), 1);
-}
-
-void TestRelocalization::largeMapTakesNoLongerThanPermitted() {
-    load(building());
-    qInfo("%zu edges", building().size());
-    set("relocalize_s", std::min(3 * slowness, 20)); // 3 is the default, 20 the most
-    scan(building(), {23.4, 21.6, 0.75});
-    const QJsonObject found = call("pose.relocalize");
-    QVERIFY2(isNear(poseOf(found["pose"].toObject()), {23.4, 21.6, 0.75}), QJsonDocument(found).toJson());
-    qInfo("%d parts, %.0f ms", found["parts"].toInt(), found["ms"].toDouble());
-    set("relocalize_s", 0.01);
-    Segments town; // of which not even the index is made in that time
-    for (int house = 0; house < 100; ++house)
-        for (const auto &wall : building()) {
-            const Point at(60.0 * (house % 10), 50.0 * (house / 10));
-            town.emplace_back(wall.begin() + at, wall.end() + at);
-        }
-    load(town);
-    scan(building(), {23.4, 21.6, 0.75});
-    const Error error = failure("pose.relocalize", {});
-    QCOMPARE(error.data.toObject()["outcome"].toString(), QString("unfinished"));
-    QVERIFY(error.data.toObject()["searched"].toInt() < error.data.toObject()["parts"].toInt());
-}
 
 QTEST_GUILESS_MAIN(TestRelocalization)
 #include "TestRelocalization.moc"

@@ -115,43 +115,39 @@ private:
 class TestRoboClawNoise : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void tenMinutesOfFlippedBytes();
-    void aCleanLineLosesNothing();
-    void trafficNeedsNoMoreMemory();
+    void tenMinutesOfFlippedBytes() {
+        NoisyDrive drive(1e-3);
+        drive.run(600, true);
+        QVERIFY(drive.flipped > 500);
+        QCOMPARE(drive.wrong, 0);
+        QVERIFY2(drive.longestStall < 0.25, qPrintable(QString::number(drive.longestStall)));
+        std::uint64_t counted = 0;
+        for (const std::uint8_t address : {0x80, 0x81}) {
+            const Bus::Counts &counts = drive.bus.counts(address);
+            counted += counts.timeouts + counts.crcErrors + counts.unexpected;
+            QVERIFY2(counts.done > 54000, qPrintable(QString::number(counts.done)));
+        }
+        qInfo("%llu of %llu bytes flipped, %llu failures counted, longest stall %.3f s", drive.flipped + 0ULL,
+              drive.bytes + 0ULL, counted + 0ULL, drive.longestStall);
+        QVERIFY(counted > drive.flipped * 8 / 10 && counted <= drive.flipped * 2);
+    }
+
+    void aCleanLineLosesNothing() {
+        NoisyDrive drive(0);
+        drive.run(60, true);
+        for (const std::uint8_t address : {0x80, 0x81}) {
+            QCOMPARE(drive.bus.counts(address).failed, std::uint64_t(0));
+            QCOMPARE(drive.bus.counts(address).retries, std::uint64_t(0));
+        }
+        QVERIFY(drive.longestStall < 0.0211);
+    }
+
+    void trafficNeedsNoMoreMemory() {
+        NoisyDrive drive(1e-3);
+        verifyTrafficNeedsNoMoreMemory([&](double seconds) { drive.run(seconds, false); },
+                                       [&] { return drive.bytes; });
+    }
 };
-
-void TestRoboClawNoise::tenMinutesOfFlippedBytes() {
-    NoisyDrive drive(1e-3);
-    drive.run(600, true);
-    QVERIFY(drive.flipped > 500);
-    QCOMPARE(drive.wrong, 0);
-    QVERIFY2(drive.longestStall < 0.25, qPrintable(QString::number(drive.longestStall)));
-    std::uint64_t counted = 0;
-    for (const std::uint8_t address : {0x80, 0x81}) {
-        const Bus::Counts &counts = drive.bus.counts(address);
-        counted += counts.timeouts + counts.crcErrors + counts.unexpected;
-        QVERIFY2(counts.done > 54000, qPrintable(QString::number(counts.done)));
-    }
-    qInfo("%llu of %llu bytes flipped, %llu failures counted, longest stall %.3f s", drive.flipped + 0ULL,
-          drive.bytes + 0ULL, counted + 0ULL, drive.longestStall);
-    QVERIFY(counted > drive.flipped * 8 / 10 && counted <= drive.flipped * 2);
-}
-
-void TestRoboClawNoise::aCleanLineLosesNothing() {
-    NoisyDrive drive(0);
-    drive.run(60, true);
-    for (const std::uint8_t address : {0x80, 0x81}) {
-        QCOMPARE(drive.bus.counts(address).failed, std::uint64_t(0));
-        QCOMPARE(drive.bus.counts(address).retries, std::uint64_t(0));
-    }
-    QVERIFY(drive.longestStall < 0.0211);
-}
-
-void TestRoboClawNoise::trafficNeedsNoMoreMemory() {
-    NoisyDrive drive(1e-3);
-    verifyTrafficNeedsNoMoreMemory([&](double seconds) { drive.run(seconds, false); },
-                                   [&] { return drive.bytes; });
-}
 
 QTEST_GUILESS_MAIN(TestRoboClawNoise)
 #include "TestRoboClawNoise.moc"

@@ -13,385 +13,364 @@ class TestScanMatcher : public QObject, MatcherFixture {
 private Q_SLOTS:
     void init() { setUp(); }
     void cleanup() { tearDown(); }
-    void tracksAndMaps();
-    void savedMapLoadsTheSame();
-    void refusesToOverwriteAndNamesThePath();
-    void fullDiskLeavesNoFile();
-    void loadOfABadFileNamesTheLine();
-    void localizationLeavesTheMapAlone();
-    void refusedScansAreCountedAndShown();
-    void aWrongSourceIsNamed();
-    void lossOfTheSourceIsShownAndMended();
-    void matchesTwoScans();
-    void undoBringsTheMapBack();
-    void mapsAreListed();
-    void aLoadedMapGrowsNoGhost();
-    void aReplayLeavesTheLiveMapAlone_data();
-    void aReplayLeavesTheLiveMapAlone();
-    void mappingBegunDuringAReplay();
-    void aReplayThatIsSoughtGrowsNoGhost();
-    void mapTopicBeginsWithTheFullMap();
-    void queueDropsItsOldestAndCounts();
 
-private:
-    void drive(int from, int to);
-};
-
-void TestScanMatcher::drive(int from, int to) {
-    for (int i = from; i < to; ++i)
-        source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
-}
-
-void TestScanMatcher::tracksAndMaps() {
-    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
-    QJsonObject last;
-    client_->subscribe("pose", {{"queue", 100}},
-                       [&](const TopicUpdate &update) { last = update.json().toObject(); });
-    QTRY_VERIFY(matcher->hasSubscribers("pose"));
-    drive(0, 40);
-    QTRY_COMPARE(last["scan"].toInt(), 39);
-    const vectorlib::Pose2D truth = onTheWay(39);
-    QVERIFY(std::hypot(last["x"].toDouble() - truth.x, last["y"].toDouble() - truth.y) < 0.01);
-    QVERIFY(std::abs(last["theta"].toDouble() - truth.theta) < 0.005);
-    QCOMPARE(last["outcome"].toString(), QString("matched"));
-    QCOMPARE(last["covariance"].toArray().size(), 9);
-    QVERIFY(std::abs(last["twist"].toObject()["omega"].toDouble() - 0.3) < 0.05);
-    const QJsonObject state = call("matcher.state");
-    QCOMPARE(state["matched"].toInt(), 40);
-    QCOMPARE(state["dropped"].toInt(), 0);
-    QCOMPARE(call("map.get")["edges"].toArray().size(), 6);
-    QCOMPARE(call("daemon.status")["state"].toString(), QString("running"));
-}
-
-void TestScanMatcher::savedMapLoadsTheSame() {
-    drive(0, 10);
-    const QJsonObject saved = call("map.save", {{"path", "room.csv"}});
-    QCOMPARE(saved["path"].toString(), folder->filePath("room.csv"));
-    const QJsonArray before = call("map.get")["edges"].toArray();
-    call("map.clear");
-    QCOMPARE(call("map.get")["size"].toInt(), 0);
-    QCOMPARE(call("map.load", {{"path", "room.csv"}})["segments"].toInt(), before.size());
-    const QJsonArray after = call("map.get")["edges"].toArray();
-    QCOMPARE(after.size(), before.size());
-    for (int i = 0; i < after.size(); ++i)
-        for (const char *member : {"x1", "y1", "x2", "y2", "n", "sigma", "observations"})
-            QCOMPARE(after[i].toObject()[member], before[i].toObject()[member]);
-    for (const char *format : {"svg", "geojson", "dxf"})
-        QVERIFY(
-            call("map.export", {{"format", format}, {"path", QString("room.") + format}})["bytes"].toInt() >
-            300);
-}
-
-void TestScanMatcher::refusesToOverwriteAndNamesThePath() {
-    drive(0, 3);
-    call("map.save", {{"path", "room.csv"}});
-    const Error exists = failure("map.save", {{"path", "room.csv"}});
-    QVERIFY(exists.is(ErrorCode::InputOutput));
-    QCOMPARE(exists.data.toObject()["path"].toString(), folder->filePath("room.csv"));
-    QVERIFY(call("map.save", {{"path", "room.csv"}, {"force", true}}).contains("bytes"));
-    const Error nowhere = failure("map.save", {{"path", "no/such/folder/room.csv"}});
-    QVERIFY(nowhere.is(ErrorCode::InputOutput));
-    QVERIFY(nowhere.data.toObject()["path"].toString().endsWith("no/such/folder/room.csv"));
-    QCOMPARE(QDir(folder->path()).entryList(QDir::Files), QStringList("room.csv"));
-}
-
-void TestScanMatcher::fullDiskLeavesNoFile() {
-    drive(0, 3);
-    std::optional<FileSizeLimit> disk(100);
-    const Error map = failure("map.save", {{"path", "room.csv"}});
-    const auto settings = matcher->settings().save(folder->filePath("settings.json"));
-    disk.reset();
-    QVERIFY2(map.is(ErrorCode::InputOutput), qPrintable(map.message));
-    QVERIFY(!settings.ok());
-    QVERIFY(QDir(folder->path()).entryList(QDir::Files).isEmpty());
-}
-
-void TestScanMatcher::loadOfABadFileNamesTheLine() {
-    drive(0, 3);
-    put(folder->filePath("bad.csv"),
-        "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
-    const Error error = failure("map.load", {{"path", "bad.csv"}});
-    QVERIFY2(error.message.contains("bad.csv:2"), qPrintable(error.message));
-    QVERIFY(call("map.get")["size"].toInt() > 0);                                         // the old map stays
-    QCOMPARE(::mkfifo(QFile::encodeName(folder->filePath("pipe")).constData(), 0600), 0); // nobody writes
-    for (const char *path : {"none.csv", "/dev/zero", ".", "pipe"})
-        QVERIFY2(failure("map.load", {{"path", path}}).is(ErrorCode::InputOutput), path);
-}
-
-void TestScanMatcher::localizationLeavesTheMapAlone() {
-    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
-    drive(0, 10);
-    const int revision = call("map.get")["revision"].toInt();
-    call("matcher.start", {{"mode", "localization"}});
-    QTRY_VERIFY(source->hasSubscribers("scan2d"));
-    drive(10, 20);
-    QCOMPARE(call("map.get")["revision"].toInt(), revision);
-    QCOMPARE(call("matcher.state")["matched"].toInt(), 20);
-    for (const QJsonValue &edge : call("map.get")["edges"].toArray())
-        QVERIFY(edge.toObject()["observations"].toInt() <= 10);
-}
-
-void TestScanMatcher::refusedScansAreCountedAndShown() {
-    source->publish("scan2d", QJsonObject{{"stamp", 1}, {"x", QJsonArray{1}}, {"y", QJsonArray()}}, 1);
-    source->publish("scan2d", "nonsense", 1);
-    QTRY_COMPARE(call("matcher.state")["refused"].toInt(), 2);
-    QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
-    drive(0, 3); // and goes on
-}
-
-void TestScanMatcher::aWrongSourceIsNamed() {
-    drive(0, 3);
-    const auto message = [this] { return healthItem("source")["message"].toString(); };
-    call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scn2d"}}}}}});
-    QTRY_VERIFY2(message().contains("no topic \"scn2d\""), qPrintable(message()));
-    QCOMPARE(healthItem("source")["level"].toString(), QString("error"));
-    call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scan2d"}}}}}});
-    QTRY_VERIFY2(message().startsWith("no scan from"), qPrintable(message())); // after some seconds
-    QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
-    drive(3, 6);
-    QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
-}
-
-void TestScanMatcher::lossOfTheSourceIsShownAndMended() {
-    drive(0, 3);
-    const quint16 port = sourcePort;
-    source->shutDown();
-    source.reset();
-    QTRY_COMPARE(healthItem("source")["level"].toString(), QString("error"));
-    QVERIFY(healthItem("source")["message"].toString().contains(QString::number(port)));
-    startSource(port);
-    QTRY_VERIFY(source->hasSubscribers("scan2d"));
-    drive(3, 6);
-    QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
-}
-
-void TestScanMatcher::matchesTwoScans() {
-    QJsonObject reference = roomScan({0, 0, 0}, 0), current = roomScan({0.4, -0.3, 0.2}, 0);
-    const QJsonObject match = call("matcher.match", {{"reference", reference}, {"current", current}});
-    QVERIFY(match["accepted"].toBool());
-    QVERIFY(std::abs(match["x"].toDouble() - 0.4) < 0.01 && std::abs(match["y"].toDouble() + 0.3) < 0.01);
-    QVERIFY(std::abs(match["theta"].toDouble() - 0.2) < 0.005);
-    QVERIFY(match["reliability"].toDouble() > 0.9);
-    current["y"] = QJsonArray{1};
-    const Error error = failure("matcher.match", {{"reference", reference}, {"current", current}});
-    QVERIFY(error.is(ErrorCode::InvalidParams));
-    QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
-}
-
-void TestScanMatcher::undoBringsTheMapBack() {
-    QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
-    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
-    drive(0, 10);
-    const QJsonArray before = call("map.get")["edges"].toArray();
-    QVERIFY(!before.isEmpty());
-    call("map.clear");
-    call("map.clear"); // an empty map replaces nothing
-    QCOMPARE(call("map.undo")["segments"].toInt(), before.size());
-    const QJsonArray back = call("map.get")["edges"].toArray();
-    QCOMPARE(back.size(), before.size());
-    for (int i = 0; i < back.size(); ++i)
-        for (const char *member : {"x1", "y1", "x2", "y2", "n", "observations"})
-            QCOMPARE(back[i].toObject()[member], before[i].toObject()[member]);
-    QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
-    QVERIFY(failure("map.load", {{"path", "none.csv"}}).is(ErrorCode::InputOutput)); // replaces nothing
-    QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
-    drive(0, 10); // it is found in it, and the map stays the same room
-    QCOMPARE(call("map.get")["size"].toInt(), before.size());
-}
-
-void TestScanMatcher::mapsAreListed() {
-    QCOMPARE(call("map.list")["maps"].toArray().size(), 0);
-    drive(0, 3);
-    call("map.save", {{"path", "first.csv"}});
-    call("map.export", {{"path", "no map.svg"}, {"format", "svg"}});
-    QVERIFY(QDir(folder->path()).mkdir("below"));
-    QTest::qWait(20); // it is newer
-    call("map.save", {{"path", "below/second.csv"}});
-    QVERIFY(QFile::link("/etc/hostname", folder->filePath("elsewhere.csv")));
-    const QJsonArray maps = call("map.list")["maps"].toArray();
-    QCOMPARE(maps.size(), 2);
-    QCOMPARE(maps[0]["path"].toString(), QString("below/second.csv"));
-    QCOMPARE(maps[1]["path"].toString(), QString("first.csv"));
-    QVERIFY(maps[1]["bytes"].toInt() > 100 && maps[1]["modified"].toDouble() > 1.7e9);
-    QVERIFY(!maps[1]["journal"].toBool());
-    QVERIFY(call("map.load", {{"path", maps[0]["path"]}})["segments"].toInt() > 0);
-}
-
-// It was saved where the robot was elsewhere: what it sees now belongs on its walls, not across them.
-void TestScanMatcher::aLoadedMapGrowsNoGhost() {
-    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
-    drive(0, 40);
-    call("map.save", {{"path", "room.csv"}});
-    const int walls = call("map.get")["size"].toInt();
-    QCOMPARE(walls, 6);
-    call("map.clear");
-    drive(0, 3); // from a place of its own
-    call("map.load", {{"path", "room.csv"}});
-    drive(0, 1);
-    for (int i = 1; i < 30; ++i)
-        source->publish("scan2d", roomScan(onTheWay(30 + i), 0.1 * (30 + i)), 0.1 * (30 + i));
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 30);
-    QCOMPARE(call("map.get")["size"].toInt(), walls);
-}
-
-void TestScanMatcher::aReplayLeavesTheLiveMapAlone_data() {
-    const Rows<QString> row("mode");
-    row("mapping", "mapping");
-    row("localization", "localization");
-}
-
-void TestScanMatcher::aReplayLeavesTheLiveMapAlone() {
-    QFETCH(QString, mode);
-    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
-    drive(0, 40);
-    const QJsonArray live = call("map.get")["edges"].toArray();
-    QCOMPARE(live.size(), 6);
-    call("matcher.start", {{"mode", mode}});
-    QTRY_VERIFY(source->hasSubscribers("scan2d"));
-    int scans = call("matcher.state")["scans"].toInt();
-    const bool isApart = mode == "mapping";
-    for (int i = 0; i < 20; ++i) { // of long ago
-        QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
-        scan["replayed"] = true;
-        source->publish("scan2d", scan, 0.1 * i);
+    void tracksAndMaps() {
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        QJsonObject last;
+        client_->subscribe("pose", {{"queue", 100}},
+                           [&](const TopicUpdate &update) { last = update.json().toObject(); });
+        QTRY_VERIFY(matcher->hasSubscribers("pose"));
+        drive(0, 40);
+        QTRY_COMPARE(last["scan"].toInt(), 39);
+        const vectorlib::Pose2D truth = onTheWay(39);
+        QVERIFY(std::hypot(last["x"].toDouble() - truth.x, last["y"].toDouble() - truth.y) < 0.01);
+        QVERIFY(std::abs(last["theta"].toDouble() - truth.theta) < 0.005);
+        QCOMPARE(last["outcome"].toString(), QString("matched"));
+        QCOMPARE(last["covariance"].toArray().size(), 9);
+        QVERIFY(std::abs(last["twist"].toObject()["omega"].toDouble() - 0.3) < 0.05);
+        const QJsonObject state = call("matcher.state");
+        QCOMPARE(state["matched"].toInt(), 40);
+        QCOMPARE(state["dropped"].toInt(), 0);
+        QCOMPARE(call("map.get")["edges"].toArray().size(), 6);
+        QCOMPARE(call("daemon.status")["state"].toString(), QString("running"));
     }
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), isApart ? 20 : scans + 20);
-    QTRY_VERIFY2(healthItem("replay")["message"].toString().contains("live map is kept") == isApart,
-                 qPrintable(healthItem("replay")["message"].toString()));
-    QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("warn"));
-    const QJsonArray replayed = call("map.get")["edges"].toArray();
-    QCOMPARE(replayed == live, !isApart);
-    QVERIFY(!replayed.isEmpty());
 
-    scans = isApart ? 0 : call("matcher.state")["scans"].toInt();
-    for (int i = 40; i < 65; ++i) // not as many as before
-        source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), scans + 25);
-    const QJsonArray back = call("map.get")["edges"].toArray();
-    QCOMPARE(back.size(), live.size());
-    for (int i = 0; i < back.size(); ++i)
-        for (const char *end : {"x1", "y1", "x2", "y2"})
-            QVERIFY2(std::abs(back[i][end].toDouble() - live[i][end].toDouble()) < 0.02,
-                     qPrintable(QString("%1 %2: %3 and %4")
-                                    .arg(i)
-                                    .arg(end)
-                                    .arg(back[i][end].toDouble())
-                                    .arg(live[i][end].toDouble())));
-    QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("ok"));
-    QTRY_VERIFY(call("matcher.state")["matched"].toInt() > 10);
-    if (isApart) // what the replay has mapped is not lost
-        QCOMPARE(call("map.undo")["segments"].toInt(), replayed.size());
-}
+    void savedMapLoadsTheSame() {
+        drive(0, 10);
+        const QJsonObject saved = call("map.save", {{"path", "room.csv"}});
+        QCOMPARE(saved["path"].toString(), folder->filePath("room.csv"));
+        const QJsonArray before = call("map.get")["edges"].toArray();
+        call("map.clear");
+        QCOMPARE(call("map.get")["size"].toInt(), 0);
+        QCOMPARE(call("map.load", {{"path", "room.csv"}})["segments"].toInt(), before.size());
+        const QJsonArray after = call("map.get")["edges"].toArray();
+        QCOMPARE(after.size(), before.size());
+        for (int i = 0; i < after.size(); ++i)
+            for (const char *member : {"x1", "y1", "x2", "y2", "n", "sigma", "observations"})
+                QCOMPARE(after[i].toObject()[member], before[i].toObject()[member]);
+        for (const char *format : {"svg", "geojson", "dxf"})
+            QVERIFY(call("map.export", {{"format", format}, {"path", QString("room.") + format}})["bytes"]
+                        .toInt() > 300);
+    }
 
-void TestScanMatcher::mappingBegunDuringAReplay() {
-    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
-    drive(0, 40);
-    const QJsonArray live = call("map.get")["edges"].toArray();
-    const auto replay = [this] {
-        for (int i = 0; i < 20; ++i) {
+    void refusesToOverwriteAndNamesThePath() {
+        drive(0, 3);
+        call("map.save", {{"path", "room.csv"}});
+        const Error exists = failure("map.save", {{"path", "room.csv"}});
+        QVERIFY(exists.is(ErrorCode::InputOutput));
+        QCOMPARE(exists.data.toObject()["path"].toString(), folder->filePath("room.csv"));
+        QVERIFY(call("map.save", {{"path", "room.csv"}, {"force", true}}).contains("bytes"));
+        const Error nowhere = failure("map.save", {{"path", "no/such/folder/room.csv"}});
+        QVERIFY(nowhere.is(ErrorCode::InputOutput));
+        QVERIFY(nowhere.data.toObject()["path"].toString().endsWith("no/such/folder/room.csv"));
+        QCOMPARE(QDir(folder->path()).entryList(QDir::Files), QStringList("room.csv"));
+    }
+
+    void fullDiskLeavesNoFile() {
+        drive(0, 3);
+        std::optional<FileSizeLimit> disk(100);
+        const Error map = failure("map.save", {{"path", "room.csv"}});
+        const auto settings = matcher->settings().save(folder->filePath("settings.json"));
+        disk.reset();
+        QVERIFY2(map.is(ErrorCode::InputOutput), qPrintable(map.message));
+        QVERIFY(!settings.ok());
+        QVERIFY(QDir(folder->path()).entryList(QDir::Files).isEmpty());
+    }
+
+    void loadOfABadFileNamesTheLine() {
+        drive(0, 3);
+        put(folder->filePath("bad.csv"),
+            "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
+        const Error error = failure("map.load", {{"path", "bad.csv"}});
+        QVERIFY2(error.message.contains("bad.csv:2"), qPrintable(error.message));
+        QVERIFY(call("map.get")["size"].toInt() > 0); // the old map stays
+        QCOMPARE(::mkfifo(QFile::encodeName(folder->filePath("pipe")).constData(), 0600), 0); // nobody writes
+        for (const char *path : {"none.csv", "/dev/zero", ".", "pipe"})
+            QVERIFY2(failure("map.load", {{"path", path}}).is(ErrorCode::InputOutput), path);
+    }
+
+    void localizationLeavesTheMapAlone() {
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 10);
+        const int revision = call("map.get")["revision"].toInt();
+        call("matcher.start", {{"mode", "localization"}});
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        drive(10, 20);
+        QCOMPARE(call("map.get")["revision"].toInt(), revision);
+        QCOMPARE(call("matcher.state")["matched"].toInt(), 20);
+        for (const QJsonValue &edge : call("map.get")["edges"].toArray())
+            QVERIFY(edge.toObject()["observations"].toInt() <= 10);
+    }
+
+    void refusedScansAreCountedAndShown() {
+        source->publish("scan2d", QJsonObject{{"stamp", 1}, {"x", QJsonArray{1}}, {"y", QJsonArray()}}, 1);
+        source->publish("scan2d", "nonsense", 1);
+        QTRY_COMPARE(call("matcher.state")["refused"].toInt(), 2);
+        QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
+        drive(0, 3); // and goes on
+    }
+
+    void aWrongSourceIsNamed() {
+        drive(0, 3);
+        const auto message = [this] { return healthItem("source")["message"].toString(); };
+        call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scn2d"}}}}}});
+        QTRY_VERIFY2(message().contains("no topic \"scn2d\""), qPrintable(message()));
+        QCOMPARE(healthItem("source")["level"].toString(), QString("error"));
+        call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scan2d"}}}}}});
+        QTRY_VERIFY2(message().startsWith("no scan from"), qPrintable(message())); // after some seconds
+        QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
+        drive(3, 6);
+        QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
+    }
+
+    void lossOfTheSourceIsShownAndMended() {
+        drive(0, 3);
+        const quint16 port = sourcePort;
+        source->shutDown();
+        source.reset();
+        QTRY_COMPARE(healthItem("source")["level"].toString(), QString("error"));
+        QVERIFY(healthItem("source")["message"].toString().contains(QString::number(port)));
+        startSource(port);
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        drive(3, 6);
+        QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
+    }
+
+    void matchesTwoScans() {
+        QJsonObject reference = roomScan({0, 0, 0}, 0), current = roomScan({0.4, -0.3, 0.2}, 0);
+        const QJsonObject match = call("matcher.match", {{"reference", reference}, {"current", current}});
+        QVERIFY(match["accepted"].toBool());
+        QVERIFY(std::abs(match["x"].toDouble() - 0.4) < 0.01 && std::abs(match["y"].toDouble() + 0.3) < 0.01);
+        QVERIFY(std::abs(match["theta"].toDouble() - 0.2) < 0.005);
+        QVERIFY(match["reliability"].toDouble() > 0.9);
+        current["y"] = QJsonArray{1};
+        const Error error = failure("matcher.match", {{"reference", reference}, {"current", current}});
+        QVERIFY(error.is(ErrorCode::InvalidParams));
+        QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
+    }
+
+    void undoBringsTheMapBack() {
+        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 10);
+        const QJsonArray before = call("map.get")["edges"].toArray();
+        QVERIFY(!before.isEmpty());
+        call("map.clear");
+        call("map.clear"); // an empty map replaces nothing
+        QCOMPARE(call("map.undo")["segments"].toInt(), before.size());
+        const QJsonArray back = call("map.get")["edges"].toArray();
+        QCOMPARE(back.size(), before.size());
+        for (int i = 0; i < back.size(); ++i)
+            for (const char *member : {"x1", "y1", "x2", "y2", "n", "observations"})
+                QCOMPARE(back[i].toObject()[member], before[i].toObject()[member]);
+        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        QVERIFY(failure("map.load", {{"path", "none.csv"}}).is(ErrorCode::InputOutput)); // replaces nothing
+        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        drive(0, 10); // it is found in it, and the map stays the same room
+        QCOMPARE(call("map.get")["size"].toInt(), before.size());
+    }
+
+    void mapsAreListed() {
+        QCOMPARE(call("map.list")["maps"].toArray().size(), 0);
+        drive(0, 3);
+        call("map.save", {{"path", "first.csv"}});
+        call("map.export", {{"path", "no map.svg"}, {"format", "svg"}});
+        QVERIFY(QDir(folder->path()).mkdir("below"));
+        QTest::qWait(20); // it is newer
+        call("map.save", {{"path", "below/second.csv"}});
+        QVERIFY(QFile::link("/etc/hostname", folder->filePath("elsewhere.csv")));
+        const QJsonArray maps = call("map.list")["maps"].toArray();
+        QCOMPARE(maps.size(), 2);
+        QCOMPARE(maps[0]["path"].toString(), QString("below/second.csv"));
+        QCOMPARE(maps[1]["path"].toString(), QString("first.csv"));
+        QVERIFY(maps[1]["bytes"].toInt() > 100 && maps[1]["modified"].toDouble() > 1.7e9);
+        QVERIFY(!maps[1]["journal"].toBool());
+        QVERIFY(call("map.load", {{"path", maps[0]["path"]}})["segments"].toInt() > 0);
+    }
+
+    // It was saved where the robot was elsewhere: what it sees now belongs on its walls, not across them.
+    void aLoadedMapGrowsNoGhost() {
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 40);
+        call("map.save", {{"path", "room.csv"}});
+        const int walls = call("map.get")["size"].toInt();
+        QCOMPARE(walls, 6);
+        call("map.clear");
+        drive(0, 3); // from a place of its own
+        call("map.load", {{"path", "room.csv"}});
+        drive(0, 1);
+        for (int i = 1; i < 30; ++i)
+            source->publish("scan2d", roomScan(onTheWay(30 + i), 0.1 * (30 + i)), 0.1 * (30 + i));
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 30);
+        QCOMPARE(call("map.get")["size"].toInt(), walls);
+    }
+
+    void aReplayLeavesTheLiveMapAlone_data() {
+        const Rows<QString> row("mode");
+        row("mapping", "mapping");
+        row("localization", "localization");
+    }
+
+    void aReplayLeavesTheLiveMapAlone() {
+        QFETCH(QString, mode);
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 40);
+        const QJsonArray live = call("map.get")["edges"].toArray();
+        QCOMPARE(live.size(), 6);
+        call("matcher.start", {{"mode", mode}});
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        int scans = call("matcher.state")["scans"].toInt();
+        const bool isApart = mode == "mapping";
+        for (int i = 0; i < 20; ++i) { // of long ago
             QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
             scan["replayed"] = true;
             source->publish("scan2d", scan, 0.1 * i);
         }
-    };
-    for (const char *mode : {"localization", "mapping"}) {
-        call("matcher.start", {{"mode", mode}});
-        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), isApart ? 20 : scans + 20);
+        QTRY_VERIFY2(healthItem("replay")["message"].toString().contains("live map is kept") == isApart,
+                     qPrintable(healthItem("replay")["message"].toString()));
+        QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("warn"));
+        const QJsonArray replayed = call("map.get")["edges"].toArray();
+        QCOMPARE(replayed == live, !isApart);
+        QVERIFY(!replayed.isEmpty());
+
+        scans = isApart ? 0 : call("matcher.state")["scans"].toInt();
+        for (int i = 40; i < 65; ++i) // not as many as before
+            source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), scans + 25);
+        const QJsonArray back = call("map.get")["edges"].toArray();
+        QCOMPARE(back.size(), live.size());
+        for (int i = 0; i < back.size(); ++i)
+            for (const char *end : {"x1", "y1", "x2", "y2"})
+                QVERIFY2(std::abs(back[i][end].toDouble() - live[i][end].toDouble()) < 0.02,
+                         qPrintable(QString("%1 %2: %3 and %4")
+                                        .arg(i)
+                                        .arg(end)
+                                        .arg(back[i][end].toDouble())
+                                        .arg(live[i][end].toDouble())));
+        QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("ok"));
+        QTRY_VERIFY(call("matcher.state")["matched"].toInt() > 10);
+        if (isApart) // what the replay has mapped is not lost
+            QCOMPARE(call("map.undo")["segments"].toInt(), replayed.size());
+    }
+
+    void mappingBegunDuringAReplay() {
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 40);
+        const QJsonArray live = call("map.get")["edges"].toArray();
+        const auto replay = [this] {
+            for (int i = 0; i < 20; ++i) {
+                QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
+                scan["replayed"] = true;
+                source->publish("scan2d", scan, 0.1 * i);
+            }
+        };
+        for (const char *mode : {"localization", "mapping"}) {
+            call("matcher.start", {{"mode", mode}});
+            QTRY_VERIFY(source->hasSubscribers("scan2d"));
+            replay();
+            QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("warn"));
+        }
+        QTRY_VERIFY(healthItem("replay")["message"].toString().contains("live map is kept"));
+        call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{"sigma_m", 0.02}}}}}});
         replay();
-        QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("warn"));
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 40);
+        QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0); // no drive of it is remembered
+        source->publish("scan2d", roomScan(onTheWay(40), 4), 4);
+        QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("ok"));
+        QTRY_COMPARE(call("map.get")["size"].toInt(), live.size());
     }
-    QTRY_VERIFY(healthItem("replay")["message"].toString().contains("live map is kept"));
-    call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{"sigma_m", 0.02}}}}}});
-    replay();
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 40);
-    QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0); // no drive of it is remembered
-    source->publish("scan2d", roomScan(onTheWay(40), 4), 4);
-    QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("ok"));
-    QTRY_COMPARE(call("map.get")["size"].toInt(), live.size());
-}
 
-// Back to where it was, it is found in its map; where the map has nothing, another one begins.
-void TestScanMatcher::aReplayThatIsSoughtGrowsNoGhost() {
-    drive(0, 10);
-    const auto replay = [this](int i, const vectorlib::Pose2D &pose) {
-        QJsonObject scan = roomScan(pose, 0.1 * i);
-        scan["replayed"] = true;
-        source->publish("scan2d", scan, 0.1 * i);
-    };
-    const auto edges = [this] { return call("map.get")["size"].toInt(); };
-    double gone_m = 0; // from where the replay began
-    client_->subscribe("pose", {{"queue", 100}}, [&](const TopicUpdate &update) {
-        gone_m = std::hypot(update.json()["x"].toDouble(), update.json()["y"].toDouble());
-    });
-    QTRY_VERIFY(matcher->hasSubscribers("pose"));
-    for (int i = 0; i < 60; ++i) {
-        replay(i, onTheWay(i));
-        if (i % 20 == 19) // more would not wait
-            QTRY_COMPARE(call("matcher.state")["scans"].toInt(), i + 1);
+    // Back to where it was, it is found in its map; where the map has nothing, another one begins.
+    void aReplayThatIsSoughtGrowsNoGhost() {
+        drive(0, 10);
+        const auto replay = [this](int i, const vectorlib::Pose2D &pose) {
+            QJsonObject scan = roomScan(pose, 0.1 * i);
+            scan["replayed"] = true;
+            source->publish("scan2d", scan, 0.1 * i);
+        };
+        const auto edges = [this] { return call("map.get")["size"].toInt(); };
+        double gone_m = 0; // from where the replay began
+        client_->subscribe("pose", {{"queue", 100}}, [&](const TopicUpdate &update) {
+            gone_m = std::hypot(update.json()["x"].toDouble(), update.json()["y"].toDouble());
+        });
+        QTRY_VERIFY(matcher->hasSubscribers("pose"));
+        for (int i = 0; i < 60; ++i) {
+            replay(i, onTheWay(i));
+            if (i % 20 == 19) // more would not wait
+                QTRY_COMPARE(call("matcher.state")["scans"].toInt(), i + 1);
+        }
+        QCOMPARE(edges(), 6);
+        QTRY_VERIFY2(std::abs(gone_m - std::hypot(0.05 * 59, 0.02 * 59)) < 0.1,
+                     qPrintable(QString::number(gone_m)));
+        for (int i = 5; i < 15; ++i) // 2.7 m and 1.6 rad from there
+            replay(i, onTheWay(i));
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 70);
+        QTRY_VERIFY2(std::abs(gone_m - std::hypot(0.05 * 14, 0.02 * 14)) < 0.1,
+                     qPrintable(QString::number(gone_m)));
+        QCOMPARE(edges(), 6);
+        // A corner that was never seen: as if the recording had gone on to another room.
+        const auto corner = [this](int i) {
+            QJsonArray x, y;
+            for (int k = 0; k < 400; ++k) {
+                x << (k < 200 ? 1.0 : 1.0 - 0.015 * (k - 200));
+                y << (k < 200 ? -1.5 + 0.015 * k : 1.5);
+            }
+            source->publish(
+                "scan2d",
+                QJsonObject{{"stamp", 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}, {"replayed", true}},
+                0.1 * i);
+        };
+        int next = 300;
+        const auto isMapped = [&] { // whatever was on its way when the new map began
+            corner(next++);
+            return edges() == 2;
+        };
+        QTRY_VERIFY_WITH_TIMEOUT(isMapped(), 20000);
+        QVERIFY(call("matcher.state")["scans"].toInt() < 70);
+        QVERIFY(healthItem("replay")["message"].toString().contains("live map is kept"));
     }
-    QCOMPARE(edges(), 6);
-    QTRY_VERIFY2(std::abs(gone_m - std::hypot(0.05 * 59, 0.02 * 59)) < 0.1,
-                 qPrintable(QString::number(gone_m)));
-    for (int i = 5; i < 15; ++i) // 2.7 m and 1.6 rad from there
-        replay(i, onTheWay(i));
-    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 70);
-    QTRY_VERIFY2(std::abs(gone_m - std::hypot(0.05 * 14, 0.02 * 14)) < 0.1,
-                 qPrintable(QString::number(gone_m)));
-    QCOMPARE(edges(), 6);
-    // A corner that was never seen: as if the recording had gone on to another room.
-    const auto corner = [this](int i) {
-        QJsonArray x, y;
-        for (int k = 0; k < 400; ++k) {
-            x << (k < 200 ? 1.0 : 1.0 - 0.015 * (k - 200));
-            y << (k < 200 ? -1.5 + 0.015 * k : 1.5);
-        }
-        source->publish("scan2d",
-                        QJsonObject{{"stamp", 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}, {"replayed", true}},
-                        0.1 * i);
-    };
-    int next = 300;
-    const auto isMapped = [&] { // whatever was on its way when the new map began
-        corner(next++);
-        return edges() == 2;
-    };
-    QTRY_VERIFY_WITH_TIMEOUT(isMapped(), 20000);
-    QVERIFY(call("matcher.state")["scans"].toInt() < 70);
-    QVERIFY(healthItem("replay")["message"].toString().contains("live map is kept"));
-}
 
-void TestScanMatcher::mapTopicBeginsWithTheFullMap() {
-    drive(0, 5);
-    QVector<QJsonObject> updates;
-    client_->subscribe("map", {{"queue", 100}},
-                       [&](const TopicUpdate &update) { updates.append(update.json().toObject()); });
-    QTRY_COMPARE(updates.size(), 1);
-    QVERIFY(updates[0]["cleared"].toBool());
-    QCOMPARE(updates[0]["edges"].toArray().size(), updates[0]["size"].toInt());
-    drive(5, 6);
-    QTRY_COMPARE(updates.size(), 2);
-    QCOMPARE(updates[1]["revision"].toInt(), updates[0]["revision"].toInt() + 1);
-    QVERIFY(!updates[1]["cleared"].toBool());
-}
+    void mapTopicBeginsWithTheFullMap() {
+        drive(0, 5);
+        QVector<QJsonObject> updates;
+        client_->subscribe("map", {{"queue", 100}},
+                           [&](const TopicUpdate &update) { updates.append(update.json().toObject()); });
+        QTRY_COMPARE(updates.size(), 1);
+        QVERIFY(updates[0]["cleared"].toBool());
+        QCOMPARE(updates[0]["edges"].toArray().size(), updates[0]["size"].toInt());
+        drive(5, 6);
+        QTRY_COMPARE(updates.size(), 2);
+        QCOMPARE(updates[1]["revision"].toInt(), updates[0]["revision"].toInt() + 1);
+        QVERIFY(!updates[1]["cleared"].toBool());
+    }
 
-void TestScanMatcher::queueDropsItsOldestAndCounts() {
-    std::promise<void> release;
-    std::vector<quint64> seen;
-    {
-        Worker worker([&](vectorlib::ScanTracker &, const Scan &scan) { seen.push_back(scan.number); });
-        worker.setQueueLimit(3);
-        worker.post([&](vectorlib::ScanTracker &) { release.get_future().wait(); });
-        for (quint64 i = 0; i < 10; ++i) {
-            Scan scan;
-            scan.number = i;
-            worker.push(scan);
-        }
-        QCOMPARE(worker.dropped(), quint64(7));
-        QCOMPARE(worker.waiting(), size_t(3));
-        release.set_value();
-    } // finishes what waits
-    QCOMPARE(seen, (std::vector<quint64>{7, 8, 9}));
-}
+    void queueDropsItsOldestAndCounts() {
+        std::promise<void> release;
+        std::vector<quint64> seen;
+        {
+            Worker worker([&](vectorlib::ScanTracker &, const Scan &scan) { seen.push_back(scan.number); });
+            worker.setQueueLimit(3);
+            worker.post([&](vectorlib::ScanTracker &) { release.get_future().wait(); });
+            for (quint64 i = 0; i < 10; ++i) {
+                Scan scan;
+                scan.number = i;
+                worker.push(scan);
+            }
+            QCOMPARE(worker.dropped(), quint64(7));
+            QCOMPARE(worker.waiting(), size_t(3));
+            release.set_value();
+        } // finishes what waits
+        QCOMPARE(seen, (std::vector<quint64>{7, 8, 9}));
+    }
+
+private:
+    void drive(int from, int to) {
+        for (int i = from; i < to; ++i)
+            source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
+    }
+};
 
 QTEST_GUILESS_MAIN(TestScanMatcher)
 #include "TestScanMatcher.moc"

@@ -217,69 +217,64 @@ NmeaStream played(const DrawnStream &drawn, bool live) {
 class TestSerialFixStreams : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void everyMomentGivesOneFix_data();
-    void everyMomentGivesOneFix();
+    void everyMomentGivesOneFix_data() {
+        const Rows<unsigned> row("seed");
+        row("the same each time", 1U);
+        row("others each time", std::random_device()());
+    }
+
+    void everyMomentGivesOneFix() {
+        QFETCH(unsigned, seed);
+        for (unsigned i = 0; i < 400; ++i) {
+            check(seed + i);
+            if (QTest::currentTestFailed()) {
+                qInfo("seed %u", seed + i);
+                return;
+            }
+        }
+    }
 
 private:
-    void check(unsigned seed);
-};
-
-void TestSerialFixStreams::everyMomentGivesOneFix_data() {
-    const Rows<unsigned> row("seed");
-    row("the same each time", 1U);
-    row("others each time", std::random_device()());
-}
-
-void TestSerialFixStreams::everyMomentGivesOneFix() {
-    QFETCH(unsigned, seed);
-    for (unsigned i = 0; i < 400; ++i) {
-        check(seed + i);
-        if (QTest::currentTestFailed()) {
-            qInfo("seed %u", seed + i);
-            return;
-        }
-    }
-}
-
-void TestSerialFixStreams::check(unsigned seed) {
-    const DrawnStream drawn(seed);
-    const NmeaStream stream = played(drawn, true);
-    QCOMPARE(played(drawn, false).fixes, stream.fixes); // a recording gives what was shown
-    quint64 lacking = 0;
-    int next = 0;
-    bool dateKnown = false;
-    for (const Moment &moment : drawn.moments) {
-        if (moment.told) {
-            QVERIFY(next < stream.fixes.size());
-            const QJsonObject &fix = stream.fixes[next++];
-            QCOMPARE(fix.value("valid").toBool(), moment.hasFix);
-            QVERIFY(!fix.value("time").isNull() || !dateKnown);
-            if (!fix.value("time").isNull())
-                QVERIFY2(std::abs(fix.value("time").toDouble() - moment.time) < 1e-5,
-                         qPrintable(QString::number(fix.value("time").toDouble() - moment.time)));
-            if (moment.hasFix) {
-                QVERIFY(std::abs(fix.value("lat_deg").toDouble() - moment.latitude / 6e5) < 1e-9);
-                QVERIFY(std::abs(fix.value("lon_deg").toDouble() - moment.longitude / 6e5) < 1e-9);
+    void check(unsigned seed) {
+        const DrawnStream drawn(seed);
+        const NmeaStream stream = played(drawn, true);
+        QCOMPARE(played(drawn, false).fixes, stream.fixes); // a recording gives what was shown
+        quint64 lacking = 0;
+        int next = 0;
+        bool dateKnown = false;
+        for (const Moment &moment : drawn.moments) {
+            if (moment.told) {
+                QVERIFY(next < stream.fixes.size());
+                const QJsonObject &fix = stream.fixes[next++];
+                QCOMPARE(fix.value("valid").toBool(), moment.hasFix);
+                QVERIFY(!fix.value("time").isNull() || !dateKnown);
+                if (!fix.value("time").isNull())
+                    QVERIFY2(std::abs(fix.value("time").toDouble() - moment.time) < 1e-5,
+                             qPrintable(QString::number(fix.value("time").toDouble() - moment.time)));
+                if (moment.hasFix) {
+                    QVERIFY(std::abs(fix.value("lat_deg").toDouble() - moment.latitude / 6e5) < 1e-9);
+                    QVERIFY(std::abs(fix.value("lon_deg").toDouble() - moment.longitude / 6e5) < 1e-9);
+                }
+                lacking += moment.motion && fix.value("speed").isNull();
+                lacking += moment.height && fix.value("alt").isNull();
+                if (!fix.value("speed").isNull())
+                    QVERIFY(std::abs(fix.value("speed").toDouble() - moment.speed / 10.0 * knot) < 1e-9);
+                if (!fix.value("alt").isNull())
+                    QVERIFY(std::abs(fix.value("alt").toDouble() - moment.altitude / 10.0) < 1e-9);
             }
-            lacking += moment.motion && fix.value("speed").isNull();
-            lacking += moment.height && fix.value("alt").isNull();
-            if (!fix.value("speed").isNull())
-                QVERIFY(std::abs(fix.value("speed").toDouble() - moment.speed / 10.0 * knot) < 1e-9);
-            if (!fix.value("alt").isNull())
-                QVERIFY(std::abs(fix.value("alt").toDouble() - moment.altitude / 10.0) < 1e-9);
+            dateKnown = dateKnown || moment.date;
         }
-        dateKnown = dateKnown || moment.date;
+        QCOMPARE(stream.fixes.size(), next);
+        const FixTracker::Counts &counts = stream.tracker.counts();
+        QVERIFY(lacking <= counts.late);
+        QVERIFY(!drawn.isLossless() || lacking == 0);
+        QCOMPARE(int(counts.badFields), drawn.wrong);
+        const nmea::SentenceParser::Counts &sentences = stream.tracker.sentences();
+        QCOMPARE(int(sentences.sentences), drawn.whole);
+        QVERIFY(int(sentences.badChecksum + sentences.noChecksum + sentences.tooLong + sentences.badByte +
+                    sentences.cutShort) >= drawn.damaged);
     }
-    QCOMPARE(stream.fixes.size(), next);
-    const FixTracker::Counts &counts = stream.tracker.counts();
-    QVERIFY(lacking <= counts.late);
-    QVERIFY(!drawn.isLossless() || lacking == 0);
-    QCOMPARE(int(counts.badFields), drawn.wrong);
-    const nmea::SentenceParser::Counts &sentences = stream.tracker.sentences();
-    QCOMPARE(int(sentences.sentences), drawn.whole);
-    QVERIFY(int(sentences.badChecksum + sentences.noChecksum + sentences.tooLong + sentences.badByte +
-                sentences.cutShort) >= drawn.damaged);
-}
+};
 
 QTEST_APPLESS_MAIN(TestSerialFixStreams)
 #include "TestSerialFixStreams.moc"

@@ -41,104 +41,96 @@ extern "C" int ioctl(int descriptor, unsigned long request, ...) noexcept {
 class TestTriggerSerial : public QObject, TriggerFixture {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void cleanup();
-    void bytesOnASerialLine();
-    void pulseOfASerialLine();
-    void pulseWithoutTheLine();
+    void init() {
+        signalChanges.clear();
+        hasSignals = true;
+        setUp();
+    }
+
+    void cleanup() {
+        tearDown();
+        for (int *end : {&farEnd_, &nearEnd_}) {
+            if (*end >= 0)
+                ::close(*end);
+            *end = -1;
+        }
+    }
+
+    void bytesOnASerialLine() {
+        const QString url = openTerminal();
+        define("text", byCommand(), {QJsonObject{{"do", "serial"}, {"url", url}, {"text", "Grüße\r\n"}}});
+        define("hex", byCommand(), {QJsonObject{{"do", "serial"}, {"url", url}, {"hex", "00ff1103"}}});
+        QTRY_VERIFY(healthItem("serial_lines")["level"] == "ok");
+        QVERIFY2(fire("text")["ok"].toBool(), qPrintable(healthItem("actions")["message"].toString()));
+        QVERIFY(fire("hex")["ok"].toBool());
+        QByteArray received;
+        const QByteArray expected = QByteArray("Grüße\r\n") + QByteArray::fromHex("00ff1103");
+        const auto read = [&] {
+            char buffer[64];
+            const ssize_t size = ::read(farEnd_, buffer, sizeof buffer);
+            received.append(buffer, int(std::max<ssize_t>(size, 0)));
+            return received.size() >= expected.size();
+        };
+        QTRY_VERIFY(read());
+        QCOMPARE(received, expected);
+        define("nowhere", byCommand(),
+               {QJsonObject{{"do", "serial"}, {"url", "serial:///dev/no-such-line"}, {"text", "a"}}});
+        const QJsonValue result = fire("nowhere")["results"].toArray().at(0);
+        QVERIFY(result["error"]["message"].toString().contains("no-such-line"));
+        QVERIFY(healthItem("serial_lines")["message"].toString().contains("no-such-line"));
+    }
+
+    void pulseOfASerialLine() {
+        const QString url = openTerminal();
+        const QJsonObject pulse{{"do", "pulse"}, {"url", url}, {"line", "rts"}, {"length_s", 0.1}};
+        define("t", byCommand(), {pulse});
+        QTRY_COMPARE(signalChanges.size(), size_t(1)); // low from the opening on
+        QCOMPARE(signalChanges[0].bit, TIOCM_RTS);
+        QCOMPARE(signalChanges[0].on, false);
+        const QJsonValue firing = fire("t");
+        QVERIFY(firing["ok"].toBool());
+        QCOMPARE(signalChanges.size(), size_t(3));
+        QVERIFY(signalChanges[1].on && !signalChanges[2].on);
+        QCOMPARE(signalChanges[2].bit, TIOCM_RTS);
+        const double length = signalChanges[2].time - signalChanges[1].time;
+        QVERIFY2(length >= 0.099 && length < 1, qPrintable(QString::number(length)));
+        // At the firing, and within the time that is told.
+        const double begin = firing["mono"].toDouble();
+        const double end = begin + firing["results"].toArray().at(0)["duration_s"].toDouble();
+        QVERIFY(signalChanges[1].time >= begin && signalChanges[2].time <= end + 1e-3);
+        // Two pulses of one line do not overlap.
+        define("both", byCommand(), {pulse, pulse});
+        const QJsonArray results = fire("both")["results"].toArray();
+        QVERIFY(results.at(0)["ok"].toBool());
+        QCOMPARE(results.at(1)["error"]["code"].toInt(), int(ErrorCode::NotReady));
+        QCOMPARE(signalChanges.size(), size_t(5));
+    }
+
+    void pulseWithoutTheLine() {
+        hasSignals = false;
+        const QString url = openTerminal();
+        define("t", byCommand(),
+               {QJsonObject{{"do", "pulse"}, {"url", url}, {"line", "dtr"}, {"length_s", 0.1}},
+                QJsonObject{{"do", "serial"}, {"url", url}, {"text", "a"}}});
+        const QJsonArray results = fire("t")["results"].toArray();
+        QCOMPARE(results.at(0)["error"]["code"].toInt(), int(ErrorCode::DeviceFault));
+        QVERIFY2(results.at(0)["error"]["message"].toString().contains("DTR"),
+                 qPrintable(results.at(0)["error"]["message"].toString()));
+        QVERIFY(results.at(1)["ok"].toBool()); // the port works on
+    }
 
 private:
-    QString openTerminal();
+    QString openTerminal() {
+        termios raw{};
+        cfmakeraw(&raw);
+        char name[256] = {};
+        if (openpty(&farEnd_, &nearEnd_, name, &raw, nullptr) == 0)
+            fcntl(farEnd_, F_SETFL, O_NONBLOCK);
+        return "serial://" + QString(name);
+    }
 
     int farEnd_ = -1, nearEnd_ = -1;
 };
-
-void TestTriggerSerial::init() {
-    signalChanges.clear();
-    hasSignals = true;
-    setUp();
-}
-
-void TestTriggerSerial::cleanup() {
-    tearDown();
-    for (int *end : {&farEnd_, &nearEnd_}) {
-        if (*end >= 0)
-            ::close(*end);
-        *end = -1;
-    }
-}
-
-void TestTriggerSerial::bytesOnASerialLine() {
-    const QString url = openTerminal();
-    define("text", byCommand(), {QJsonObject{{"do", "serial"}, {"url", url}, {"text", "Grüße\r\n"}}});
-    define("hex", byCommand(), {QJsonObject{{"do", "serial"}, {"url", url}, {"hex", "00ff1103"}}});
-    QTRY_VERIFY(healthItem("serial_lines")["level"] == "ok");
-    QVERIFY2(fire("text")["ok"].toBool(), qPrintable(healthItem("actions")["message"].toString()));
-    QVERIFY(fire("hex")["ok"].toBool());
-    QByteArray received;
-    const QByteArray expected = QByteArray("Grüße\r\n") + QByteArray::fromHex("00ff1103");
-    const auto read = [&] {
-        char buffer[64];
-        const ssize_t size = ::read(farEnd_, buffer, sizeof buffer);
-        received.append(buffer, int(std::max<ssize_t>(size, 0)));
-        return received.size() >= expected.size();
-    };
-    QTRY_VERIFY(read());
-    QCOMPARE(received, expected);
-    define("nowhere", byCommand(),
-           {QJsonObject{{"do", "serial"}, {"url", "serial:///dev/no-such-line"}, {"text", "a"}}});
-    const QJsonValue result = fire("nowhere")["results"].toArray().at(0);
-    QVERIFY(result["error"]["message"].toString().contains("no-such-line"));
-    QVERIFY(healthItem("serial_lines")["message"].toString().contains("no-such-line"));
-}
-
-void TestTriggerSerial::pulseOfASerialLine() {
-    const QString url = openTerminal();
-    const QJsonObject pulse{{"do", "pulse"}, {"url", url}, {"line", "rts"}, {"length_s", 0.1}};
-    define("t", byCommand(), {pulse});
-    QTRY_COMPARE(signalChanges.size(), size_t(1)); // low from the opening on
-    QCOMPARE(signalChanges[0].bit, TIOCM_RTS);
-    QCOMPARE(signalChanges[0].on, false);
-    const QJsonValue firing = fire("t");
-    QVERIFY(firing["ok"].toBool());
-    QCOMPARE(signalChanges.size(), size_t(3));
-    QVERIFY(signalChanges[1].on && !signalChanges[2].on);
-    QCOMPARE(signalChanges[2].bit, TIOCM_RTS);
-    const double length = signalChanges[2].time - signalChanges[1].time;
-    QVERIFY2(length >= 0.099 && length < 1, qPrintable(QString::number(length)));
-    // At the firing, and within the time that is told.
-    const double begin = firing["mono"].toDouble();
-    const double end = begin + firing["results"].toArray().at(0)["duration_s"].toDouble();
-    QVERIFY(signalChanges[1].time >= begin && signalChanges[2].time <= end + 1e-3);
-    // Two pulses of one line do not overlap.
-    define("both", byCommand(), {pulse, pulse});
-    const QJsonArray results = fire("both")["results"].toArray();
-    QVERIFY(results.at(0)["ok"].toBool());
-    QCOMPARE(results.at(1)["error"]["code"].toInt(), int(ErrorCode::NotReady));
-    QCOMPARE(signalChanges.size(), size_t(5));
-}
-
-void TestTriggerSerial::pulseWithoutTheLine() {
-    hasSignals = false;
-    const QString url = openTerminal();
-    define("t", byCommand(),
-           {QJsonObject{{"do", "pulse"}, {"url", url}, {"line", "dtr"}, {"length_s", 0.1}},
-            QJsonObject{{"do", "serial"}, {"url", url}, {"text", "a"}}});
-    const QJsonArray results = fire("t")["results"].toArray();
-    QCOMPARE(results.at(0)["error"]["code"].toInt(), int(ErrorCode::DeviceFault));
-    QVERIFY2(results.at(0)["error"]["message"].toString().contains("DTR"),
-             qPrintable(results.at(0)["error"]["message"].toString()));
-    QVERIFY(results.at(1)["ok"].toBool()); // the port works on
-}
-
-QString TestTriggerSerial::openTerminal() {
-    termios raw{};
-    cfmakeraw(&raw);
-    char name[256] = {};
-    if (openpty(&farEnd_, &nearEnd_, name, &raw, nullptr) == 0)
-        fcntl(farEnd_, F_SETFL, O_NONBLOCK);
-    return "serial://" + QString(name);
-}
 
 QTEST_GUILESS_MAIN(TestTriggerSerial)
 #include "TestTriggerSerial.moc"

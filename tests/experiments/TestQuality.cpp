@@ -15,11 +15,68 @@ using namespace hermes::experiments;
 class TestQuality : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void measuresOfAKnownShift();
-    void verticesOfBrokenPolylines();
-    void polygons();
-    void realScans_data();
-    void realScans();
+    void measuresOfAKnownShift() {
+        QualityCluster cluster; // a wall at 2 m, seen 10 cm too far by every ray, and one ray that goes past
+        for (int i = -10; i <= 10; ++i) {
+            const vectorlib::Vector2D<double> direction(std::cos(0.05 * i), std::sin(0.05 * i));
+            cluster.add({direction, 2 / direction.x + 0.1, 2 / direction.x});
+        }
+        cluster.add({{0, 1}, 2, 2});
+        QualityMeasures measures;
+        measures.take(cluster, {{{2, -3}, {2, 3}}});
+        QVERIFY(std::abs(measures.rmse() - 0.1) < 1e-12);
+        QVERIFY(std::abs(measures.hitShare() - 21.0 / 22) < 1e-12);
+        QVERIFY(measures.areaError() < 1e-12);
+        QualityMeasures shifted; // the wall at 2.2 m encloses 21 % more
+        shifted.take(cluster, {{{2.2, -3}, {2.2, 3}}});
+        QVERIFY(std::abs(shifted.areaError() - 0.21) < 1e-12);
+    }
+
+    void verticesOfBrokenPolylines() {
+        QCOMPARE(countVertices({}), std::size_t(0));
+        QCOMPARE(countVertices({{{0, 0}, {1, 0}}, {{1, 0}, {1, 1}}}), std::size_t(3));
+        QCOMPARE(countVertices({{{0, 0}, {1, 0}}, {{1, 0.1}, {1, 1}}}), std::size_t(4));
+    }
+
+    void polygons() {
+        ExperimentOptions options;
+        options.runs = 40;
+        for (const auto &[key, row] : sorted(polygonExperiment(options))) {
+            const auto [vertices, budget] = key;
+            const QualityRow &aftls = row.at("AFTLS"), &dp = row.at("DP"), &sam = row.at("SAM");
+            if (budget > largestBudget)
+                continue;
+            QVERIFY2(aftls.rmse < dp.rmse && aftls.areaError < dp.areaError, qPrintable(told(aftls, dp)));
+            // With more vertices than the polygon has, both draw the noise, and neither is much better.
+            if (vertices == 0 || vertices > 12 || budget <= std::size_t(vertices))
+                QVERIFY2(aftls.rmse < sam.rmse && aftls.areaError < sam.areaError,
+                         qPrintable(told(aftls, sam)));
+            else
+                QVERIFY2(aftls.rmse < 1.05 * sam.rmse && aftls.areaError < 1.1 * sam.areaError,
+                         qPrintable(told(aftls, sam)));
+            QVERIFY2(aftls.hitShare > 0.95, qPrintable(told(aftls, dp)));
+        }
+    }
+
+    void realScans_data() {
+        const Rows<QString> row("name");
+        for (const char *name : {"intel", "freiburg-079", "fhw", "belgioioso", "orebro"})
+            row(name, QString("%1-corrected.log.gz").arg(name));
+    }
+
+    void realScans() {
+        QFETCH(QString, name);
+        REAL_DATA(path, name);
+        const auto rows = sorted(ofLog(path));
+        QVERIFY(!rows.empty());
+        for (const auto &[key, row] : rows) {
+            const QualityRow &aftls = row.at("AFTLS"), &dp = row.at("DP"), &sam = row.at("SAM");
+            if (key.second > largestBudget || aftls.scans < 30) // few scans are so plain
+                continue;
+            QVERIFY2(aftls.rmse < dp.rmse, qPrintable(told(aftls, dp)));
+            QVERIFY2(aftls.rmse < sam.rmse, qPrintable(told(aftls, sam)));
+        }
+    }
 
 private:
     static constexpr std::size_t largestBudget = 50; // with more, noise is what is drawn
@@ -56,68 +113,6 @@ private:
             .arg(a.hitShare);
     }
 };
-
-void TestQuality::measuresOfAKnownShift() {
-    QualityCluster cluster; // a wall at 2 m, seen 10 cm too far by every ray, and one ray that goes past
-    for (int i = -10; i <= 10; ++i) {
-        const vectorlib::Vector2D<double> direction(std::cos(0.05 * i), std::sin(0.05 * i));
-        cluster.add({direction, 2 / direction.x + 0.1, 2 / direction.x});
-    }
-    cluster.add({{0, 1}, 2, 2});
-    QualityMeasures measures;
-    measures.take(cluster, {{{2, -3}, {2, 3}}});
-    QVERIFY(std::abs(measures.rmse() - 0.1) < 1e-12);
-    QVERIFY(std::abs(measures.hitShare() - 21.0 / 22) < 1e-12);
-    QVERIFY(measures.areaError() < 1e-12);
-    QualityMeasures shifted; // the wall at 2.2 m encloses 21 % more
-    shifted.take(cluster, {{{2.2, -3}, {2.2, 3}}});
-    QVERIFY(std::abs(shifted.areaError() - 0.21) < 1e-12);
-}
-
-void TestQuality::verticesOfBrokenPolylines() {
-    QCOMPARE(countVertices({}), std::size_t(0));
-    QCOMPARE(countVertices({{{0, 0}, {1, 0}}, {{1, 0}, {1, 1}}}), std::size_t(3));
-    QCOMPARE(countVertices({{{0, 0}, {1, 0}}, {{1, 0.1}, {1, 1}}}), std::size_t(4));
-}
-
-void TestQuality::polygons() {
-    ExperimentOptions options;
-    options.runs = 40;
-    for (const auto &[key, row] : sorted(polygonExperiment(options))) {
-        const auto [vertices, budget] = key;
-        const QualityRow &aftls = row.at("AFTLS"), &dp = row.at("DP"), &sam = row.at("SAM");
-        if (budget > largestBudget)
-            continue;
-        QVERIFY2(aftls.rmse < dp.rmse && aftls.areaError < dp.areaError, qPrintable(told(aftls, dp)));
-        // With more vertices than the polygon has, both draw the noise, and neither is much better.
-        if (vertices == 0 || vertices > 12 || budget <= std::size_t(vertices))
-            QVERIFY2(aftls.rmse < sam.rmse && aftls.areaError < sam.areaError, qPrintable(told(aftls, sam)));
-        else
-            QVERIFY2(aftls.rmse < 1.05 * sam.rmse && aftls.areaError < 1.1 * sam.areaError,
-                     qPrintable(told(aftls, sam)));
-        QVERIFY2(aftls.hitShare > 0.95, qPrintable(told(aftls, dp)));
-    }
-}
-
-void TestQuality::realScans_data() {
-    const Rows<QString> row("name");
-    for (const char *name : {"intel", "freiburg-079", "fhw", "belgioioso", "orebro"})
-        row(name, QString("%1-corrected.log.gz").arg(name));
-}
-
-void TestQuality::realScans() {
-    QFETCH(QString, name);
-    REAL_DATA(path, name);
-    const auto rows = sorted(ofLog(path));
-    QVERIFY(!rows.empty());
-    for (const auto &[key, row] : rows) {
-        const QualityRow &aftls = row.at("AFTLS"), &dp = row.at("DP"), &sam = row.at("SAM");
-        if (key.second > largestBudget || aftls.scans < 30) // few scans are so plain
-            continue;
-        QVERIFY2(aftls.rmse < dp.rmse, qPrintable(told(aftls, dp)));
-        QVERIFY2(aftls.rmse < sam.rmse, qPrintable(told(aftls, sam)));
-    }
-}
 
 QTEST_APPLESS_MAIN(TestQuality)
 #include "TestQuality.moc"

@@ -17,9 +17,33 @@ private Q_SLOTS:
                 results_[scene.name][row.algorithm].push_back(row);
     }
     void rightNumberOfLines_data() { scenes(); }
-    void rightNumberOfLines();
+
+    void rightNumberOfLines() {
+        QFETCH(QString, scene);
+        for (const char *algorithm : {"FTLS", "AFTLS", "INC"})
+            for (const ResultRow &row : results_[scene.toStdString()][algorithm])
+                if (row.points >= 1000)
+                    QVERIFY2(std::abs(row.percent(row.lines.mean)) <= 1,
+                             qPrintable(QString("%1, %2 points: %3 lines")
+                                            .arg(algorithm)
+                                            .arg(row.points)
+                                            .arg(row.lines.mean)));
+    }
+
     void errorAreaKeepsFalling_data() { scenes(); }
-    void errorAreaKeepsFalling();
+
+    void errorAreaKeepsFalling() {
+        QFETCH(QString, scene);
+        const std::vector<ResultRow> &aftls = results_[scene.toStdString()]["AFTLS"];
+        const std::vector<ResultRow> &ftls = results_[scene.toStdString()]["FTLS"];
+        for (std::size_t i = 1; i < aftls.size(); ++i)
+            QVERIFY2(aftls[i].area.mean < aftls[i - 1].area.mean,
+                     qPrintable(QString("%1 points: %2 m^2, then %3")
+                                    .arg(aftls[i].points)
+                                    .arg(aftls[i - 1].area.mean)
+                                    .arg(aftls[i].area.mean)));
+        QVERIFY(aftls.back().area.mean <= ftls.back().area.mean);
+    }
 
 private:
     void scenes() const {
@@ -29,30 +53,6 @@ private:
     }
     std::map<std::string, std::map<std::string, std::vector<ResultRow>>> results_; // by scene and algorithm
 };
-
-void TestScenes::rightNumberOfLines() {
-    QFETCH(QString, scene);
-    for (const char *algorithm : {"FTLS", "AFTLS", "INC"})
-        for (const ResultRow &row : results_[scene.toStdString()][algorithm])
-            if (row.points >= 1000)
-                QVERIFY2(std::abs(row.percent(row.lines.mean)) <= 1,
-                         qPrintable(QString("%1, %2 points: %3 lines")
-                                        .arg(algorithm)
-                                        .arg(row.points)
-                                        .arg(row.lines.mean)));
-}
-
-void TestScenes::errorAreaKeepsFalling() {
-    QFETCH(QString, scene);
-    const std::vector<ResultRow> &aftls = results_[scene.toStdString()]["AFTLS"];
-    const std::vector<ResultRow> &ftls = results_[scene.toStdString()]["FTLS"];
-    for (std::size_t i = 1; i < aftls.size(); ++i)
-        QVERIFY2(aftls[i].area.mean < aftls[i - 1].area.mean, qPrintable(QString("%1 points: %2 m^2, then %3")
-                                                                             .arg(aftls[i].points)
-                                                                             .arg(aftls[i - 1].area.mean)
-                                                                             .arg(aftls[i].area.mean)));
-    QVERIFY(aftls.back().area.mean <= ftls.back().area.mean);
-}
 
 QTEST_APPLESS_MAIN(TestScenes)
 #include "TestScenes.moc"

@@ -133,7 +133,7 @@ private Q_SLOTS:
     // As tcpdump writes that keeps the beginnings of frames only.
     void whatIsLeftOutIsTold() {
         writeCapture(path("c.pcap"), 400);
-        const QByteArray whole = contents(path("c.pcap"));
+        const QByteArray whole = contentOf(path("c.pcap"));
         const int header = int(hermes::PcapWriter::fileHeaderBytes), record = (whole.size() - header) / 400;
         QByteArray cut = whole.left(header);
         for (int i = 0; i < 400; ++i) {
@@ -141,8 +141,8 @@ private Q_SLOTS:
             qToLittleEndian<quint32>(96, one.data() + 8);
             cut += one;
         }
-        write(path("cut.pcap"), cut);
-        write(path("half.pcap"), whole + cut.mid(header));
+        put(path("cut.pcap"), cut);
+        put(path("half.pcap"), whole + cut.mid(header));
         for (const char *command : {"ring", "map"}) {
             const Result none = run({command, path("cut.pcap")}), half = run({command, path("half.pcap")});
             QCOMPARE(none.status, 1);

@@ -33,9 +33,9 @@ inline Result run(const QStringList &arguments, const QByteArray &input = QByteA
 }
 
 /// The same where it must succeed.
-inline Result ran(const QStringList &arguments, const char *file = __builtin_FILE(),
-                  int line = __builtin_LINE()) {
-    const Result r = run(arguments);
+inline Result ran(const QStringList &arguments, const QByteArray &input = {},
+                  const char *file = __builtin_FILE(), int line = __builtin_LINE()) {
+    const Result r = run(arguments, input);
     QTest::qVerify(r.status == 0, "it succeeds", r.err.constData(), file, line);
     return r;
 }

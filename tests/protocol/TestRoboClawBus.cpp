@@ -56,229 +56,216 @@ struct Line {
 class TestRoboClawBus : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void sendsOneAfterTheOther();
-    void repeatsWhatIsNotAnswered();
-    void repeatsWhatIsDamaged();
-    void waitsForSilenceAfterAFailure();
-    void chatterDoesNotBlockForEver();
-    void chatterDoesNotHoldUpWhatIsUrgent();
-    void urgentRequestsGoFirst();
-    void cancelEndsWhatWaits();
-    void closedLineEndsAll();
-    void tooManyAreRefused();
-    void shortStatusNeedsSilence();
-    void countsEachAddress();
-    void handlersMaySubmit();
-};
-
-void TestRoboClawBus::sendsOneAfterTheOther() {
-    Line line;
-    QVERIFY(!line.poll() && line.bus.isIdle() && std::isinf(line.bus.deadline()));
-    line.submit(Command::Speed, {1, 2});
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    QVERIFY(!line.poll());
-    line.now = 0.002;
-    line.feed("FF");
-    QCOMPARE(line.last(), std::string("37 done 1"));
-    QVERIFY(line.poll());
-    line.feed("00F0D8");
-    QCOMPARE(line.ended.size(), std::size_t(1));
-    line.feed("E5");
-    QCOMPARE(line.last(), std::string("24 done 1"));
-    QVERIFY(line.bus.isIdle());
-    QCOMPARE(line.bus.counts(0x80).done, std::uint64_t(2));
-    QCOMPARE(line.bus.counts(0x80).failed, std::uint64_t(0));
-}
-
-void TestRoboClawBus::repeatsWhatIsNotAnswered() {
-    Line line;
-    line.submit(Command::Speed, {1, 2});
-    QVERIFY(line.poll());
-    while (line.pollLater())
-        ;
-    QCOMPARE(line.last(), std::string("37 timed out 3"));
-    QCOMPARE(line.sent, (std::vector<int>{37, 37, 37}));
-    QVERIFY(line.now < 3 * (0.03 + 0.0111)); // a controller's own time-out of 0.2 s is not reached
-    QCOMPARE(line.bus.counts(0x80).timeouts, std::uint64_t(3));
-    QCOMPARE(line.bus.counts(0x80).retries, std::uint64_t(2));
-    QCOMPARE(line.bus.counts(0x80).failed, std::uint64_t(1));
-    line.submit(Command::Speed, {1, 2});
-    QVERIFY(line.pollLater());
-    QVERIFY(line.pollLater());
-    line.feed("FF");
-    QCOMPARE(line.last(), std::string("37 done 2"));
-}
-
-void TestRoboClawBus::repeatsWhatIsDamaged() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.feed("00F1D8E5");
-    QVERIFY(line.ended.empty());
-    QVERIFY(line.pollLater());
-    line.feed("00F0D8E5");
-    QCOMPARE(line.last(), std::string("24 done 2"));
-    QCOMPARE(line.bus.counts(0x80).crcErrors, std::uint64_t(1));
-    line.submit(Command::ResetEncoders);
-    QVERIFY(line.poll());
-    line.feed("FE");
-    QVERIFY(line.pollLater());
-    line.feed("FF");
-    QCOMPARE(line.last(), std::string("20 done 2"));
-    QCOMPARE(line.bus.counts(0x80).unexpected, std::uint64_t(1));
-}
-
-void TestRoboClawBus::waitsForSilenceAfterAFailure() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.feed("00F1D8E5"); // damaged at 0
-    line.now = 0.0105;
-    QVERIFY(!line.poll());
-    line.feed("00"); // it still speaks
-    QCOMPARE(line.bus.strayBytes(), std::uint64_t(1));
-    line.now = 0.0125;
-    QVERIFY(!line.poll());
-    line.now = 0.0216;
-    QVERIFY(line.poll());
-}
-
-void TestRoboClawBus::chatterDoesNotBlockForEver() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.feed("00F1D8E5");
-    for (int i = 0; line.sent.size() == 1 && i < 100; ++i) {
-        line.now += 0.001;
-        line.feed("55");
-        line.poll();
-    }
-    QVERIFY2(line.now > 0.05 && line.now < 0.06, qPrintable(QString::number(line.now)));
-}
-
-void TestRoboClawBus::chatterDoesNotHoldUpWhatIsUrgent() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.feed("00F1D8E5"); // it fails
-    line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First);
-    line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First, 0x81);
-    for (int i = 0; line.sent.size() < 3 && i < 100; ++i) {
-        line.now += 0.001;
-        line.feed("55");
-        line.poll();
-    }
-    // The first repeats its request, which waits behind.
-    QCOMPARE(line.sent, (std::vector<int>{24, 40, 40}));
-    QVERIFY2(line.now < 0.025, qPrintable(QString::number(line.now)));
-}
-
-void TestRoboClawBus::urgentRequestsGoFirst() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.submit(Command::ReadTemperature);
-    line.submit(Command::Speed, {0, 0}, Bus::Urgency::First);
-    line.feed("00F1D8E5"); // the one on its way fails: even its repetition waits
-    line.submit(Command::Duty, {0, 0}, Bus::Urgency::First);
-    QVERIFY(line.pollLater());
-    line.feed("FF");
-    QVERIFY(line.poll());
-    line.feed("FF");
-    QVERIFY(line.poll());
-    line.feed("00F0D8E5");
-    QVERIFY(line.poll());
-    QCOMPARE(line.sent, (std::vector<int>{24, 37, 34, 24, 82}));
-}
-
-void TestRoboClawBus::cancelEndsWhatWaits() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.submit(Command::ReadTemperature);
-    line.bus.cancel();
-    QCOMPARE(line.last(), std::string("82 cancelled 0"));
-    QCOMPARE(line.ended.size(), std::size_t(1));
-    QVERIFY(!line.bus.isIdle());
-    QVERIFY(!line.pollLater()); // not repeated
-    QCOMPARE(line.last(), std::string("24 timed out 1"));
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.pollLater());
-    QVERIFY(line.pollLater()); // and the next one is
-}
-
-void TestRoboClawBus::closedLineEndsAll() {
-    Line line;
-    line.submit(Command::ReadMainBattery);
-    QVERIFY(line.poll());
-    line.submit(Command::ReadTemperature);
-    line.bus.setOpen(false);
-    QCOMPARE(line.ended, (std::vector<std::string>{"24 line closed 1", "82 line closed 0"}));
-    line.submit(Command::Speed, {0, 0});
-    QVERIFY(!line.poll());
-    QCOMPARE(line.last(), std::string("37 line closed 0"));
-    line.feed("00F0D8E5");
-    QCOMPARE(line.ended.size(), std::size_t(3));
-    line.bus.setOpen(true);
-    line.submit(Command::Speed, {0, 0});
-    QVERIFY(line.pollLater());
-}
-
-void TestRoboClawBus::tooManyAreRefused() {
-    Bus::Options options;
-    options.queue = 2;
-    Line line(options);
-    QVERIFY(line.submit(Command::ReadTemperature));
-    QVERIFY(line.submit(Command::ReadTemperature));
-    QVERIFY(!line.submit(Command::ReadTemperature));
-    QVERIFY(line.ended.empty());
-}
-
-void TestRoboClawBus::shortStatusNeedsSilence() {
-    Line line;
-    std::int64_t status = -1;
-    auto dialect = Dialect::Usual;
-    line.bus.submit(*Request::make(0x80, Command::ReadStatus), [&](const Request &, const Bus::Outcome &o) {
-        status = o.reply[0];
-        dialect = o.dialect;
-    });
-    QVERIFY(line.poll());
-    line.feed("08048D1A");
-    line.now = line.bus.deadline();
-    QCOMPARE(line.now, 0.011);
-    line.poll();
-    QCOMPARE(status, std::int64_t(0x0804));
-    QCOMPARE(dialect, Dialect::Other);
-}
-
-void TestRoboClawBus::countsEachAddress() {
-    Line line;
-    line.submit(Command::Speed, {0, 0});
-    line.submit(Command::Speed, {0, 0}, Bus::Urgency::Normal, 0x81);
-    QVERIFY(line.poll());
-    line.feed("FF");
-    while (line.poll() || line.pollLater())
-        ;
-    QCOMPARE(line.bus.counts(0x80).timeouts, std::uint64_t(0));
-    QCOMPARE(line.bus.counts(0x81).timeouts, std::uint64_t(3));
-    QCOMPARE(line.bus.counts(0x81).failed, std::uint64_t(1));
-}
-
-void TestRoboClawBus::handlersMaySubmit() {
-    Line line;
-    int left = 5;
-    std::function<void(const Request &, const Bus::Outcome &)> again = [&](const Request &request,
-                                                                           const Bus::Outcome &) {
-        if (--left > 0)
-            line.bus.submit(request, again);
-    };
-    line.bus.submit(*Request::make(0x80, Command::ResetEncoders), again);
-    while (line.poll())
+    void sendsOneAfterTheOther() {
+        Line line;
+        QVERIFY(!line.poll() && line.bus.isIdle() && std::isinf(line.bus.deadline()));
+        line.submit(Command::Speed, {1, 2});
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        QVERIFY(!line.poll());
+        line.now = 0.002;
         line.feed("FF");
-    QCOMPARE(left, 0);
-    QCOMPARE(line.sent.size(), std::size_t(5));
-}
+        QCOMPARE(line.last(), std::string("37 done 1"));
+        QVERIFY(line.poll());
+        line.feed("00F0D8");
+        QCOMPARE(line.ended.size(), std::size_t(1));
+        line.feed("E5");
+        QCOMPARE(line.last(), std::string("24 done 1"));
+        QVERIFY(line.bus.isIdle());
+        QCOMPARE(line.bus.counts(0x80).done, std::uint64_t(2));
+        QCOMPARE(line.bus.counts(0x80).failed, std::uint64_t(0));
+    }
+
+    void repeatsWhatIsNotAnswered() {
+        Line line;
+        line.submit(Command::Speed, {1, 2});
+        QVERIFY(line.poll());
+        while (line.pollLater())
+            ;
+        QCOMPARE(line.last(), std::string("37 timed out 3"));
+        QCOMPARE(line.sent, (std::vector<int>{37, 37, 37}));
+        QVERIFY(line.now < 3 * (0.03 + 0.0111)); // a controller's own time-out of 0.2 s is not reached
+        QCOMPARE(line.bus.counts(0x80).timeouts, std::uint64_t(3));
+        QCOMPARE(line.bus.counts(0x80).retries, std::uint64_t(2));
+        QCOMPARE(line.bus.counts(0x80).failed, std::uint64_t(1));
+        line.submit(Command::Speed, {1, 2});
+        QVERIFY(line.pollLater());
+        QVERIFY(line.pollLater());
+        line.feed("FF");
+        QCOMPARE(line.last(), std::string("37 done 2"));
+    }
+
+    void repeatsWhatIsDamaged() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.feed("00F1D8E5");
+        QVERIFY(line.ended.empty());
+        QVERIFY(line.pollLater());
+        line.feed("00F0D8E5");
+        QCOMPARE(line.last(), std::string("24 done 2"));
+        QCOMPARE(line.bus.counts(0x80).crcErrors, std::uint64_t(1));
+        line.submit(Command::ResetEncoders);
+        QVERIFY(line.poll());
+        line.feed("FE");
+        QVERIFY(line.pollLater());
+        line.feed("FF");
+        QCOMPARE(line.last(), std::string("20 done 2"));
+        QCOMPARE(line.bus.counts(0x80).unexpected, std::uint64_t(1));
+    }
+
+    void waitsForSilenceAfterAFailure() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.feed("00F1D8E5"); // damaged at 0
+        line.now = 0.0105;
+        QVERIFY(!line.poll());
+        line.feed("00"); // it still speaks
+        QCOMPARE(line.bus.strayBytes(), std::uint64_t(1));
+        line.now = 0.0125;
+        QVERIFY(!line.poll());
+        line.now = 0.0216;
+        QVERIFY(line.poll());
+    }
+
+    void chatterDoesNotBlockForEver() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.feed("00F1D8E5");
+        for (int i = 0; line.sent.size() == 1 && i < 100; ++i) {
+            line.now += 0.001;
+            line.feed("55");
+            line.poll();
+        }
+        QVERIFY2(line.now > 0.05 && line.now < 0.06, qPrintable(QString::number(line.now)));
+    }
+
+    void chatterDoesNotHoldUpWhatIsUrgent() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.feed("00F1D8E5"); // it fails
+        line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First);
+        line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First, 0x81);
+        for (int i = 0; line.sent.size() < 3 && i < 100; ++i) {
+            line.now += 0.001;
+            line.feed("55");
+            line.poll();
+        }
+        // The first repeats its request, which waits behind.
+        QCOMPARE(line.sent, (std::vector<int>{24, 40, 40}));
+        QVERIFY2(line.now < 0.025, qPrintable(QString::number(line.now)));
+    }
+
+    void urgentRequestsGoFirst() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.submit(Command::ReadTemperature);
+        line.submit(Command::Speed, {0, 0}, Bus::Urgency::First);
+        line.feed("00F1D8E5"); // the one on its way fails: even its repetition waits
+        line.submit(Command::Duty, {0, 0}, Bus::Urgency::First);
+        QVERIFY(line.pollLater());
+        line.feed("FF");
+        QVERIFY(line.poll());
+        line.feed("FF");
+        QVERIFY(line.poll());
+        line.feed("00F0D8E5");
+        QVERIFY(line.poll());
+        QCOMPARE(line.sent, (std::vector<int>{24, 37, 34, 24, 82}));
+    }
+
+    void cancelEndsWhatWaits() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.submit(Command::ReadTemperature);
+        line.bus.cancel();
+        QCOMPARE(line.last(), std::string("82 cancelled 0"));
+        QCOMPARE(line.ended.size(), std::size_t(1));
+        QVERIFY(!line.bus.isIdle());
+        QVERIFY(!line.pollLater()); // not repeated
+        QCOMPARE(line.last(), std::string("24 timed out 1"));
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.pollLater());
+        QVERIFY(line.pollLater()); // and the next one is
+    }
+
+    void closedLineEndsAll() {
+        Line line;
+        line.submit(Command::ReadMainBattery);
+        QVERIFY(line.poll());
+        line.submit(Command::ReadTemperature);
+        line.bus.setOpen(false);
+        QCOMPARE(line.ended, (std::vector<std::string>{"24 line closed 1", "82 line closed 0"}));
+        line.submit(Command::Speed, {0, 0});
+        QVERIFY(!line.poll());
+        QCOMPARE(line.last(), std::string("37 line closed 0"));
+        line.feed("00F0D8E5");
+        QCOMPARE(line.ended.size(), std::size_t(3));
+        line.bus.setOpen(true);
+        line.submit(Command::Speed, {0, 0});
+        QVERIFY(line.pollLater());
+    }
+
+    void tooManyAreRefused() {
+        Bus::Options options;
+        options.queue = 2;
+        Line line(options);
+        QVERIFY(line.submit(Command::ReadTemperature));
+        QVERIFY(line.submit(Command::ReadTemperature));
+        QVERIFY(!line.submit(Command::ReadTemperature));
+        QVERIFY(line.ended.empty());
+    }
+
+    void shortStatusNeedsSilence() {
+        Line line;
+        std::int64_t status = -1;
+        auto dialect = Dialect::Usual;
+        line.bus.submit(*Request::make(0x80, Command::ReadStatus),
+                        [&](const Request &, const Bus::Outcome &o) {
+                            status = o.reply[0];
+                            dialect = o.dialect;
+                        });
+        QVERIFY(line.poll());
+        line.feed("08048D1A");
+        line.now = line.bus.deadline();
+        QCOMPARE(line.now, 0.011);
+        line.poll();
+        QCOMPARE(status, std::int64_t(0x0804));
+        QCOMPARE(dialect, Dialect::Other);
+    }
+
+    void countsEachAddress() {
+        Line line;
+        line.submit(Command::Speed, {0, 0});
+        line.submit(Command::Speed, {0, 0}, Bus::Urgency::Normal, 0x81);
+        QVERIFY(line.poll());
+        line.feed("FF");
+        while (line.poll() || line.pollLater())
+            ;
+        QCOMPARE(line.bus.counts(0x80).timeouts, std::uint64_t(0));
+        QCOMPARE(line.bus.counts(0x81).timeouts, std::uint64_t(3));
+        QCOMPARE(line.bus.counts(0x81).failed, std::uint64_t(1));
+    }
+
+    void handlersMaySubmit() {
+        Line line;
+        int left = 5;
+        std::function<void(const Request &, const Bus::Outcome &)> again = [&](const Request &request,
+                                                                               const Bus::Outcome &) {
+            if (--left > 0)
+                line.bus.submit(request, again);
+        };
+        line.bus.submit(*Request::make(0x80, Command::ResetEncoders), again);
+        while (line.poll())
+            line.feed("FF");
+        QCOMPARE(left, 0);
+        QCOMPARE(line.sent.size(), std::size_t(5));
+    }
+};
 
 QTEST_GUILESS_MAIN(TestRoboClawBus)
 #include "TestRoboClawBus.moc"

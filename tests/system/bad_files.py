@@ -190,7 +190,7 @@ class BadFiles(RobotCase):
         self.fill(disk)
 
         def audits():  # the last page of the file has room for some lines
-            for method in ["odometry.reset"] * 40:
+            for method in ["odometry.reset"] * 40:  # stops would be summed up
                 robot.call("motorcontrol", method)
             return any("audit" in item for item in robot.items("motorcontrol"))
         wait_for("a full disk under the audit", audits, 15)

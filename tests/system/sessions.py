@@ -27,6 +27,7 @@ class Serial:
 
     def __init__(self, folder, records):
         self.source = free_port(0, socket.SOCK_DGRAM)
+        self.sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)  # one, as a device has: others are not read beside it
         ports = [{"name": "gps", "url": f"udp://127.0.0.1:{self.source}", "view": "nmea", "checksum": "lenient"}]
         self.process = Process(load.BINARIES, "seriallogger", free_port(0), folder,
                                {"ports": json.dumps(ports), "record.folder": records, "record.free_floor_bytes": 0,
@@ -36,8 +37,7 @@ class Serial:
 
     def send(self, text):
         before = self.daemon.call("ports.list")[0]["bytes"]
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            sender.sendto(text, ("127.0.0.1", self.source))
+        self.sender.sendto(text, ("127.0.0.1", self.source))
         wait_for("the bytes", lambda: self.daemon.call("ports.list")[0]["bytes"] == before + len(text))
 
 

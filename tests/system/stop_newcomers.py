@@ -11,10 +11,10 @@ import socket
 import tempfile
 import time
 
-from support import BINARIES, Process, free_port
+from support import BINARIES, Process, free_port, text_of, wait_for
 from tls import Client, context_of, issued, keys as make_keys
 
-NEWCOMERS, LATEST_S, MOST_MEMORY = 8, 5, 200 << 20
+NEWCOMERS, LATEST_S, MOST_MEMORY, ROOM = 8, 5, 200 << 20, 800 << 20
 DEAREST = b'{"jsonrpc":"2.0","id":1,"method":"motor.drive","params":{"vx":[' + b",".join([b'{"a":1}'] * 128000) + b"]}}\n"
 
 
@@ -67,13 +67,24 @@ def repeat(data, address):
             time.sleep(0.01)
 
 
+def unread(address):
+    """Asks for much and reads nothing."""
+    while True:
+        try:
+            with socket.create_connection(address, 3) as connection:
+                while True:
+                    connection.sendall(b'{"jsonrpc":"2.0","id":1,"method":"rpc.discover"}\n' * 20)
+        except OSError:
+            time.sleep(0.01)
+
+
 def memory(process):
     with open(f"/proc/{process.process.pid}/status", encoding="utf-8") as status:
         return next(int(text.split()[1]) * 1024 for text in status if text.startswith("VmRSS"))
 
 
-def check(folder, name, settings, descriptors, work, count):
-    """How long the slowest newcomer took, and the most memory."""
+def check(folder, name, settings, descriptors, work, count, told=""):
+    """How long the slowest newcomer took, and the most memory; told: what the daemon logs of the others."""
     keys, tls_port, udp_port = os.path.join(folder, "keys"), free_port(0), free_port(0)
     process = Process(BINARIES, "motorcontrol", free_port(0), folder, {
         "controllers": json.dumps({n: {"url": f"serial://{folder}/none"} for n in "12"}), **settings},
@@ -82,6 +93,7 @@ def check(folder, name, settings, descriptors, work, count):
     try:
         process.connect().close()
         resource.prlimit(process.process.pid, resource.RLIMIT_NOFILE, (descriptors, descriptors))
+        resource.prlimit(process.process.pid, resource.RLIMIT_AS, (ROOM, ROOM))
         port = {"tcp": process.port, "tls": tls_port, "udp": udp_port}[name.split(",")[0]]
         others = [multiprocessing.Process(target=work, args=(("127.0.0.1", port),), daemon=True) for _ in range(count)]
         for other in others:
@@ -99,6 +111,7 @@ def check(folder, name, settings, descriptors, work, count):
                     answer = connection.makefile().readline()
                 assert '"result"' in answer, f"{name}: newcomer {newcomer} could not stop: {answer}"
             slowest, most = max(slowest, time.monotonic() - began), max(most, memory(process))
+        wait_for(f"{name}: {told!r} in the log", lambda: told in text_of(process.log_name), 10)
         assert most < MOST_MEMORY, f"{name}: {most >> 20} MB"
         print(f"{name}: the slowest of {NEWCOMERS} newcomers took {1000 * slowest:.0f} ms, {most >> 20} MB at most", flush=True)
     finally:
@@ -121,6 +134,7 @@ def main():
                     ("tls, strangers that say nothing", {}, 1024, functools.partial(storm, 300, 0.002), 1),
                     ("udp, empty lines", {}, 1024, functools.partial(datagrams, b"\n" * 200), 1),
                     ("udp, requests", {}, 1024, functools.partial(datagrams, b'{"jsonrpc":"2.0","method":"daemon.status"}\n' * 10), 1),
+                    ("tcp, replies that nobody reads", {"limits.reply_bytes": 15 << 20}, 1024, unread, 16, "all clients together"),
                     ("tcp, requests of 128,000 values", {}, 1024, functools.partial(repeat, DEAREST), 20)):
             check(folder, *row)
 

@@ -17,6 +17,7 @@ from support import BINARIES, SOURCE, DaemonError, Process, free_port, simulated
 
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
 import attendant  # noqa: E402
+import run  # noqa: E402
 import tour  # noqa: E402
 from drive import DriveError, PathFollower, PoseTopic, drive  # noqa: E402
 
@@ -247,6 +248,20 @@ class AttendantTest(unittest.TestCase):
                         wait_for("a fault holds the robot", lambda: motors.call("motor.state")["latched"])
                     helper.help(error)
             self.assertGreater(helper.releases, 0)
+
+
+class EndTest(unittest.TestCase):
+    def test_a_drive_that_does_not_come_on_ends(self):
+        follower, seen = mock.Mock(progress=0.0), []
+        look = run.watched(seen.append, limit_s=0.05)
+        for step in range(5):  # slowly, but on
+            follower.progress = step / 10
+            look(follower)
+            time.sleep(0.03)
+        with self.assertRaisesRegex(RuntimeError, "not come on .* 40 % of its path"):
+            while True:
+                look(follower)
+        self.assertGreater(len(seen), 5)
 
 
 @unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")

@@ -97,36 +97,35 @@ private Q_SLOTS:
         for (const char *log : {"belgioioso", "fhw", "freiburg-079", "intel", "orebro"})
             row(log, QString(log));
     }
-    void realClusters();
-};
 
-void TestFtlsClusters::realClusters() {
-    QFETCH(QString, log);
-    REAL_DATA(path, log + "-corrected.log.gz");
-    QProcess unpack;
-    unpack.start("zcat", {path});
-    QVERIFY(unpack.waitForFinished());
-    std::istringstream in(unpack.readAllStandardOutput().toStdString());
-    const Expected<CarmenLog> read = readCarmenLog(in, log.toStdString());
-    QVERIFY(read);
-    EarSegmenter<float> segment;
-    for (const double sigma : {0.01, 0.02, 0.03}) {
-        CountComparison compared(sigma);
-        for (std::size_t scan = 0; scan < read->scans.size(); ++scan) {
-            Cluster points;
-            read->scans[scan].appendPoints(points);
-            const Segmentation &found = segment(PointSpan<float>(points));
-            for (std::size_t c = 0; c < found.size(); ++c) {
-                Cluster cluster;
-                for (std::size_t i = found.starts[c]; i < found.starts[c + 1]; ++i)
-                    cluster.push_back(points[std::size_t(found.order[i])]);
-                compared.add(cluster, QStringLiteral("scan %1 cluster %2").arg(scan).arg(c));
+    void realClusters() {
+        QFETCH(QString, log);
+        REAL_DATA(path, log + "-corrected.log.gz");
+        QProcess unpack;
+        unpack.start("zcat", {path});
+        QVERIFY(unpack.waitForFinished());
+        std::istringstream in(unpack.readAllStandardOutput().toStdString());
+        const Expected<CarmenLog> read = readCarmenLog(in, log.toStdString());
+        QVERIFY(read);
+        EarSegmenter<float> segment;
+        for (const double sigma : {0.01, 0.02, 0.03}) {
+            CountComparison compared(sigma);
+            for (std::size_t scan = 0; scan < read->scans.size(); ++scan) {
+                Cluster points;
+                read->scans[scan].appendPoints(points);
+                const Segmentation &found = segment(PointSpan<float>(points));
+                for (std::size_t c = 0; c < found.size(); ++c) {
+                    Cluster cluster;
+                    for (std::size_t i = found.starts[c]; i < found.starts[c + 1]; ++i)
+                        cluster.push_back(points[std::size_t(found.order[i])]);
+                    compared.add(cluster, QStringLiteral("scan %1 cluster %2").arg(scan).arg(c));
+                }
             }
+            QVERIFY(compared.clusters > 500);
+            QVERIFY2(compared.faults.isEmpty(), qPrintable(compared.faults.mid(0, 10).join("\n")));
         }
-        QVERIFY(compared.clusters > 500);
-        QVERIFY2(compared.faults.isEmpty(), qPrintable(compared.faults.mid(0, 10).join("\n")));
     }
-}
+};
 
 QTEST_APPLESS_MAIN(TestFtlsClusters)
 #include "TestFtlsClusters.moc"

@@ -91,105 +91,102 @@ Eigen::Vector3d deviations(const Eigen::Matrix3d &covariance) {
 class TestPointCovariance : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void errorsAreAsTold_data();
-    void errorsAreAsTold();
-    void misfitIsNotAveragedAway();
-    void whatNothingHoldsIsUnknown();
-    void noiseThatIsGivenCounts();
-    void exactScansLeaveALittle();
-};
-
-void TestPointCovariance::errorsAreAsTold_data() {
-    QTest::addColumn<double>("noise");
-    for (const double centimetres : {0.5, 1.0, 2.0, 3.0, 5.0})
-        QTest::addRow("%g cm", centimetres) << centimetres / 100;
-}
-
-// The squared Mahalanobis distances of right matches from the true motion: their mean would be 3, and 1 %
-// above 11.34, if errors were normal and told exactly.
-void TestPointCovariance::errorsAreAsTold() {
-    QFETCH(double, noise);
-    constexpr unsigned seed = 1;
-    constexpr int pairs = 300;
-    std::mt19937 random(seed);
-    GlobalPairMatcher match;
-    double sum = 0, count = 0, far = 0;
-    for (int i = 0; i < pairs; ++i) {
-        const ScanPair pair = drawPair(random, i, noise);
-        const GlobalPairMatch &found = match(pair.fixed, pair.moving);
-        if (!found.isAccepted())
-            continue;
-        const Eigen::Vector3d error = errorOf(found.solutions[0].pose, pair.motion);
-        if (error.head<2>().norm() > 0.3 || std::abs(error(2)) > 0.15)
-            continue;
-        const double square = error.dot(match.covarianceOf(found.solutions[0]).inverse() * error);
-        sum += square;
-        far += square > 11.34;
-        ++count;
+    void errorsAreAsTold_data() {
+        QTest::addColumn<double>("noise");
+        for (const double centimetres : {0.5, 1.0, 2.0, 3.0, 5.0})
+            QTest::addRow("%g cm", centimetres) << centimetres / 100;
     }
-    const QString text =
-        QString("seed %1: %2 pairs, mean %3, far %4").arg(seed).arg(count).arg(sum / count).arg(far / count);
-    QVERIFY2(count > 0.7 * pairs, qPrintable(text));
-    QVERIFY2(sum > 1.5 * count && sum < 4.5 * count && far < 0.05 * count, qPrintable(text));
-}
 
-// The second scan has one wall 4 cm off and rough, in pieces that have 20 points each: points beside each
-// other err alike.
-void TestPointCovariance::misfitIsNotAveragedAway() {
-    std::mt19937 random(2);
-    const ScanWorld::Scanner scanner{360, 2 * pi, 0.005};
-    const Points fixed = ScanWorld::room().scan({}, random, scanner);
-    Points moving = ScanWorld::room().scan({}, random, scanner);
-    const double before = deviations(told(fixed, moving, {}))(0);
-    for (std::size_t i = 0; i < moving.size(); ++i)
-        if (moving[i].x > 3.9)
-            moving[i].x += i / 20 % 2 == 0 ? 0.04f : -0.04f;
-    const double after = deviations(told(fixed, moving, {}))(0);
-    QVERIFY2(after > 2 * before, qPrintable(QString("%1 %2").arg(before).arg(after)));
-}
+    // The squared Mahalanobis distances of right matches from the true motion: their mean would be 3, and 1 %
+    // above 11.34, if errors were normal and told exactly.
+    void errorsAreAsTold() {
+        QFETCH(double, noise);
+        constexpr unsigned seed = 1;
+        constexpr int pairs = 300;
+        std::mt19937 random(seed);
+        GlobalPairMatcher match;
+        double sum = 0, count = 0, far = 0;
+        for (int i = 0; i < pairs; ++i) {
+            const ScanPair pair = drawPair(random, i, noise);
+            const GlobalPairMatch &found = match(pair.fixed, pair.moving);
+            if (!found.isAccepted())
+                continue;
+            const Eigen::Vector3d error = errorOf(found.solutions[0].pose, pair.motion);
+            if (error.head<2>().norm() > 0.3 || std::abs(error(2)) > 0.15)
+                continue;
+            const double square = error.dot(match.covarianceOf(found.solutions[0]).inverse() * error);
+            sum += square;
+            far += square > 11.34;
+            ++count;
+        }
+        const QString text = QString("seed %1: %2 pairs, mean %3, far %4")
+                                 .arg(seed)
+                                 .arg(count)
+                                 .arg(sum / count)
+                                 .arg(far / count);
+        QVERIFY2(count > 0.7 * pairs, qPrintable(text));
+        QVERIFY2(sum > 1.5 * count && sum < 4.5 * count && far < 0.05 * count, qPrintable(text));
+    }
 
-void TestPointCovariance::whatNothingHoldsIsUnknown() {
-    std::mt19937 random(3);
-    const ScanWorld::Scanner scanner{360, 2 * pi, 0.01, 30};
-    const Transformation2D turned(0, 0, 0.6); // so that the corridor has no axis's direction
-    const Points corridor = ScanWorld::corridor().scan(turned, random, scanner),
-                 again = ScanWorld::corridor().scan(turned, random, scanner);
-    const Eigen::Matrix3d open = told(corridor, again, {});
-    const Eigen::Vector3d along(std::cos(0.6), -std::sin(0.6), 0), across(std::sin(0.6), std::cos(0.6), 0);
-    QVERIFY(across.dot(open * across) < 0.005 * 0.005 && open(2, 2) < 0.005 * 0.005);
-    QVERIFY(along.dot(open * along) > 0.1 * 0.1);
+    // The second scan has one wall 4 cm off and rough, in pieces that have 20 points each: points beside each
+    // other err alike.
+    void misfitIsNotAveragedAway() {
+        std::mt19937 random(2);
+        const ScanWorld::Scanner scanner{360, 2 * pi, 0.005};
+        const Points fixed = ScanWorld::room().scan({}, random, scanner);
+        Points moving = ScanWorld::room().scan({}, random, scanner);
+        const double before = deviations(told(fixed, moving, {}))(0);
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            if (moving[i].x > 3.9)
+                moving[i].x += i / 20 % 2 == 0 ? 0.04f : -0.04f;
+        const double after = deviations(told(fixed, moving, {}))(0);
+        QVERIFY2(after > 2 * before, qPrintable(QString("%1 %2").arg(before).arg(after)));
+    }
 
-    Points circle;
-    for (int degree = -180; degree < 180; ++degree)
-        circle.push_back(Vector2D<float>(
-            ScanWorld::Point(std::cos(degree * pi / 180), std::sin(degree * pi / 180)) * 3.0));
-    QVERIFY(told(circle, circle, {})(2, 2) > 0.1 * 0.1);
+    void whatNothingHoldsIsUnknown() {
+        std::mt19937 random(3);
+        const ScanWorld::Scanner scanner{360, 2 * pi, 0.01, 30};
+        const Transformation2D turned(0, 0, 0.6); // so that the corridor has no axis's direction
+        const Points corridor = ScanWorld::corridor().scan(turned, random, scanner),
+                     again = ScanWorld::corridor().scan(turned, random, scanner);
+        const Eigen::Matrix3d open = told(corridor, again, {});
+        const Eigen::Vector3d along(std::cos(0.6), -std::sin(0.6), 0),
+            across(std::sin(0.6), std::cos(0.6), 0);
+        QVERIFY(across.dot(open * across) < 0.005 * 0.005 && open(2, 2) < 0.005 * 0.005);
+        QVERIFY(along.dot(open * along) > 0.1 * 0.1);
 
-    const Points nothing;
-    QVERIFY(told(nothing, nothing, {}) == Eigen::Matrix3d::Identity() * 1e4);
-}
+        Points circle;
+        for (int degree = -180; degree < 180; ++degree)
+            circle.push_back(Vector2D<float>(
+                ScanWorld::Point(std::cos(degree * pi / 180), std::sin(degree * pi / 180)) * 3.0));
+        QVERIFY(told(circle, circle, {})(2, 2) > 0.1 * 0.1);
 
-void TestPointCovariance::noiseThatIsGivenCounts() {
-    std::mt19937 random(4);
-    const Points fixed = ScanWorld::room().scan({}, random), moving = ScanWorld::room().scan({}, random);
-    PointCovariance tell;
-    tell.noise = 0.01;
-    const Eigen::Matrix3d one = told(fixed, moving, {}, tell);
-    tell.noise = 0.03;
-    const Eigen::Matrix3d three = told(fixed, moving, {}, tell);
-    QVERIFY((three - 9 * one).norm() < 1e-9 * three.norm());
-    const Eigen::Vector3d own = deviations(told(fixed, moving, {})); // the scans have 1 cm of noise
-    for (int i = 0; i < 3; ++i)
-        QVERIFY(own(i) > 0.4 * deviations(one)(i) && own(i) < 1.6 * deviations(one)(i));
-}
+        const Points nothing;
+        QVERIFY(told(nothing, nothing, {}) == Eigen::Matrix3d::Identity() * 1e4);
+    }
 
-void TestPointCovariance::exactScansLeaveALittle() {
-    std::mt19937 random(5);
-    const ScanWorld::Scanner exact{360, 2 * pi, 0};
-    const Points scan = ScanWorld::room().scan({}, random, exact);
-    const Eigen::Matrix3d covariance = told(scan, scan, {});
-    QVERIFY(covariance.determinant() > 0 && covariance(0, 0) > 0 && deviations(covariance)(0) < 1e-3);
-}
+    void noiseThatIsGivenCounts() {
+        std::mt19937 random(4);
+        const Points fixed = ScanWorld::room().scan({}, random), moving = ScanWorld::room().scan({}, random);
+        PointCovariance tell;
+        tell.noise = 0.01;
+        const Eigen::Matrix3d one = told(fixed, moving, {}, tell);
+        tell.noise = 0.03;
+        const Eigen::Matrix3d three = told(fixed, moving, {}, tell);
+        QVERIFY((three - 9 * one).norm() < 1e-9 * three.norm());
+        const Eigen::Vector3d own = deviations(told(fixed, moving, {})); // the scans have 1 cm of noise
+        for (int i = 0; i < 3; ++i)
+            QVERIFY(own(i) > 0.4 * deviations(one)(i) && own(i) < 1.6 * deviations(one)(i));
+    }
+
+    void exactScansLeaveALittle() {
+        std::mt19937 random(5);
+        const ScanWorld::Scanner exact{360, 2 * pi, 0};
+        const Points scan = ScanWorld::room().scan({}, random, exact);
+        const Eigen::Matrix3d covariance = told(scan, scan, {});
+        QVERIFY(covariance.determinant() > 0 && covariance(0, 0) > 0 && deviations(covariance)(0) < 1e-3);
+    }
+};
 
 QTEST_GUILESS_MAIN(TestPointCovariance)
 #include "TestPointCovariance.moc"

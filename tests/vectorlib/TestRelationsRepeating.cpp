@@ -17,11 +17,80 @@ class TestRelationsRepeating : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void signsAreLinesJumpsAndObliqueAngles();
-    void aCornerAloneIsUnspecific();
-    void wrongPlacesAreRarelyFound();
-    void roomsThatDoNotRepeatAreFound_data();
-    void roomsThatDoNotRepeatAreFound();
+    void signsAreLinesJumpsAndObliqueAngles() {
+        const EndType angle = EndType::Angle, jump = EndType::Jump, interior = EndType::Interior;
+        const TypedSegments corner{segment({3, -2}, {3, 1}, interior, angle),
+                                   segment({3, 1}, {-1, 1}, angle, interior)};
+        const TypedSegments jumps{segment({3, -2}, {3, 1}, jump, angle),
+                                  segment({3, 1}, {-1, 1}, angle, jump)};
+        const TypedSegments oblique{segment({3, -2}, {3, 1}, interior, angle),
+                                    segment({3, 1}, {1, 3}, angle, interior)};
+        const TypedSegments oneLine{segment({3, -2}, {3, -1}, interior, interior),
+                                    segment({3, 0}, {3, 1}, interior, interior)};
+        const std::vector<CorrespondencePair> both{{0, 0}, {1, 1}};
+        const MatchSigns signs;
+        QCOMPARE(signs(both, corner, corner, {}), 2);
+        QCOMPARE(signs(both, jumps, jumps, {}), 4);
+        QCOMPARE(signs(both, jumps, corner, {}), 2); // what is an edge in one scan only tells nothing
+        QCOMPARE(signs(both, oblique, oblique, {}), 3);
+        QCOMPARE(signs(both, oneLine, oneLine, {}), 1);
+        QCOMPARE(signs({}, corner, corner, {}), 0);
+    }
+
+    void aCornerAloneIsUnspecific() {
+        const TypedSegments corner{segment({3, -2}, {3, 1}, EndType::Interior, EndType::Angle),
+                                   segment({3, 1}, {-1, 1}, EndType::Angle, EndType::Interior)};
+        TypedSegments joined = corner;
+        joined[0].joined = true;
+        const RelationMatch &found = match_(joined, joined);
+        QCOMPARE(describe(found.outcome), describe(RelationOutcome::Unspecific));
+        QVERIFY(found.pairs.empty() && found.evidence == 0);
+        RelationMatcher any;
+        any.settings.leastSigns = 0;
+        QCOMPARE(describe(any(joined, joined).outcome), describe(RelationOutcome::Matched));
+    }
+
+    void wrongPlacesAreRarelyFound() {
+        constexpr unsigned seed = 1000;
+        Count all;
+        for (std::size_t kind = 0; kind < std::size(RepeatingWorlds::names); ++kind) {
+            std::mt19937 random(seed);
+            RepeatingWorlds worlds(random);
+            Count count;
+            for (int i = 0; i < 80; ++i) {
+                const RepeatingWorlds::Pair pair = worlds.draw(RepeatingWorlds::Kind(kind));
+                add(segmentsOf(pair.fixed, pair.scanner), segmentsOf(pair.moving, pair.scanner), pair.motion,
+                    count);
+            }
+            qInfo("seed %u, %s: %d wrong of %d matched", seed, RepeatingWorlds::names[kind], count.wrong,
+                  count.matched);
+            all.matched += count.matched;
+            all.wrong += count.wrong;
+        }
+        QVERIFY2(all.wrong <= 30, qPrintable(QString::number(all.wrong)));
+        QVERIFY2(all.matched >= 300, qPrintable(QString::number(all.matched)));
+    }
+
+    void roomsThatDoNotRepeatAreFound_data() {
+        const Rows<bool, int> row("isFullTurn", "least"); // least: of 80
+        row("full turn", true, 80);
+        row("half a turn, any heading", false, 40);
+    }
+
+    void roomsThatDoNotRepeatAreFound() {
+        FETCH(bool, isFullTurn, int, least);
+        Count count;
+        for (std::uint64_t seed = 1000; seed < 1080; ++seed) {
+            RandomRoom room(seed);
+            room.second.theta = 0.77 * double(seed);
+            add(scanned(room.edges, room.first, isFullTurn, 2 * seed),
+                scanned(room.edges, room.second, isFullTurn, 2 * seed + 1),
+                Transformation2D(room.first).inverse() * Transformation2D(room.second), count);
+        }
+        const QString found =
+            QString("seeds 1000 to 1079: %1 matched, %2 wrong").arg(count.matched).arg(count.wrong);
+        QVERIFY2(count.matched >= least && count.wrong <= 1, qPrintable(found));
+    }
 
 private:
     struct Count {
@@ -62,80 +131,6 @@ private:
     }
     RelationMatcher match_;
 };
-
-void TestRelationsRepeating::signsAreLinesJumpsAndObliqueAngles() {
-    const EndType angle = EndType::Angle, jump = EndType::Jump, interior = EndType::Interior;
-    const TypedSegments corner{segment({3, -2}, {3, 1}, interior, angle),
-                               segment({3, 1}, {-1, 1}, angle, interior)};
-    const TypedSegments jumps{segment({3, -2}, {3, 1}, jump, angle), segment({3, 1}, {-1, 1}, angle, jump)};
-    const TypedSegments oblique{segment({3, -2}, {3, 1}, interior, angle),
-                                segment({3, 1}, {1, 3}, angle, interior)};
-    const TypedSegments oneLine{segment({3, -2}, {3, -1}, interior, interior),
-                                segment({3, 0}, {3, 1}, interior, interior)};
-    const std::vector<CorrespondencePair> both{{0, 0}, {1, 1}};
-    const MatchSigns signs;
-    QCOMPARE(signs(both, corner, corner, {}), 2);
-    QCOMPARE(signs(both, jumps, jumps, {}), 4);
-    QCOMPARE(signs(both, jumps, corner, {}), 2); // what is an edge in one scan only tells nothing
-    QCOMPARE(signs(both, oblique, oblique, {}), 3);
-    QCOMPARE(signs(both, oneLine, oneLine, {}), 1);
-    QCOMPARE(signs({}, corner, corner, {}), 0);
-}
-
-void TestRelationsRepeating::aCornerAloneIsUnspecific() {
-    const TypedSegments corner{segment({3, -2}, {3, 1}, EndType::Interior, EndType::Angle),
-                               segment({3, 1}, {-1, 1}, EndType::Angle, EndType::Interior)};
-    TypedSegments joined = corner;
-    joined[0].joined = true;
-    const RelationMatch &found = match_(joined, joined);
-    QCOMPARE(describe(found.outcome), describe(RelationOutcome::Unspecific));
-    QVERIFY(found.pairs.empty() && found.evidence == 0);
-    RelationMatcher any;
-    any.settings.leastSigns = 0;
-    QCOMPARE(describe(any(joined, joined).outcome), describe(RelationOutcome::Matched));
-}
-
-void TestRelationsRepeating::wrongPlacesAreRarelyFound() {
-    constexpr unsigned seed = 1000;
-    Count all;
-    for (std::size_t kind = 0; kind < std::size(RepeatingWorlds::names); ++kind) {
-        std::mt19937 random(seed);
-        RepeatingWorlds worlds(random);
-        Count count;
-        for (int i = 0; i < 80; ++i) {
-            const RepeatingWorlds::Pair pair = worlds.draw(RepeatingWorlds::Kind(kind));
-            add(segmentsOf(pair.fixed, pair.scanner), segmentsOf(pair.moving, pair.scanner), pair.motion,
-                count);
-        }
-        qInfo("seed %u, %s: %d wrong of %d matched", seed, RepeatingWorlds::names[kind], count.wrong,
-              count.matched);
-        all.matched += count.matched;
-        all.wrong += count.wrong;
-    }
-    QVERIFY2(all.wrong <= 30, qPrintable(QString::number(all.wrong)));
-    QVERIFY2(all.matched >= 300, qPrintable(QString::number(all.matched)));
-}
-
-void TestRelationsRepeating::roomsThatDoNotRepeatAreFound_data() {
-    const Rows<bool, int> row("isFullTurn", "least"); // least: of 80
-    row("full turn", true, 80);
-    row("half a turn, any heading", false, 40);
-}
-
-void TestRelationsRepeating::roomsThatDoNotRepeatAreFound() {
-    FETCH(bool, isFullTurn, int, least);
-    Count count;
-    for (std::uint64_t seed = 1000; seed < 1080; ++seed) {
-        RandomRoom room(seed);
-        room.second.theta = 0.77 * double(seed);
-        add(scanned(room.edges, room.first, isFullTurn, 2 * seed),
-            scanned(room.edges, room.second, isFullTurn, 2 * seed + 1),
-            Transformation2D(room.first).inverse() * Transformation2D(room.second), count);
-    }
-    const QString found =
-        QString("seeds 1000 to 1079: %1 matched, %2 wrong").arg(count.matched).arg(count.wrong);
-    QVERIFY2(count.matched >= least && count.wrong <= 1, qPrintable(found));
-}
 
 QTEST_APPLESS_MAIN(TestRelationsRepeating)
 #include "TestRelationsRepeating.moc"

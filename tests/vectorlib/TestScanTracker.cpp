@@ -32,24 +32,216 @@ class TestScanTracker : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void init();
-    void goesByTheOdometry();
-    void ignoresTheOdometryWhenTold();
-    void isAsSureAsTheOdometry();
-    void looksWidelyAfterAPause();
-    void looksNoLessWidelyThanItIsSetUp();
-    void survivesStampsThatStepBack();
-    void placeForgetsTheScanBefore();
-    void knowsTheScannerOfEachScan();
-    void aLieAboutTheRaysDoesNoHarm();
-    void followsScansThatTheMapDoesNotShow();
-    void passesOverAScanOfNothing();
-    void clearForgetsAll();
-    void trustIsHighInARoom();
-    void trustIsLowAlongABareCorridor();
-    void trustIsLowAmongPeople();
-    void trustIsNoneWhenLost();
-    void trustIsAProbabilityWhateverComes();
+    void init() {
+        tracker = std::make_unique<ScanTracker>();
+        tracker->place({-2, -1, 0});
+        QCOMPARE(see({-2, -1, 0}, 10, track({}, 10)).outcome, ScanReport::Outcome::Matched);
+    }
+
+    void goesByTheOdometry() {
+        // To the other end of the room and about, within a tenth of a second: only the odometry can know.
+        QVERIFY(isNear(see({2, 1, 2}, 10.1, track({4, 2, 2}, 10.1)).pose, {2, 1, 2}));
+        QCOMPARE(tracker->counts().byOdometry, std::uint64_t(1));
+        QCOMPARE(tracker->counts().matched, std::uint64_t(2));
+    }
+
+    void ignoresTheOdometryWhenTold() {
+        ScanTrackerSettings settings;
+        settings.useOdometry = false;
+        tracker->apply(settings);
+        QVERIFY(isNear(see({-1.9, -1, 0.05}, 10.1, track({4, 2, 2}, 10.1)).pose, {-1.9, -1, 0.05}));
+        QCOMPARE(tracker->counts().byOdometry, std::uint64_t(0));
+    }
+
+    void isAsSureAsTheOdometry() {
+        see({-1.9, -1, 0}, 10.1, track({0.1, 0, 0}, 10.1, 0)); // as sure as it can be
+        see({-1.8, -1, 0}, 10.2, track({0.2, 0, 0}, 10.2, 0));
+        QCOMPARE(tracker->builder.matchPair.settings.deviationXY, OdometryModel::leastDeviationXY);
+        QCOMPARE(tracker->builder.matchPair.settings.deviationAlpha, OdometryModel::leastDeviationAlpha);
+        see({-1.7, -1, 0}, 10.3, track({0.3, 0, 0}, 10.3, 100)); // no surer than without
+        QCOMPARE(tracker->builder.matchPair.settings.deviationXY, ScanPairSettings().deviationXY);
+        see({-1.6, -1, 0}, 10.4, track({0.4, 0, 0}, 10.4)); // it does not tell
+        QCOMPARE(tracker->builder.matchPair.settings.deviationXY, ScanPairSettings().deviationXY);
+    }
+
+    void looksWidelyAfterAPause() {
+        QVERIFY(isNear(see({-0.8, 0, 0.7}, 12).pose, {-0.8, 0, 0.7}));
+        QCOMPARE(tracker->counts().matched, std::uint64_t(2));
+    }
+
+    void looksNoLessWidelyThanItIsSetUp() {
+        ScanTrackerSettings settings;
+        settings.tracking.permitted = {5, 0.1, 0.2};
+        tracker->apply(settings);
+        see({-2, -1, 0}, 12);
+        const TrackingSettings &used = tracker->builder.track.settings;
+        QCOMPARE(used.permitted.dx, 5.0);
+        QCOMPARE(used.permitted.dy, TrackingSettings::forPoorExpectation().permitted.dy);
+        see({-2, -1, 0}, 12.1); // a moment later
+        QCOMPARE(used.permitted.dy, 0.1);
+    }
+
+    void survivesStampsThatStepBack() {
+        for (const double stamp : {9.0, 12.0, 8.0, 8.0, 1e9, 0.0})
+            QVERIFY(isNear(see({-2, -1, 0}, stamp).pose, {-2, -1, 0}));
+        QCOMPARE(tracker->counts().matched, std::uint64_t(7));
+    }
+
+    // The motion from the scan before would lead back to where it was wrongly thought to be.
+    void placeForgetsTheScanBefore() {
+        ScanTrackerSettings settings;
+        settings.tracking.permitted = {0.2, 0.2, 0.2};
+        tracker->apply(settings);
+        tracker->builder.settings.grow = false;
+        tracker->place({-1.2, -1.6, 0}); // somebody errs
+        QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
+        tracker->place({-2, -1, 0}); // and mends it
+        QVERIFY(isNear(see({-2, -1, 0}, 10.2).pose, {-2, -1, 0}));
+        QCOMPARE(tracker->builder.report().outcome, ScanReport::Outcome::Matched);
+    }
+
+    void knowsTheScannerOfEachScan() {
+        TimedScan scan;
+        scan.points = scanner(room, {-2, -1, 0});
+        scan.points.resize(scan.points.size() / 3); // most rays see nothing
+        scan.rays = 1800;
+        scan.stamp = 10.1;
+        tracker->process(scan);
+        QCOMPARE(tracker->builder.extract.segment.settings.nominalPoints, std::size_t(1800));
+        QCOMPARE(tracker->builder.extract.segment.settings.minPoints, EarSettings().minPoints);
+    }
+
+    // Any program may publish scans: fewer rays than points, far more, or none.
+    void aLieAboutTheRaysDoesNoHarm() {
+        double stamp = 10;
+        for (const std::size_t rays : {0, 1, 2, 3, 1000000}) {
+            TimedScan scan;
+            scan.points = scanner(room, {-2, -1, 0});
+            scan.rays = rays;
+            scan.stamp = stamp += 0.1;
+            QVERIFY(isNear(tracker->process(scan).pose, {-2, -1, 0}));
+        }
+    }
+
+    void followsScansThatTheMapDoesNotShow() {
+        // Through a door: the map and the scan before show nothing of the hall behind it.
+        const std::vector<LineSegment2D<float>> hall{{{20, -9}, {37, -9}},
+                                                     {{37, -9}, {37, 4}},
+                                                     {{37, 4}, {29, 8}},
+                                                     {{29, 8}, {20, 8}},
+                                                     {{20, 8}, {20, -9}}};
+        const auto at = [](int i) { return Pose2D{27 + 0.1 * i, -1, 0.02 * i}; };
+        int followed = 0;
+        Pose2D before = tracker->builder.report().pose;
+        for (int i = 0; i < 8; ++i) {
+            const Pose2D told{28 + 0.15 * i, 0, 0.03 * i}; // of the wheels, which slip
+            see(hall, at(i), 10.1 + 0.1 * i, track(told, 10.1 + 0.1 * i));
+            const Transformation2D motion = tracker->tracked(Transformation2D(before));
+            before = tracker->builder.report().pose;
+            if (i > 0 && tracker->trackedBy() == TrackedBy::Scan && tracker->builder.isExpectedByScan()) {
+                const Pose2D from = at(i - 1), to = at(i);
+                QVERIFY(isNear(motion.pose(), from.inverse() * to));
+                ++followed;
+            }
+        }
+        QVERIFY2(followed > 0, qPrintable(QString::number(followed)));
+    }
+
+    void passesOverAScanOfNothing() {
+        see({-1.9, -1, 0}, 10.1, track({0.1, 0, 0}, 10.1));
+        TimedScan ground; // a row of points across the way
+        for (int i = 0; i < 40; ++i)
+            ground.points.emplace_back(1.5F, 0.05F * float(i) - 1);
+        ground.rays = std::size_t(scanner.rays);
+        ground.stamp = 10.2;
+        ground.odometry = track({0.2, 0, 0}, 10.2);
+        QVERIFY(tracker->process(ground).outcome != ScanReport::Outcome::Matched);
+        QVERIFY(tracker->builder.isPassedOver());
+        QVERIFY(isNear(see({-1.7, -1, 0}, 10.3, track({0.4, 0.1, 0.1}, 10.3)).pose, {-1.7, -1, 0}));
+        QVERIFY(tracker->builder.isExpectedByScan());
+        QVERIFY(!tracker->builder.isPassedOver());
+    }
+
+    void clearForgetsAll() {
+        tracker->clear();
+        QVERIFY(tracker->builder.map.isEmpty());
+        QCOMPARE(tracker->counts().scans, std::uint64_t(0));
+        QVERIFY(isNear(see({3, 2, 1}, 5).pose, {0, 0, 0})); // the first scan makes the frame
+    }
+
+    void trustIsHighInARoom() {
+        for (int i = 1; i <= 20; ++i) {
+            see({-2 + 0.1 * i, -1, 0.05 * i}, 10 + 0.1 * i);
+            QVERIFY2(tracker->trust() > 0.9 && tracker->trust() <= 1,
+                     qPrintable(QString::number(tracker->trust())));
+        }
+    }
+
+    // Its ends are out of reach: nothing tells how far the sensor went.
+    void trustIsLowAlongABareCorridor() {
+        const std::vector<LineSegment2D<float>> corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 6;
+        tracker = std::make_unique<ScanTracker>();
+        for (int i = 0; i <= 20; ++i) {
+            see(corridor, {0.1 * i, 0, 0}, 10 + 0.1 * i);
+            QVERIFY2(tracker->trust() < 0.5, qPrintable(QString::number(tracker->trust())));
+        }
+        QCOMPARE(tracker->counts().matched, std::uint64_t(21));
+    }
+
+    // They stand close around and are elsewhere in each scan; some wall is seen between them.
+    void trustIsLowAmongPeople() {
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> way(0.5, 1.5), angle(-pi, pi);
+        double sum = 0;
+        for (int i = 1; i <= 20; ++i) {
+            std::vector<LineSegment2D<float>> world = room;
+            for (int person = 0; person < 14; ++person) {
+                const double a = angle(random), r = way(random);
+                const Vector2D<float> p(float(-1.5 + r * std::cos(a)), float(-0.5 + r * std::sin(a)));
+                for (int k = 0; k < 4; ++k) {
+                    const auto corner = [&](int n) {
+                        const double at = a + n * pi / 2;
+                        return p + Vector2D<float>(float(0.25 * std::cos(at)), float(0.25 * std::sin(at)));
+                    };
+                    world.emplace_back(corner(k + 1), corner(k));
+                }
+            }
+            see(world, {-1.5, -0.5, 0}, 10 + 0.1 * i);
+            sum += tracker->trust();
+        }
+        QVERIFY2(sum / 20 < 0.5, qPrintable(QString::number(sum / 20)));
+    }
+
+    void trustIsNoneWhenLost() {
+        ScanTrackerSettings settings;
+        settings.tracking.permitted = {0.2, 0.2, 0.2};
+        tracker->apply(settings);
+        tracker->builder.settings.grow = false;
+        QVERIFY(tracker->trust() == 0); // of the first scan: there was no map
+        tracker->place({1, 2, 1});
+        QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
+        QCOMPARE(tracker->trust(), 0.0);
+    }
+
+    void trustIsAProbabilityWhateverComes() {
+        const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+        const double hostile[] = {0, 1, -1, 1e300, -1e300, nan, infinite, -infinite};
+        const PoseTrust trust;
+        for (const double a : hostile)
+            for (const double b : hostile)
+                for (const double c : hostile) {
+                    Match match;
+                    match.pose = Transformation2D(a, b, 0);
+                    match.reliability = a;
+                    match.rms = b;
+                    match.matchedLength = c;
+                    match.visibleLength = a;
+                    const double p = trust(PoseTrust::features(match, Transformation2D(c, 0, 0), b));
+                    QVERIFY(p >= 0 && p <= 1);
+                }
+        QCOMPARE(trust({1, nan, 0, 0, 0, 0}), 0.0);
+    }
 
 private:
     const ScanReport &see(const Pose2D &pose, double stamp,
@@ -69,217 +261,6 @@ private:
     SimulatedScanner<float> scanner{5};
     std::unique_ptr<ScanTracker> tracker;
 };
-
-void TestScanTracker::init() {
-    tracker = std::make_unique<ScanTracker>();
-    tracker->place({-2, -1, 0});
-    QCOMPARE(see({-2, -1, 0}, 10, track({}, 10)).outcome, ScanReport::Outcome::Matched);
-}
-
-void TestScanTracker::goesByTheOdometry() {
-    // To the other end of the room and about, within a tenth of a second: only the odometry can know.
-    QVERIFY(isNear(see({2, 1, 2}, 10.1, track({4, 2, 2}, 10.1)).pose, {2, 1, 2}));
-    QCOMPARE(tracker->counts().byOdometry, std::uint64_t(1));
-    QCOMPARE(tracker->counts().matched, std::uint64_t(2));
-}
-
-void TestScanTracker::ignoresTheOdometryWhenTold() {
-    ScanTrackerSettings settings;
-    settings.useOdometry = false;
-    tracker->apply(settings);
-    QVERIFY(isNear(see({-1.9, -1, 0.05}, 10.1, track({4, 2, 2}, 10.1)).pose, {-1.9, -1, 0.05}));
-    QCOMPARE(tracker->counts().byOdometry, std::uint64_t(0));
-}
-
-void TestScanTracker::isAsSureAsTheOdometry() {
-    see({-1.9, -1, 0}, 10.1, track({0.1, 0, 0}, 10.1, 0)); // as sure as it can be
-    see({-1.8, -1, 0}, 10.2, track({0.2, 0, 0}, 10.2, 0));
-    QCOMPARE(tracker->builder.matchPair.settings.deviationXY, OdometryModel::leastDeviationXY);
-    QCOMPARE(tracker->builder.matchPair.settings.deviationAlpha, OdometryModel::leastDeviationAlpha);
-    see({-1.7, -1, 0}, 10.3, track({0.3, 0, 0}, 10.3, 100)); // no surer than without
-    QCOMPARE(tracker->builder.matchPair.settings.deviationXY, ScanPairSettings().deviationXY);
-    see({-1.6, -1, 0}, 10.4, track({0.4, 0, 0}, 10.4)); // it does not tell
-    QCOMPARE(tracker->builder.matchPair.settings.deviationXY, ScanPairSettings().deviationXY);
-}
-
-void TestScanTracker::looksWidelyAfterAPause() {
-    QVERIFY(isNear(see({-0.8, 0, 0.7}, 12).pose, {-0.8, 0, 0.7}));
-    QCOMPARE(tracker->counts().matched, std::uint64_t(2));
-}
-
-void TestScanTracker::looksNoLessWidelyThanItIsSetUp() {
-    ScanTrackerSettings settings;
-    settings.tracking.permitted = {5, 0.1, 0.2};
-    tracker->apply(settings);
-    see({-2, -1, 0}, 12);
-    const TrackingSettings &used = tracker->builder.track.settings;
-    QCOMPARE(used.permitted.dx, 5.0);
-    QCOMPARE(used.permitted.dy, TrackingSettings::forPoorExpectation().permitted.dy);
-    see({-2, -1, 0}, 12.1); // a moment later
-    QCOMPARE(used.permitted.dy, 0.1);
-}
-
-void TestScanTracker::survivesStampsThatStepBack() {
-    for (const double stamp : {9.0, 12.0, 8.0, 8.0, 1e9, 0.0})
-        QVERIFY(isNear(see({-2, -1, 0}, stamp).pose, {-2, -1, 0}));
-    QCOMPARE(tracker->counts().matched, std::uint64_t(7));
-}
-
-// The motion from the scan before would lead back to where it was wrongly thought to be.
-void TestScanTracker::placeForgetsTheScanBefore() {
-    ScanTrackerSettings settings;
-    settings.tracking.permitted = {0.2, 0.2, 0.2};
-    tracker->apply(settings);
-    tracker->builder.settings.grow = false;
-    tracker->place({-1.2, -1.6, 0}); // somebody errs
-    QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
-    tracker->place({-2, -1, 0}); // and mends it
-    QVERIFY(isNear(see({-2, -1, 0}, 10.2).pose, {-2, -1, 0}));
-    QCOMPARE(tracker->builder.report().outcome, ScanReport::Outcome::Matched);
-}
-
-void TestScanTracker::knowsTheScannerOfEachScan() {
-    TimedScan scan;
-    scan.points = scanner(room, {-2, -1, 0});
-    scan.points.resize(scan.points.size() / 3); // most rays see nothing
-    scan.rays = 1800;
-    scan.stamp = 10.1;
-    tracker->process(scan);
-    QCOMPARE(tracker->builder.extract.segment.settings.nominalPoints, std::size_t(1800));
-    QCOMPARE(tracker->builder.extract.segment.settings.minPoints, EarSettings().minPoints);
-}
-
-// Any program may publish scans: fewer rays than points, far more, or none.
-void TestScanTracker::aLieAboutTheRaysDoesNoHarm() {
-    double stamp = 10;
-    for (const std::size_t rays : {0, 1, 2, 3, 1000000}) {
-        TimedScan scan;
-        scan.points = scanner(room, {-2, -1, 0});
-        scan.rays = rays;
-        scan.stamp = stamp += 0.1;
-        QVERIFY(isNear(tracker->process(scan).pose, {-2, -1, 0}));
-    }
-}
-
-void TestScanTracker::followsScansThatTheMapDoesNotShow() {
-    // Through a door: the map and the scan before show nothing of the hall behind it.
-    const std::vector<LineSegment2D<float>> hall{{{20, -9}, {37, -9}},
-                                                 {{37, -9}, {37, 4}},
-                                                 {{37, 4}, {29, 8}},
-                                                 {{29, 8}, {20, 8}},
-                                                 {{20, 8}, {20, -9}}};
-    const auto at = [](int i) { return Pose2D{27 + 0.1 * i, -1, 0.02 * i}; };
-    int followed = 0;
-    Pose2D before = tracker->builder.report().pose;
-    for (int i = 0; i < 8; ++i) {
-        const Pose2D told{28 + 0.15 * i, 0, 0.03 * i}; // of the wheels, which slip
-        see(hall, at(i), 10.1 + 0.1 * i, track(told, 10.1 + 0.1 * i));
-        const Transformation2D motion = tracker->tracked(Transformation2D(before));
-        before = tracker->builder.report().pose;
-        if (i > 0 && tracker->trackedBy() == TrackedBy::Scan && tracker->builder.isExpectedByScan()) {
-            const Pose2D from = at(i - 1), to = at(i);
-            QVERIFY(isNear(motion.pose(), from.inverse() * to));
-            ++followed;
-        }
-    }
-    QVERIFY2(followed > 0, qPrintable(QString::number(followed)));
-}
-
-void TestScanTracker::passesOverAScanOfNothing() {
-    see({-1.9, -1, 0}, 10.1, track({0.1, 0, 0}, 10.1));
-    TimedScan ground; // a row of points across the way
-    for (int i = 0; i < 40; ++i)
-        ground.points.emplace_back(1.5F, 0.05F * float(i) - 1);
-    ground.rays = std::size_t(scanner.rays);
-    ground.stamp = 10.2;
-    ground.odometry = track({0.2, 0, 0}, 10.2);
-    QVERIFY(tracker->process(ground).outcome != ScanReport::Outcome::Matched);
-    QVERIFY(tracker->builder.isPassedOver());
-    QVERIFY(isNear(see({-1.7, -1, 0}, 10.3, track({0.4, 0.1, 0.1}, 10.3)).pose, {-1.7, -1, 0}));
-    QVERIFY(tracker->builder.isExpectedByScan());
-    QVERIFY(!tracker->builder.isPassedOver());
-}
-
-void TestScanTracker::clearForgetsAll() {
-    tracker->clear();
-    QVERIFY(tracker->builder.map.isEmpty());
-    QCOMPARE(tracker->counts().scans, std::uint64_t(0));
-    QVERIFY(isNear(see({3, 2, 1}, 5).pose, {0, 0, 0})); // the first scan makes the frame
-}
-
-void TestScanTracker::trustIsHighInARoom() {
-    for (int i = 1; i <= 20; ++i) {
-        see({-2 + 0.1 * i, -1, 0.05 * i}, 10 + 0.1 * i);
-        QVERIFY2(tracker->trust() > 0.9 && tracker->trust() <= 1,
-                 qPrintable(QString::number(tracker->trust())));
-    }
-}
-
-// Its ends are out of reach: nothing tells how far the sensor went.
-void TestScanTracker::trustIsLowAlongABareCorridor() {
-    const std::vector<LineSegment2D<float>> corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
-    scanner.maxRange = 6;
-    tracker = std::make_unique<ScanTracker>();
-    for (int i = 0; i <= 20; ++i) {
-        see(corridor, {0.1 * i, 0, 0}, 10 + 0.1 * i);
-        QVERIFY2(tracker->trust() < 0.5, qPrintable(QString::number(tracker->trust())));
-    }
-    QCOMPARE(tracker->counts().matched, std::uint64_t(21));
-}
-
-// They stand close around and are elsewhere in each scan; some wall is seen between them.
-void TestScanTracker::trustIsLowAmongPeople() {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> way(0.5, 1.5), angle(-pi, pi);
-    double sum = 0;
-    for (int i = 1; i <= 20; ++i) {
-        std::vector<LineSegment2D<float>> world = room;
-        for (int person = 0; person < 14; ++person) {
-            const double a = angle(random), r = way(random);
-            const Vector2D<float> p(float(-1.5 + r * std::cos(a)), float(-0.5 + r * std::sin(a)));
-            for (int k = 0; k < 4; ++k) {
-                const auto corner = [&](int n) {
-                    const double at = a + n * pi / 2;
-                    return p + Vector2D<float>(float(0.25 * std::cos(at)), float(0.25 * std::sin(at)));
-                };
-                world.emplace_back(corner(k + 1), corner(k));
-            }
-        }
-        see(world, {-1.5, -0.5, 0}, 10 + 0.1 * i);
-        sum += tracker->trust();
-    }
-    QVERIFY2(sum / 20 < 0.5, qPrintable(QString::number(sum / 20)));
-}
-
-void TestScanTracker::trustIsNoneWhenLost() {
-    ScanTrackerSettings settings;
-    settings.tracking.permitted = {0.2, 0.2, 0.2};
-    tracker->apply(settings);
-    tracker->builder.settings.grow = false;
-    QVERIFY(tracker->trust() == 0); // of the first scan: there was no map
-    tracker->place({1, 2, 1});
-    QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
-    QCOMPARE(tracker->trust(), 0.0);
-}
-
-void TestScanTracker::trustIsAProbabilityWhateverComes() {
-    const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
-    const double hostile[] = {0, 1, -1, 1e300, -1e300, nan, infinite, -infinite};
-    const PoseTrust trust;
-    for (const double a : hostile)
-        for (const double b : hostile)
-            for (const double c : hostile) {
-                Match match;
-                match.pose = Transformation2D(a, b, 0);
-                match.reliability = a;
-                match.rms = b;
-                match.matchedLength = c;
-                match.visibleLength = a;
-                const double p = trust(PoseTrust::features(match, Transformation2D(c, 0, 0), b));
-                QVERIFY(p >= 0 && p <= 1);
-            }
-    QCOMPARE(trust({1, nan, 0, 0, 0, 0}), 0.0);
-}
 
 QTEST_APPLESS_MAIN(TestScanTracker)
 #include "TestScanTracker.moc"

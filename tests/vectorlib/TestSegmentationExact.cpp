@@ -185,96 +185,92 @@ class TestSegmentationExact : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void cartesianEqualsTheFullAlgorithm_data() { levels(); }
-    void cartesianEqualsTheFullAlgorithm();
+
+    void cartesianEqualsTheFullAlgorithm() {
+        QFETCH(int, level);
+        compareCartesian<float>(simd::Level(level));
+        compareCartesian<double>(simd::Level(level));
+    }
+
     void polarEqualsTheFullAlgorithm_data() { levels(); }
-    void polarEqualsTheFullAlgorithm();
-    void polarFindsWhatCartesianFinds();
-    void longScansAtAllLevels();
-    void manyClustersOverTheEnd();
-    void gapsThatHardlyDiffer();
-};
 
-void TestSegmentationExact::cartesianEqualsTheFullAlgorithm() {
-    QFETCH(int, level);
-    compareCartesian<float>(simd::Level(level));
-    compareCartesian<double>(simd::Level(level));
-}
+    void polarEqualsTheFullAlgorithm() {
+        QFETCH(int, level);
+        comparePolar<float>(simd::Level(level), 1);
+        comparePolar<double>(simd::Level(level), 1);
+        comparePolar<std::uint16_t>(simd::Level(level), 0.001);
+        comparePolar<std::uint32_t>(simd::Level(level), 0.0001);
+    }
 
-void TestSegmentationExact::polarEqualsTheFullAlgorithm() {
-    QFETCH(int, level);
-    comparePolar<float>(simd::Level(level), 1);
-    comparePolar<double>(simd::Level(level), 1);
-    comparePolar<std::uint16_t>(simd::Level(level), 0.001);
-    comparePolar<std::uint32_t>(simd::Level(level), 0.0001);
-}
+    void polarFindsWhatCartesianFinds() {
+        const std::size_t count = 1000;
+        std::vector<float> ranges;
+        for (std::size_t i = 0; i < count; ++i) // two half circles and a stray ray every 50
+            ranges.push_back((i < count / 2 ? 2.0f : 3.0f) * (i % 50 == 25 ? 0.5f : 1.0f));
+        const PolarScan<float> scan{ranges.data(), count, 0, 2 * pi / double(count)};
+        std::vector<Vector2D<float>> points;
+        for (std::size_t i = 0; i < count; ++i)
+            points.emplace_back(scan.point(i));
+        EarSegmenter<float> cartesian, polar;
+        QVERIFY(cartesian(points).labels == polar(scan).labels);
+        QCOMPARE(polar(scan).size(), std::size_t(2));
+    }
 
-void TestSegmentationExact::polarFindsWhatCartesianFinds() {
-    const std::size_t count = 1000;
-    std::vector<float> ranges;
-    for (std::size_t i = 0; i < count; ++i) // two half circles and a stray ray every 50
-        ranges.push_back((i < count / 2 ? 2.0f : 3.0f) * (i % 50 == 25 ? 0.5f : 1.0f));
-    const PolarScan<float> scan{ranges.data(), count, 0, 2 * pi / double(count)};
-    std::vector<Vector2D<float>> points;
-    for (std::size_t i = 0; i < count; ++i)
-        points.emplace_back(scan.point(i));
-    EarSegmenter<float> cartesian, polar;
-    QVERIFY(cartesian(points).labels == polar(scan).labels);
-    QCOMPARE(polar(scan).size(), std::size_t(2));
-}
+    void longScansAtAllLevels() {
+        std::mt19937 random(7);
+        const std::size_t count = 50000;
+        const std::vector<float> ranges = randomRanges(random, count);
+        const PolarScan<float> scan{ranges.data(), count, 0, 2 * pi / double(count), 1, 0.1, 30};
+        std::vector<Vector2D<float>> points;
+        for (std::size_t i = 0; i < count; ++i)
+            points.emplace_back(scan.point(i));
+        EarSegmenter<float> plain, best;
+        plain.level = simd::Level::Scalar;
+        QVERIFY(plain(points).size() > 10);
+        QVERIFY(plain(points).labels == best(points).labels);
+        QVERIFY(plain(points).order == best(points).order);
+        QVERIFY(plain(scan).size() > 10);
+        QVERIFY(plain(scan).labels == best(scan).labels);
+        QVERIFY(plain(scan).order == best(scan).order);
+    }
 
-void TestSegmentationExact::longScansAtAllLevels() {
-    std::mt19937 random(7);
-    const std::size_t count = 50000;
-    const std::vector<float> ranges = randomRanges(random, count);
-    const PolarScan<float> scan{ranges.data(), count, 0, 2 * pi / double(count), 1, 0.1, 30};
-    std::vector<Vector2D<float>> points;
-    for (std::size_t i = 0; i < count; ++i)
-        points.emplace_back(scan.point(i));
-    EarSegmenter<float> plain, best;
-    plain.level = simd::Level::Scalar;
-    QVERIFY(plain(points).size() > 10);
-    QVERIFY(plain(points).labels == best(points).labels);
-    QVERIFY(plain(points).order == best(points).order);
-    QVERIFY(plain(scan).size() > 10);
-    QVERIFY(plain(scan).labels == best(scan).labels);
-    QVERIFY(plain(scan).order == best(scan).order);
-}
-
-// Three walls whose points alternate all around: each cluster runs over the end and has its own widest gap.
-void TestSegmentationExact::manyClustersOverTheEnd() {
-    std::vector<float> ranges;
-    for (int i = 0; i < 999; ++i)
-        ranges.push_back(float(1 + i % 3));
-    for (int i = 600; i < 612; ++i) // a gap in every wall
-        ranges[std::size_t(i)] = 0;
-    const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 999};
-    EarSegmenter<float> segment;
-    segment.settings.neighbours = 20;
-    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
-        segment.level = level;
-        const Segmentation &s = segment(scan);
-        QCOMPARE(s.size(), std::size_t(3));
-        for (std::size_t c = 0; c < 3; ++c) {
-            QCOMPARE(s.size(c), std::size_t(329));
-            QCOMPARE(s.order[s.starts[c]], 612 + int(c));
-            QCOMPARE(s.order[s.starts[c + 1] - 1], 597 + int(c));
+    // Three walls whose points alternate all around: each cluster runs over the end and has its own widest
+    // gap.
+    void manyClustersOverTheEnd() {
+        std::vector<float> ranges;
+        for (int i = 0; i < 999; ++i)
+            ranges.push_back(float(1 + i % 3));
+        for (int i = 600; i < 612; ++i) // a gap in every wall
+            ranges[std::size_t(i)] = 0;
+        const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 999};
+        EarSegmenter<float> segment;
+        segment.settings.neighbours = 20;
+        for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+            segment.level = level;
+            const Segmentation &s = segment(scan);
+            QCOMPARE(s.size(), std::size_t(3));
+            for (std::size_t c = 0; c < 3; ++c) {
+                QCOMPARE(s.size(c), std::size_t(329));
+                QCOMPARE(s.order[s.starts[c]], 612 + int(c));
+                QCOMPARE(s.order[s.starts[c + 1] - 1], 597 + int(c));
+            }
         }
     }
-}
 
-// The range grows by one part in a million from ray to ray up to ray 500, and falls again.
-void TestSegmentationExact::gapsThatHardlyDiffer() {
-    std::vector<float> ranges;
-    for (int i = 0; i < 1000; ++i)
-        ranges.push_back(float(2 - 2e-6 * std::abs(i - 500)));
-    const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 1000};
-    EarSegmenter<float> segment;
-    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
-        segment.level = level;
-        QCOMPARE(segment(scan).order.front(), 500);
-        QCOMPARE(segment(scan).size(0), ranges.size());
+    // The range grows by one part in a million from ray to ray up to ray 500, and falls again.
+    void gapsThatHardlyDiffer() {
+        std::vector<float> ranges;
+        for (int i = 0; i < 1000; ++i)
+            ranges.push_back(float(2 - 2e-6 * std::abs(i - 500)));
+        const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 1000};
+        EarSegmenter<float> segment;
+        for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+            segment.level = level;
+            QCOMPARE(segment(scan).order.front(), 500);
+            QCOMPARE(segment(scan).size(0), ranges.size());
+        }
     }
-}
+};
 
 QTEST_APPLESS_MAIN(TestSegmentationExact)
 #include "TestSegmentationExact.moc"

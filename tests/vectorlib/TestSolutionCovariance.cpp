@@ -8,15 +8,6 @@
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 
-// How sure a solution of the correspondence search is, against repeated measurements of the same walls.
-class TestSolutionCovariance : public QObject {
-    Q_OBJECT
-private Q_SLOTS:
-    void agreesWithMonteCarlo_data();
-    void agreesWithMonteCarlo();
-    void nothingWhereNothingIsKnown();
-};
-
 namespace {
 
 constexpr double spacing = 0.05; // metres between points
@@ -43,61 +34,66 @@ MeasuredSegments seen(const Transformation2D &from, double noise, std::mt19937 &
 
 } // namespace
 
-void TestSolutionCovariance::agreesWithMonteCarlo_data() {
-    const Rows<double, double, double, double> row("x", "y", "alpha", "mapNoise");
-    row("no motion", 0.0, 0.0, 0.0, 0.01);
-    row("motion", 0.7, -0.4, 0.6, 0.01);
-    row("a map that is known exactly", 0.7, 0.4, -0.3, 0.0);
-}
-
-void TestSolutionCovariance::agreesWithMonteCarlo() {
-    FETCH(double, x, double, y, double, alpha, double, mapNoise);
-    const Transformation2D truth(x, y, alpha);
-    constexpr int runs = 4000;
-    std::mt19937 random(7);
-    CorrespondenceFinder find;
-    Eigen::Matrix3d measured = Eigen::Matrix3d::Zero(), told = Eigen::Matrix3d::Zero();
-    for (int i = 0; i < runs; ++i) {
-        MeasuredSegments fixed = seen({}, mapNoise, random);
-        if (mapNoise <= 0)
-            fixed.lines.assign(room.size(), LineCovariance::exact());
-        const MeasuredSegments moving = seen(truth, 0.01, random);
-        const SearchResult &result = find(fixed.segments, moving.segments, truth);
-        QVERIFY(!result.solutions.empty());
-        const Solution &best = result.solutions[0];
-        QCOMPARE(best.pairs.size(), room.size());
-        const auto covariance = SolutionCovariance()(best, fixed, moving);
-        QVERIFY(covariance);
-        told += *covariance / runs;
-        const Eigen::Vector3d error(best.pose.x() - x, best.pose.y() - y, best.pose.alpha() - alpha);
-        measured += error * error.transpose() / runs;
+// How sure a solution of the correspondence search is, against repeated measurements of the same walls.
+class TestSolutionCovariance : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void agreesWithMonteCarlo_data() {
+        const Rows<double, double, double, double> row("x", "y", "alpha", "mapNoise");
+        row("no motion", 0.0, 0.0, 0.0, 0.01);
+        row("motion", 0.7, -0.4, 0.6, 0.01);
+        row("a map that is known exactly", 0.7, 0.4, -0.3, 0.0);
     }
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b)
-            QVERIFY2(std::abs(measured(a, b) - told(a, b)) < 0.1 * std::sqrt(told(a, a) * told(b, b)),
-                     qPrintable(QStringLiteral("(%1, %2): measured %3, told %4")
-                                    .arg(a)
-                                    .arg(b)
-                                    .arg(measured(a, b))
-                                    .arg(told(a, b))));
-}
 
-void TestSolutionCovariance::nothingWhereNothingIsKnown() {
-    std::mt19937 random(8);
-    const MeasuredSegments walls = seen({}, 0.01, random);
-    CorrespondenceFinder find;
-    const Solution best = find(walls.segments, walls.segments).solutions.at(0);
-    const SolutionCovariance covariance;
-    QVERIFY(covariance(best, walls, walls));
-    QVERIFY(!covariance(Solution(), walls, walls));
-    QVERIFY(!covariance(best, walls, {walls.segments, {}}));
-    MeasuredSegments unsure = walls;
-    unsure.lines[1] = LineCovariance();
-    QVERIFY(!covariance(best, walls, unsure));
-    Solution foreign = best;
-    foreign.pairs.push_back({0, 99});
-    QVERIFY(!covariance(foreign, walls, walls));
-}
+    void agreesWithMonteCarlo() {
+        FETCH(double, x, double, y, double, alpha, double, mapNoise);
+        const Transformation2D truth(x, y, alpha);
+        constexpr int runs = 4000;
+        std::mt19937 random(7);
+        CorrespondenceFinder find;
+        Eigen::Matrix3d measured = Eigen::Matrix3d::Zero(), told = Eigen::Matrix3d::Zero();
+        for (int i = 0; i < runs; ++i) {
+            MeasuredSegments fixed = seen({}, mapNoise, random);
+            if (mapNoise <= 0)
+                fixed.lines.assign(room.size(), LineCovariance::exact());
+            const MeasuredSegments moving = seen(truth, 0.01, random);
+            const SearchResult &result = find(fixed.segments, moving.segments, truth);
+            QVERIFY(!result.solutions.empty());
+            const Solution &best = result.solutions[0];
+            QCOMPARE(best.pairs.size(), room.size());
+            const auto covariance = SolutionCovariance()(best, fixed, moving);
+            QVERIFY(covariance);
+            told += *covariance / runs;
+            const Eigen::Vector3d error(best.pose.x() - x, best.pose.y() - y, best.pose.alpha() - alpha);
+            measured += error * error.transpose() / runs;
+        }
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b)
+                QVERIFY2(std::abs(measured(a, b) - told(a, b)) < 0.1 * std::sqrt(told(a, a) * told(b, b)),
+                         qPrintable(QStringLiteral("(%1, %2): measured %3, told %4")
+                                        .arg(a)
+                                        .arg(b)
+                                        .arg(measured(a, b))
+                                        .arg(told(a, b))));
+    }
+
+    void nothingWhereNothingIsKnown() {
+        std::mt19937 random(8);
+        const MeasuredSegments walls = seen({}, 0.01, random);
+        CorrespondenceFinder find;
+        const Solution best = find(walls.segments, walls.segments).solutions.at(0);
+        const SolutionCovariance covariance;
+        QVERIFY(covariance(best, walls, walls));
+        QVERIFY(!covariance(Solution(), walls, walls));
+        QVERIFY(!covariance(best, walls, {walls.segments, {}}));
+        MeasuredSegments unsure = walls;
+        unsure.lines[1] = LineCovariance();
+        QVERIFY(!covariance(best, walls, unsure));
+        Solution foreign = best;
+        foreign.pairs.push_back({0, 99});
+        QVERIFY(!covariance(foreign, walls, walls));
+    }
+};
 
 QTEST_APPLESS_MAIN(TestSolutionCovariance)
 #include "TestSolutionCovariance.moc"

@@ -229,108 +229,103 @@ Trouble drawTrouble(const QString &kind, std::mt19937 &random) {
 class TestTroubledDrive : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void noWallIsMadeUp_data();
-    void noWallIsMadeUp();
-    void findsTheVelocityOfABentScan();
-    void trustsTheVelocityWhereNothingTells();
-    void whatStaysBentStaysOut();
-};
+    void noWallIsMadeUp_data() {
+        const Rows<QString> row("kind");
+        for (const char *kind : {"all is well", "behind", "far behind", "silent", "late", "frozen", "blind",
+                                 "clock", "none at all", "mixed"})
+            row(kind, kind);
+    }
 
-void TestTroubledDrive::noWallIsMadeUp_data() {
-    const Rows<QString> row("kind");
-    for (const char *kind : {"all is well", "behind", "far behind", "silent", "late", "frozen", "blind",
-                             "clock", "none at all", "mixed"})
-        row(kind, kind);
-}
-
-void TestTroubledDrive::noWallIsMadeUp() {
-    QFETCH(QString, kind);
-    for (unsigned seed = 1; seed <= 6; ++seed) {
-        std::mt19937 random(seed);
-        const Trouble trouble = drawTrouble(kind, random);
-        ScanTracker tracker;
-        tracker.place(poseAt(0));
-        OdometryBuffer odometry;
-        double farthest = 0;
-        for (Event &event : Drive(trouble, seed).events) {
-            if (event.sample) {
-                odometry.add(*event.sample);
-                continue;
+    void noWallIsMadeUp() {
+        QFETCH(QString, kind);
+        for (unsigned seed = 1; seed <= 6; ++seed) {
+            std::mt19937 random(seed);
+            const Trouble trouble = drawTrouble(kind, random);
+            ScanTracker tracker;
+            tracker.place(poseAt(0));
+            OdometryBuffer odometry;
+            double farthest = 0;
+            for (Event &event : Drive(trouble, seed).events) {
+                if (event.sample) {
+                    odometry.add(*event.sample);
+                    continue;
+                }
+                event.scan.odometry = odometry.over(event.scan.begin(), event.scan.end());
+                const Pose2D found = tracker.process(event.scan).pose,
+                             real = poseAt(event.scan.stamp - start);
+                farthest = std::max(farthest, std::hypot(found.x - real.x, found.y - real.y));
             }
-            event.scan.odometry = odometry.over(event.scan.begin(), event.scan.end());
-            const Pose2D found = tracker.process(event.scan).pose, real = poseAt(event.scan.stamp - start);
-            farthest = std::max(farthest, std::hypot(found.x - real.x, found.y - real.y));
+            const double worst = worstEdge(tracker.builder.map);
+            const QString what =
+                QString("seed %1: an edge is off by %2 m, a pose by %3 m").arg(seed).arg(worst).arg(farthest);
+            QVERIFY2(worst <= 0.05 && farthest <= 0.02, qPrintable(what));
+            QCOMPARE(tracker.counts().lost, std::uint64_t(0));
+            QVERIFY(tracker.builder.map.size() >= 15); // of 24 walls, some not to be seen
         }
-        const double worst = worstEdge(tracker.builder.map);
-        const QString what =
-            QString("seed %1: an edge is off by %2 m, a pose by %3 m").arg(seed).arg(worst).arg(farthest);
-        QVERIFY2(worst <= 0.05 && farthest <= 0.02, qPrintable(what));
-        QCOMPARE(tracker.counts().lost, std::uint64_t(0));
-        QVERIFY(tracker.builder.map.size() >= 15); // of 24 walls, some not to be seen
     }
-}
 
-void TestTroubledDrive::findsTheVelocityOfABentScan() {
-    const Twist2D real{0.8, -0.1, 1.0};
-    const auto poseOf = [&](double t) { return Pose2D{-1, -2, 0.4} * real.motion(t - turn / 2); };
-    std::mt19937_64 random(1);
-    const TimedScan scan = takeScan(room, 0, poseOf, random);
-    std::vector<Segment> known;
-    for (const Segment &wall : room)
-        known.push_back(Transformation2D(-1, -2, 0.4).inverse() * wall);
-    TwistCorrection correct;
-    Twist2D found;
-    for (int i = 0; i < 3; ++i) {
-        std::vector<Vector2D<float>> points = scan.points;
-        compensateMotion(points, scan.seconds, middle, found);
-        const auto wrong = correct(points, scan.seconds, middle, known);
-        QVERIFY(i > 0 || (wrong.bend > 0.1 && wrong.bend < 0.4));
-        QVERIFY(i < 2 || wrong.bend < 0.01);
-        found = {found.vx + wrong.twist.vx, found.vy + wrong.twist.vy, found.omega + wrong.twist.omega};
+    void findsTheVelocityOfABentScan() {
+        const Twist2D real{0.8, -0.1, 1.0};
+        const auto poseOf = [&](double t) { return Pose2D{-1, -2, 0.4} * real.motion(t - turn / 2); };
+        std::mt19937_64 random(1);
+        const TimedScan scan = takeScan(room, 0, poseOf, random);
+        std::vector<Segment> known;
+        for (const Segment &wall : room)
+            known.push_back(Transformation2D(-1, -2, 0.4).inverse() * wall);
+        TwistCorrection correct;
+        Twist2D found;
+        for (int i = 0; i < 3; ++i) {
+            std::vector<Vector2D<float>> points = scan.points;
+            compensateMotion(points, scan.seconds, middle, found);
+            const auto wrong = correct(points, scan.seconds, middle, known);
+            QVERIFY(i > 0 || (wrong.bend > 0.1 && wrong.bend < 0.4));
+            QVERIFY(i < 2 || wrong.bend < 0.01);
+            found = {found.vx + wrong.twist.vx, found.vy + wrong.twist.vy, found.omega + wrong.twist.omega};
+        }
+        QVERIFY(std::abs(found.vx - real.vx) < 0.1 && std::abs(found.vy - real.vy) < 0.1);
+        QVERIFY(std::abs(found.omega - real.omega) < 0.05);
     }
-    QVERIFY(std::abs(found.vx - real.vx) < 0.1 && std::abs(found.vy - real.vy) < 0.1);
-    QVERIFY(std::abs(found.omega - real.omega) < 0.05);
-}
 
-void TestTroubledDrive::trustsTheVelocityWhereNothingTells() {
-    const std::vector<Segment> corridor{{{-9, -1}, {9, -1}}, {{9, 1}, {-9, 1}}};
-    std::mt19937_64 random(1);
-    const TimedScan scan = takeScan(
-        corridor, 0,
-        [](double t) {
-            return Pose2D{0.8 * t, 0, 0};
-        },
-        random);
-    TwistCorrection correct;
-    QVERIFY(std::abs(correct(scan.points, scan.seconds, middle, corridor).twist.vx) < 1e-6);
-    QCOMPARE(correct(scan.points, scan.seconds, middle, {}).bend, 0.0);
-    QCOMPARE(correct(scan.points, {}, 0, corridor).bend, 0.0);
-}
+    void trustsTheVelocityWhereNothingTells() {
+        const std::vector<Segment> corridor{{{-9, -1}, {9, -1}}, {{9, 1}, {-9, 1}}};
+        std::mt19937_64 random(1);
+        const TimedScan scan = takeScan(
+            corridor, 0,
+            [](double t) {
+                return Pose2D{0.8 * t, 0, 0};
+            },
+            random);
+        TwistCorrection correct;
+        QVERIFY(std::abs(correct(scan.points, scan.seconds, middle, corridor).twist.vx) < 1e-6);
+        QCOMPARE(correct(scan.points, scan.seconds, middle, {}).bend, 0.0);
+        QCOMPARE(correct(scan.points, {}, 0, corridor).bend, 0.0);
+    }
 
-// Something pushed the robot aside in the middle of the turn: no velocity makes this scan straight.
-void TestTroubledDrive::whatStaysBentStaysOut() {
-    const Pose2D at{-1, -2, 0.4};
-    std::mt19937_64 random(1);
-    ScanTracker tracker;
-    tracker.place(at);
-    double time = 0;
-    const auto see = [&](const std::function<Pose2D(double)> &poseOf) {
-        TimedScan scan = takeScan(room, time, poseOf, random);
-        tracker.process(scan);
-        time += turn;
-        return tracker.builder.map.takeChanges().size();
-    };
-    const auto stand = [&](double) { return at; };
-    QVERIFY(see(stand) > 0);
-    QVERIFY(see(stand) > 0);
-    const double push = time + turn / 2;
-    QCOMPARE(see([&](double t) {
-                 return t < push ? at : Pose2D{at.x, at.y + 0.2, at.theta + 0.1};
-             }),
-             std::size_t(0));
-    QVERIFY(see(stand) > 0);
-    QVERIFY(worstEdge(tracker.builder.map) < 0.05);
-}
+    // Something pushed the robot aside in the middle of the turn: no velocity makes this scan straight.
+    void whatStaysBentStaysOut() {
+        const Pose2D at{-1, -2, 0.4};
+        std::mt19937_64 random(1);
+        ScanTracker tracker;
+        tracker.place(at);
+        double time = 0;
+        const auto see = [&](const std::function<Pose2D(double)> &poseOf) {
+            TimedScan scan = takeScan(room, time, poseOf, random);
+            tracker.process(scan);
+            time += turn;
+            return tracker.builder.map.takeChanges().size();
+        };
+        const auto stand = [&](double) { return at; };
+        QVERIFY(see(stand) > 0);
+        QVERIFY(see(stand) > 0);
+        const double push = time + turn / 2;
+        QCOMPARE(see([&](double t) {
+                     return t < push ? at : Pose2D{at.x, at.y + 0.2, at.theta + 0.1};
+                 }),
+                 std::size_t(0));
+        QVERIFY(see(stand) > 0);
+        QVERIFY(worstEdge(tracker.builder.map) < 0.05);
+    }
+};
 
 QTEST_APPLESS_MAIN(TestTroubledDrive)
 #include "TestTroubledDrive.moc"

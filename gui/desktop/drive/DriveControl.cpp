@@ -11,7 +11,6 @@ namespace hermes::desktop {
 namespace {
 
 const QString driveMethod = "motor.drive";
-constexpr int mostKept = 200; // limits of robots
 
 } // namespace
 
@@ -85,7 +84,10 @@ void DriveControl::follow() {
     motors_ = found;
     if (found && found != driven_) { // the limit is another robot's
         most_ = usualMost;
-        limit_ = limits_.value(found->address(), scaled(usualMost, usualShare));
+        limit_ = scaled(usualMost, usualShare);
+        if (const QJsonValue kept = limits_.value(found->address()); kept.isArray())
+            limit_ = {qMax(0.0, kept[0].toDouble()), qMax(0.0, kept[1].toDouble()),
+                      qMax(0.0, kept[2].toDouble())};
     }
     if (found)
         driven_ = found;
@@ -164,24 +166,8 @@ bool DriveControl::setLimit(double share) {
 void DriveControl::putLimit(const Twist2D &limit) {
     limit_ = limit;
     if (driven_)
-        limits_[driven_->address()] = limit;
-    if (limits_.size() > mostKept)
-        limits_.erase(limits_.begin());
+        limits_[driven_->address()] = QJsonArray{limit.vx, limit.vy, limit.omega};
     Q_EMIT changed();
-}
-
-QJsonObject DriveControl::limits() const {
-    QJsonObject all;
-    for (auto limit = limits_.begin(); limit != limits_.end(); ++limit)
-        all[limit.key()] = QJsonArray{limit->vx, limit->vy, limit->omega};
-    return all;
-}
-
-void DriveControl::setLimits(const QJsonObject &limits) {
-    for (auto limit = limits.begin(); limit != limits.end(); ++limit) {
-        const auto speed = [limit](int i) { return qBound(0.0, limit->toArray()[i].toDouble(), 100.0); };
-        limits_[limit.key()] = {speed(0), speed(1), speed(2)};
-    }
 }
 
 Twist2D DriveControl::wish() const {
@@ -312,8 +298,10 @@ void DriveControl::giveBack() {
 
 /// The control, as the next state will tell; one that was asked for before tells nothing of it.
 void DriveControl::lose() {
-    if (isHolding_)
+    if (isHolding_) {
         hold_.control.held = false;
+        lost_.start();
+    }
     isHolding_ = false;
     ++losses_;
 }
@@ -414,6 +402,9 @@ void DriveControl::onState(const QJsonValue &state) {
     stateAge_.heard(motors_);
     const bool wasStopped = isStopped(), wasLatched = !hold_.latched.isEmpty();
     hold_ = std::move(*hold);
+    if (!isHolding_ && hold_.control.holder == ownName() && lost_.isValid() &&
+        !lost_.hasExpired(qint64(1000 * lease_s)))
+        hold_.control.held = false; // the state is older than the release
     target_ = readMessage<Twist2D>(WireValue(state["target"]), report).value_or(Twist2D());
     if (!isDriving_ && hold_.control.holder != ownName())
         isHolding_ = false; // it ran out

@@ -39,8 +39,8 @@ public:
     /// share: of the largest speeds, up to 1. False: something is held, so none was raised.
     bool setLimit(double share);
     /// Those of all robots, to be kept and, before one is connected, to be restored.
-    QJsonObject limits() const;
-    void setLimits(const QJsonObject &limits);
+    const QJsonObject &limits() const { return limits_; }
+    void setLimits(const QJsonObject &limits) { limits_ = limits; }
     /// The robot's largest speeds, in m/s and rad/s.
     const Twist2D &most() const { return most_; }
     /// The emergency stop of the robot: at once, without the control, latched until release().
@@ -142,6 +142,7 @@ private:
     DriveInputs inputs_;
     SecondPress confirmation_;
     QElapsedTimer ticked_;   ///< the last turn of the timer
+    QElapsedTimer lost_;     ///< since the control was given back
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;
@@ -150,7 +151,7 @@ private:
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     Twist2D limit_ = scaled(usualMost, usualShare);
-    QMap<QString, Twist2D> limits_; ///< of each robot, by the address of its motor control
+    QJsonObject limits_; ///< vx, vy, omega of each robot, by the address of its motor control
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, isPolling_ = false;
     bool isBlindMeant_ = false;
     QString problem_, heldProblem_; ///< the second: it ends when nobody else has the control

@@ -16,7 +16,6 @@ namespace {
 constexpr double slow = 0.3;
 constexpr qint64 rest_ms = 150;   // what is pressed sooner after its release is held, and repeated
 constexpr qint64 unseen_ms = 300; // what the display does not say to be held for so long is not
-constexpr std::chrono::milliseconds askEach{50};
 constexpr auto chord = Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier;
 
 /// Widgets that need arrows or letters themselves.
@@ -137,14 +136,13 @@ bool DriveKeys::press(const QKeyEvent &key) {
 void DriveKeys::hold(const QKeyEvent &key) {
     if (held_.canAsk() && !asking_.isActive()) {
         held_.begin();
-        asking_.start(askEach);
+        asking_.start(DriveControl::period);
     }
     Held &held = down_[idOf(key)];
     held.key = key.key();
     held.seen.start();
 }
 
-// A release may never be told: another program has taken the keyboard, or the display has stopped.
 void DriveKeys::ask() {
     const bool isAnswered = held_.ask(window_);
     if (down_.isEmpty())

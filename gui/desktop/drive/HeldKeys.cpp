@@ -2,6 +2,7 @@
 
 #include <QGuiApplication>
 #include <QLibrary>
+#include <QtEndian>
 #include <cstdlib>
 #include <memory>
 #include <utility>
@@ -9,79 +10,48 @@
 namespace hermes::desktop {
 namespace {
 
-/// What is used of libxcb (xcb.h, xproto.h). Where Qt shows windows by it, it is there.
-struct Xcb {
-    struct Cookie {
-        unsigned sequence;
-    };
-    struct Keymap {
-        quint32 head[2];
-        quint8 keys[32];
-    };
-    struct Pointer {
-        quint32 head[4];
-        qint16 places[4];
-        quint16 state;
-    };
-    struct Event {
-        quint8 type, detail;
-        quint16 shortSequence;
-        quint32 rest[7], sequence;
-    };
-    static constexpr quint8 mappingNotify = 34;
+// Of xproto.h: the places of what is read in replies and events, in bytes.
+constexpr int keysAt = 8, stateAt = 24, sequenceAt = 32;
+constexpr int mappingNotify = 34, ofType = 0x7f;
 
-    template <typename Function>
-    static Function *find(const char *name) {
-        return reinterpret_cast<Function *>(QLibrary::resolve("xcb", 1, name));
-    }
-
-    void *(*connect)(const char *, int *) = find<void *(const char *, int *)>("xcb_connect");
-    void (*disconnect)(void *) = find<void(void *)>("xcb_disconnect");
-    int (*flush)(void *) = find<int(void *)>("xcb_flush");
-    Cookie (*queryKeymap)(void *) = find<Cookie(void *)>("xcb_query_keymap");
-    Cookie (*queryPointer)(void *, quint32) = find<Cookie(void *, quint32)>("xcb_query_pointer");
-    int (*poll)(void *, unsigned, void **,
-                void **) = find<int(void *, unsigned, void **, void **)>("xcb_poll_for_reply");
-    void (*discard)(void *, unsigned) = find<void(void *, unsigned)>("xcb_discard_reply");
-    void *(*event)(void *) = find<void *(void *)>("xcb_poll_for_event");
-    bool isWhole = connect && disconnect && flush && queryKeymap && queryPointer && poll && discard && event;
+struct Cookie {
+    unsigned sequence;
 };
 
-const Xcb &xcb() {
-    static const Xcb functions;
-    return functions;
+/// Null or zero: it is not there.
+template <typename Result, typename... Values>
+Result xcb(const char *name, Values... values) {
+    const QFunctionPointer function = QLibrary::resolve("xcb", 1, name);
+    return function ? reinterpret_cast<Result (*)(Values...)>(function)(values...) : Result();
 }
 
-template <typename Reply>
-using Received = std::unique_ptr<Reply, decltype(&std::free)>;
+using Received = std::unique_ptr<quint8, decltype(&std::free)>;
 
 /// Null: it has not come, or an error has.
-template <typename Reply>
-Received<Reply> received(void *connection, unsigned question) {
+Received received(void *connection, unsigned question) {
     void *reply = nullptr, *error = nullptr;
-    xcb().poll(connection, question, &reply, &error);
+    xcb<int>("xcb_poll_for_reply", connection, question, &reply, &error);
     std::free(error);
-    return {static_cast<Reply *>(reply), &std::free};
+    return {static_cast<quint8 *>(reply), &std::free};
 }
 
 } // namespace
 
 HeldKeys::HeldKeys()
     : isX_(QGuiApplication::platformName() == "xcb") {
-    if (isX_ && xcb().isWhole)
-        connection_ = xcb().connect(nullptr, nullptr); // it may have failed: then nothing is answered
+    if (isX_) // it may fail: then nothing is answered
+        connection_ = xcb<void *>("xcb_connect", static_cast<char *>(nullptr), static_cast<int *>(nullptr));
 }
 
 HeldKeys::~HeldKeys() {
-    if (connection_)
-        xcb().disconnect(connection_);
+    xcb<void>("xcb_disconnect", connection_); // null is fine
 }
 
 void HeldKeys::begin() {
-    for (unsigned *const question : {&keys_, &pointer_})
-        if (const unsigned old = std::exchange(*question, 0))
-            xcb().discard(connection_, old);
-    first_ = 0;
+    for (const unsigned question : {keys_, pointer_})
+        if (keys_) // it is not answered as yet
+            xcb<void>("xcb_discard_reply", connection_, question);
+    keys_ = first_ = 0;
     group_ = -1;
     isLayoutChanged_ = false;
     down_.reset();
@@ -91,33 +61,30 @@ bool HeldKeys::ask(const QWidget &window) {
     if (!connection_)
         return false;
     const bool isAnswered = keys_ && takeAnswer();
-    if (!keys_ && !pointer_) {
-        keys_ = xcb().queryKeymap(connection_).sequence;
-        pointer_ = xcb().queryPointer(connection_, quint32(window.effectiveWinId())).sequence;
+    if (!keys_) {
+        keys_ = xcb<Cookie>("xcb_query_keymap", connection_).sequence;
+        pointer_ = xcb<Cookie>("xcb_query_pointer", connection_, quint32(window.effectiveWinId())).sequence;
         first_ = first_ ? first_ : keys_;
-        xcb().flush(connection_);
+        xcb<int>("xcb_flush", connection_);
     }
     return isAnswered;
 }
 
 // The answers come in the order of the questions, and events at their places among them.
 bool HeldKeys::takeAnswer() {
-    const auto pointer = received<Xcb::Pointer>(connection_, pointer_);
+    const Received pointer = received(connection_, pointer_);
     if (!pointer)
         return false;
-    const auto keymap = received<Xcb::Keymap>(connection_, keys_);
-    keys_ = pointer_ = 0;
-    if (!keymap)
-        return false;
-    for (std::size_t i = 0; i < down_.size(); ++i)
-        down_[i] = keymap->keys[i / 8] >> i % 8 & 1;
-    const int group = pointer->state >> 13 & 3;
+    const Received keymap = received(connection_, std::exchange(keys_, 0));
+    for (std::size_t i = 0; keymap && i < down_.size(); ++i)
+        down_[i] = keymap.get()[keysAt + i / 8] >> i % 8 & 1;
+    const int group = qFromUnaligned<quint16>(pointer.get() + stateAt) >> 13 & 3;
     group_ = group_ < 0 ? group : group_;
     isLayoutChanged_ = isLayoutChanged_ || group != group_;
-    while (const Received<Xcb::Event> event{static_cast<Xcb::Event *>(xcb().event(connection_)), &std::free})
-        isLayoutChanged_ =
-            isLayoutChanged_ || ((event->type & 0x7f) == Xcb::mappingNotify && event->sequence >= first_);
-    return true;
+    while (const Received event{xcb<quint8 *>("xcb_poll_for_event", connection_), &std::free})
+        if ((*event & ofType) == mappingNotify && qFromUnaligned<quint32>(event.get() + sequenceAt) >= first_)
+            isLayoutChanged_ = true;
+    return keymap != nullptr;
 }
 
 } // namespace hermes::desktop

@@ -29,7 +29,7 @@ private:
 
     bool isX_;
     void *connection_ = nullptr;
-    unsigned keys_ = 0, pointer_ = 0, first_ = 0; ///< numbers of questions; 0: none
+    unsigned keys_ = 0, pointer_ = 0, first_ = 0; ///< numbers of questions; 0: none is open
     int group_ = -1;                              ///< in the first answer
     bool isLayoutChanged_ = false;
     std::bitset<256> down_;

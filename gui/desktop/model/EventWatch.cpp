@@ -108,7 +108,7 @@ void EventWatch::lookAtHealth(const DaemonLink &daemon) {
     watched.ailing = now;
 }
 
-void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isPast) {
+void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, LogFeed::When when) {
     if (record.source == "health")
         return; // known from the status
     const bool isAlarming = record.level == "warning" || record.level == "error";
@@ -116,10 +116,10 @@ void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isP
         return; // what was done from this window needs no note
     const auto level = isAlarming ? levelOf(record.level) : Event::Level::Info;
     const QString text = shortLine(inPlainWords(record.source + ": " + record.text), longestEvent);
-    if (isPast)
-        events_.happenedBefore(level, nameOf(*daemon), text, record.stamp);
-    else
+    if (when == LogFeed::When::Now)
         events_.happened(level, nameOf(*daemon), text);
+    else // what came while the link was away was seen by nobody
+        events_.happenedBefore(level, nameOf(*daemon), text, record.stamp, when == LogFeed::When::Before);
 }
 
 QString EventWatch::nameOf(const DaemonLink &daemon) const {

@@ -28,7 +28,7 @@ private:
     void watch(const Robot &robot, DaemonLink &daemon);
     void lookAtLink(const Robot &robot, const DaemonLink &daemon);
     void lookAtHealth(const DaemonLink &daemon);
-    void onRecord(DaemonLink *daemon, const LogMessage &record, bool isPast);
+    void onRecord(DaemonLink *daemon, const LogMessage &record, LogFeed::When when);
     QString nameOf(const DaemonLink &daemon) const;
 
     Fleet &fleet_;

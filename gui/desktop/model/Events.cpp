@@ -22,9 +22,11 @@ void Events::happened(Event::Level level, const QString &from, const QString &te
     tell(event);
 }
 
-void Events::happenedBefore(Event::Level level, const QString &from, const QString &text, double stamp) {
+void Events::happenedBefore(Event::Level level, const QString &from, const QString &text, double stamp,
+                            bool isSeen) {
     Event &event = add(level, from, text, stamp);
-    event.isAcknowledged = true;
+    event.isAcknowledged = isSeen || level == Event::Level::Info;
+    event.over = monotonicNow();
     tell(event);
 }
 

@@ -38,8 +38,9 @@ public:
 
     /// Something that has no duration. isSeen: the operator knows it already.
     void happened(Event::Level level, const QString &from, const QString &text, bool isSeen = false);
-    /// Something that was so before anybody looked.
-    void happenedBefore(Event::Level level, const QString &from, const QString &text, double stamp);
+    /// Something that was so before anybody looked: at that time. isSeen: it waits for nobody.
+    void happenedBefore(Event::Level level, const QString &from, const QString &text, double stamp,
+                        bool isSeen = true);
     /// Something that goes on until ends(key). Told again it is the same event; with a higher level it has to
     /// be acknowledged again. An error that comes again with another text is another one.
     void goesOn(const QString &key, Event::Level level, const QString &from, const QString &text,

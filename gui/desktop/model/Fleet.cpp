@@ -4,6 +4,7 @@
 #include "common/interface/InterfaceUrl.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
+#include <QHostAddress>
 #include <QRegularExpression>
 #include <algorithm>
 
@@ -29,6 +30,12 @@ Result<void> Fleet::add(const QString &address) {
         return Error(ErrorCode::InvalidParams, tr("address \"%1\": expected a name or an address, as "
                                                   "192.168.1.20, or with a port, as 192.168.1.20:7450")
                                                    .arg(address));
+    static const QRegularExpression numbers(R"(^(?:tcp://)?([0-9.]+)(?::|$))"),
+        four(R"(^\d{1,3}(\.\d{1,3}){3}$)");
+    if (const QString typed = numbers.match(address).captured(1);
+        !typed.isEmpty() && (!four.match(typed).hasMatch() || QHostAddress(typed).isNull()))
+        return Error(ErrorCode::InvalidParams,
+                     tr("address \"%1\": expected four numbers from 0 to 255").arg(address));
     const QString name = url->host == "localhost" ? QString("127.0.0.1") : url->host;
     const QString host = name.contains(':') ? '[' + name + ']' : name;
     const QString known = hasPort ? QString("%1:%2").arg(host).arg(url->port) : host;

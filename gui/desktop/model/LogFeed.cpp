@@ -19,24 +19,40 @@ void LogFeed::followAll() {
 }
 
 void LogFeed::follow(DaemonLink *daemon) {
-    followed_.insert(daemon);
+    followed_.insert(daemon, {});
     connect(daemon, &QObject::destroyed, this, [this, daemon] { followed_.remove(daemon); });
+    connect(daemon, &DaemonLink::ready, this, [this, daemon] { readLast(daemon); });
     daemon->subscribe("log", {{"queue", lastRecords}},
-                      [this, daemon](const TopicUpdate &update) { take(daemon, update.data, false); });
-    daemon->call("log.tail", {{"count", lastRecords}}, this, [this, daemon](const auto &tail) {
-        if (!tail || !tail->isArray() || !followed_.contains(daemon))
-            return;
-        const WireValue records(*tail);
-        for (std::size_t i = records.size() - qMin(records.size(), std::size_t(lastRecords));
-             i < records.size(); ++i)
-            take(daemon, records[i], true);
-    });
+                      [this, daemon](const TopicUpdate &update) { take(daemon, update.data, When::Now); });
+    readLast(daemon);
 }
 
-void LogFeed::take(DaemonLink *daemon, WireView record, bool isPast) {
+/// Of those that nobody has told here as yet.
+void LogFeed::readLast(DaemonLink *daemon) {
+    Followed &followed = followed_[daemon];
+    followed.stamps.clear();
+    daemon->call("log.tail", {{"count", lastRecords}}, this,
+                 [this, daemon, latest = followed.latest](const auto &tail) {
+                     if (!tail || !tail->isArray() || !followed_.contains(daemon))
+                         return;
+                     const WireValue records(*tail);
+                     for (std::size_t i = records.size() - qMin(records.size(), std::size_t(lastRecords));
+                          i < records.size(); ++i)
+                         take(daemon, records[i], latest < 0 ? When::Before : When::Missed, latest);
+                 });
+}
+
+void LogFeed::take(DaemonLink *daemon, WireView record, When when, double after) {
     ReadReport report;
-    const auto message = readMessage<LogMessage>(record, report);
-    Q_EMIT recorded(daemon, message ? *message : LogMessage{-1, "warning", "log", report.text()}, isPast);
+    const auto read = readMessage<LogMessage>(record, report);
+    const LogMessage message = read ? *read : LogMessage{-1, "warning", "log", report.text()};
+    Followed &followed = followed_[daemon];
+    if (when != When::Now && read && (message.stamp <= after || followed.stamps.contains(message.stamp)))
+        return;
+    followed.latest = std::max(followed.latest, message.stamp);
+    if (when == When::Now && followed.stamps.size() < lastRecords)
+        followed.stamps.insert(message.stamp);
+    Q_EMIT recorded(daemon, message, when);
 }
 
 } // namespace hermes::desktop

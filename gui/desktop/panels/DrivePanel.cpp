@@ -19,7 +19,6 @@ namespace {
 constexpr int highPanel = 480;      // pixels
 constexpr int leastPercent = 5;     // of the slider
 constexpr double leastSpeed = 0.01; // m/s
-constexpr std::chrono::seconds toRead{10};
 
 } // namespace
 
@@ -110,8 +109,6 @@ QLayout *DrivePanel::makeLimit() {
     speed_->setFixedWidth(fontMetrics().horizontalAdvance("00.000") + 16);
     turn_->setObjectName("turnLimit");
     connect(limit_, &QSlider::valueChanged, this, [this](int percent) { setLimit(percent / 100.0); });
-    forget_.setSingleShot(true);
-    connect(&forget_, &QTimer::timeout, this, [this] { refuseLimit({}); });
     connect(speed_, &QLineEdit::editingFinished, this, &DrivePanel::takeTypedLimit);
     connect(speed_, &QLineEdit::textEdited, this, [this] { refuseLimit({}); });
     connect(speed_, &QLineEdit::returnPressed, speed_, &QWidget::clearFocus); // so that the keys drive
@@ -150,11 +147,10 @@ void DrivePanel::setLimit(double share) {
     refuseLimit(drive_.setLimit(share) ? QString() : tr("Let go first: what is held goes no faster."));
 }
 
-/// Told for as long as it takes to read, or until there is something else to tell.
+/// Told until there is something else to tell.
 void DrivePanel::refuseLimit(const QString &why) {
     wrongLimit_ = why;
     problemThen_ = drive_.problem();
-    forget_.start(toRead);
     update();
 }
 
@@ -221,7 +217,9 @@ void DrivePanel::update() {
     blind_->setVisible(drive_.refusesForReplay());
     if (drive_.refusesForReplay())
         problem = tr("A replay is shown, not where the robot is: driving is off.");
-    problem_->tell(problem, true);
+    const bool isState = drive_.refusesForReplay() || !drive_.latched().isEmpty();
+    if (std::exchange(told_, problem) != problem)
+        problem_->tell(problem, true, isState || !drive_.isPossible());
 }
 
 } // namespace hermes::desktop

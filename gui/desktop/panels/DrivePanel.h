@@ -2,7 +2,6 @@
 
 #include "gui/desktop/drive/DriveControl.h"
 
-#include <QTimer>
 #include <QWidget>
 
 class QBoxLayout;
@@ -52,8 +51,8 @@ private:
     AgedLabel *measured_[3];
     QPushButton *takeOver_, *blind_;
     QString wrongLimit_;  ///< why the last one was refused
+    QString told_;        ///< last, as a problem
     QString problemThen_; ///< what was told then
-    QTimer forget_;
 };
 
 } // namespace hermes::desktop

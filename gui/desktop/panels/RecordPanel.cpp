@@ -315,7 +315,7 @@ void RecordPanel::showStop() {
                        : tr("%1 does not answer, and may go on recording. Stop is sent again until it "
                             "answers.")
                              .arg(silent.join(", ")),
-                   !silent.isEmpty());
+                   !silent.isEmpty(), true);
 }
 
 void RecordPanel::showAmount() {

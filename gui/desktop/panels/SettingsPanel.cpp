@@ -53,6 +53,8 @@ SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     });
     connect(form_, &SchemaForm::edited, this, [this] {
         message_->hide();
+        if (const QString wrong = form_->firstError(); !wrong.isEmpty()) // it may not be in sight
+            message_->tell(tr("Nothing is applied before this is mended: %1").arg(wrong), true, true);
         update();
     });
     connect(&fleet, &Fleet::daemonChosen, this, &SettingsPanel::follow);

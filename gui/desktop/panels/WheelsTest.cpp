@@ -115,7 +115,8 @@ void WheelsTest::turnNext() {
 void WheelsTest::onTurned(const Result<double> &measured) {
     if (isUnderWay() && measured) {
         message_->tell(tr("%1 was told to turn forward; its encoder tells %2 rad/s. What turned?")
-                           .arg(spokenWheel(wheel_), shortNumber(*measured, 2)));
+                           .arg(spokenWheel(wheel_), shortNumber(*measured, 2)),
+                       false, true);
         seenChoice_->setCurrentIndex(2 * wheelNames().indexOf(wheel_));
     } else if (isUnderWay()) {
         giveUp(measured.error().message);

@@ -241,6 +241,7 @@ void MapView::mouseReleaseEvent(QMouseEvent *event) {
         pressed_.reset();
     } else {
         dragged_ = way.p2(); // the distance stays until the next press
+        Q_EMIT measured(way.length());
     }
     update();
 }

@@ -55,7 +55,9 @@ QString limitsOf(const QJsonObject &schema) {
 
 QString explanation(const QString &path, const QJsonObject &schema) {
     QStringList lines{schema["description"].toString(), path + ": " + expectation(schema)};
-    if (schema.contains("default"))
+    if (schema["readOnly"].toBool())
+        lines.append(fieldTr("is told only, and not set"));
+    if (schema.contains("default") && !isSecret(schema))
         lines.append(fieldTr("default %1").arg(shown(schema["default"])));
     if (schema["x-applies"].toString() == "restart")
         lines.append(fieldTr("has effect after a restart"));
@@ -81,7 +83,7 @@ QString faultText(const Faults &faults, const QString &path, const QJsonObject &
 }
 
 QString numberText(double value) {
-    if (value == std::round(value) && std::abs(value) < 1e15)
+    if (value == std::round(value) && std::abs(value) < 9007199254740992) // 2^53
         return QString::number(value, 'f', 0);
     return QString::number(value, 'g', 10);
 }
@@ -102,6 +104,20 @@ QString jsonText(const QJsonValue &value) {
 QJsonValue fromJson(const QString &text) {
     const QJsonDocument list = QJsonDocument::fromJson("[" + text.toUtf8() + "]");
     return list.array().size() == 1 ? list.array()[0] : QJsonValue(QJsonValue::Undefined);
+}
+
+bool losesDigits(const QString &json) {
+    static const QRegularExpression longNumber(R"((?<![\w."])-?\d{16,}(?![\w."]))");
+    auto found = longNumber.globalMatch(json);
+    while (found.hasNext())
+        if (const QString digits = found.next().captured();
+            QString::number(digits.toDouble(), 'f', 0) != digits)
+            return true;
+    return false;
+}
+
+bool isSecret(const QJsonObject &schema) {
+    return schema["writeOnly"].toBool() || schema["format"] == "password";
 }
 
 QString summaryOf(const QJsonValue &value) {

@@ -42,6 +42,10 @@ QString spokenAmount(double value, const QString &unit);
 QString jsonText(const QJsonValue &value);
 /// Undefined: it is no JSON.
 QJsonValue fromJson(const QString &text);
+/// A whole number in this JSON has more digits than a number keeps on its way.
+bool losesDigits(const QString &json);
+/// Of a password or the like, which nobody is to read over a shoulder.
+bool isSecret(const QJsonObject &schema);
 /// A value in a few words, for a row that is folded up.
 QString summaryOf(const QJsonValue &value);
 /// Counts the values in it, no further than most.

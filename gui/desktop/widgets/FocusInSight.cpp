@@ -8,9 +8,9 @@
 namespace hermes::desktop {
 namespace {
 
-/// Or can be scrolled to.
+/// Or can be scrolled to, or is about to be shown: from what is hidden Qt takes the focus itself.
 bool isInReach(const QWidget &widget) {
-    if (isSeen(widget, true))
+    if (!widget.isVisible() || isSeen(widget, true))
         return true;
     QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest); // it may only now get its place
     return isSeen(widget, true);

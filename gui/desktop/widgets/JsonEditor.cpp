@@ -100,6 +100,8 @@ void JsonEditor::addFaults(const QString &path, Faults &faults) const {
     if (error.error != QJsonParseError::NoError)
         faults[path] = tr("each bracket, quote and comma in its place; line %1 cannot be read")
                            .arg(1 + list.left(error.offset).count('\n'));
+    else if (losesDigits(text))
+        faults[path] = tr("whole numbers of at most 15 digits: more would not arrive as they are");
 }
 
 void JsonEditor::showFaults(const QString &path, const Faults &faults) {

@@ -82,7 +82,10 @@ LineEditor::LineEditor(const QJsonObject &schema, Kind kind, Empty empty, QWidge
     layout->addWidget(line_);
     setFocusProxy(line_);
     const QString example = exampleOf(schema["format"].toString());
-    line_->setPlaceholderText(schema.contains("default") ? shortLine(textOf(schema["default"])) : example);
+    if (isSecret(schema))
+        line_->setEchoMode(QLineEdit::Password);
+    line_->setPlaceholderText(
+        schema.contains("default") && !isSecret(schema) ? shortLine(textOf(schema["default"])) : example);
     line_->installEventFilter(this);
     connect(line_, &QLineEdit::textEdited, this, &ValueEditor::edited);
     setValue(schema["default"]);
@@ -146,6 +149,8 @@ void LineEditor::addFaults(const QString &path, Faults &faults) const {
     if (kind_ == Kind::Any && (text.startsWith('{') || text.startsWith('[')) && value().isString() &&
         line_->text() != givenText_)
         faults[path] = tr("each bracket and quote to be closed");
+    if (kind_ != Kind::Text && line_->text() != givenText_ && losesDigits(text))
+        faults[path] = tr("at most 15 digits: more would not arrive as they are");
 }
 
 void LineEditor::showFaults(const QString &path, const Faults &faults) {

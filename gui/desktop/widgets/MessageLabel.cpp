@@ -14,15 +14,24 @@ MessageLabel::MessageLabel(QWidget *parent)
     policy.setRetainSizeWhenHidden(true);
     setSizePolicy(policy);
     hide();
+    old_.setSingleShot(true);
+    old_.setInterval(std::chrono::minutes(1));
 }
 
-void MessageLabel::tell(const QString &text, bool isError) {
+void MessageLabel::tell(const QString &text, bool isError, bool isState) {
     QPalette palette;
     if (isError)
         palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
     setPalette(palette);
     setText(inPlainWords(text));
+    setEnabled(true);
     show();
+    old_.disconnect();
+    isState || text.isEmpty() ? old_.stop() : old_.start();
+    connect(&old_, &QTimer::timeout, this, [this, time = QTime::currentTime()] {
+        setText(time.toString("HH:mm:ss  ") + this->text());
+        setEnabled(false);
+    });
 }
 
 } // namespace hermes::desktop

@@ -135,6 +135,7 @@ ObjectEditor::Row &ObjectEditor::addRow(const QString &key, const QJsonValue &va
     row.editor = makeEditor(row.schema, {place_.room, place_.depth, false,
                                          isMust ? LineEditor::Empty::Absent : LineEditor::Empty::Text});
     row.editor->setObjectName("member " + key.left(100));
+    row.editor->setEnabled(!row.schema["readOnly"].toBool());
     row.editor->setValue(value);
     row.note = new PlainLabel;
     row.note->setObjectName("note");

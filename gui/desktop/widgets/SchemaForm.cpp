@@ -115,6 +115,7 @@ void SchemaForm::addRow(const QString &path, const QJsonObject &schema, bool isR
         !isRequired && !schema.contains("default") && valueAt(baseline_, path).isUndefined();
     row.editor = makeEditor(schema, {room_, 0, isOptional, LineEditor::Empty::Absent});
     row.editor->setObjectName(path);
+    row.editor->setEnabled(!schema["readOnly"].toBool());
     row.title->setBuddy(row.editor);
     row.note = new PlainLabel;
     row.note->setObjectName(path + "/note");
@@ -204,9 +205,16 @@ void SchemaForm::setBaseline(const QJsonObject &values) {
     check();
 }
 
+QString SchemaForm::firstError() const {
+    if (errors_.empty())
+        return {};
+    const auto &[path, expected] = *errors_.begin();
+    return tr("%1: expected %2").arg(path.isEmpty() ? tr("all together") : path, expected);
+}
+
 void SchemaForm::setDefaults() {
     for (auto &[path, row] : rows_)
-        if (row.isInSight)
+        if (row.isInSight && !row.schema["readOnly"].toBool())
             row.editor->setValue(row.schema["default"]);
     errors_.clear();
     check();

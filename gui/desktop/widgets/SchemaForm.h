@@ -47,6 +47,8 @@ public:
     /// How many values of the changes the filter hides.
     int unseenChanges() const;
     bool isValid() const { return errors_.empty(); }
+    /// Which value is wrong first, and what was expected; empty: all are valid.
+    QString firstError() const;
     /// Errors that came back from the daemon: [{path, value, expected}].
     void showErrors(const QJsonArray &errors);
     /// Only rows with this text in path, title or description.

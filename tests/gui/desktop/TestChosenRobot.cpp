@@ -12,9 +12,71 @@ using namespace hermes::desktop;
 class TestChosenRobot : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void mapOfOneIsNotOfTheOther();
-    void recordingsOfOneAreNotOfTheOther();
-    void topicsStayWithTheirDaemon();
+    void mapOfOneIsNotOfTheOther() {
+        FakeDaemon red(withMap());
+        const FakeDaemon blue(robot("blue"));
+        OpenWindow open;
+        QVERIFY(open.show());
+        QVERIFY(open.fleet.add(addressOf(red)));
+        QVERIFY(open.fleet.add(addressOf(blue)));
+        QTRY_VERIFY(open.fleet.robotAt(addressOf(red)) && open.fleet.robotAt(addressOf(blue)));
+        const MapModel &model = open.window.findChild<MapPanel *>()->model();
+        QTRY_COMPARE(model.edges().size(), 1);
+        QTRY_COMPARE(model.scan().size(), 2);
+        QTRY_COMPARE(model.segments().size(), 1);
+        red.say("scan", withMap().topics["scan"]); // when the map is known
+        QTRY_COMPARE(model.correspondences().size(), 1);
+        for (const char *const x : {"1", "2", "3"}) // once the pose is known
+            red.say("odometry", withMap().topics["odometry"].replace("%1", x));
+        QTRY_VERIFY(!model.odometryPath().isEmpty());
+        QTRY_COMPARE(open.window.findChild<QLabel *>("measured0")->text(), QString("0.25"));
+
+        open.fleet.choose(open.fleet.robotAt(addressOf(blue)));
+        QVERIFY(model.edges().isEmpty() && model.scan().isEmpty() && model.segments().isEmpty());
+        QVERIFY(model.correspondences().isEmpty() && model.odometryPath().isEmpty() && !model.pose());
+        QCOMPARE(model.reliability(), 0.0);
+        QTRY_VERIFY(open.window.findChild<QLabel *>("measured0")->text() != "0.25");
+
+        open.fleet.choose(open.fleet.robotAt(addressOf(red)));
+        QTRY_COMPARE(model.edges().size(), 1);
+    }
+
+    void recordingsOfOneAreNotOfTheOther() {
+        Mischief recorded = robot("red");
+        recorded.results["record.list"] =
+            R"([{"name":"corridor","format":"x","start":1700000000,"bytes":5}])";
+        Mischief slow = robot("blue"); // has recordings, too, but does not tell of them
+        slow.results["record.list"] = "[]},\"x\":{";
+        const FakeDaemon red(recorded), blue(slow);
+        OpenWindow open;
+        QVERIFY(open.fleet.add(addressOf(red)));
+        QVERIFY(open.fleet.add(addressOf(blue)));
+        auto *const list = open.window.findChild<RecordPanel *>()->findChild<QTreeWidget *>("sessions");
+        QTRY_VERIFY(open.fleet.robotAt(addressOf(red)) && open.fleet.robotAt(addressOf(blue)));
+        QTRY_COMPARE(list->topLevelItemCount(), 1);
+        QCOMPARE(list->topLevelItem(0)->text(0), QString("corridor"));
+        open.fleet.choose(open.fleet.robotAt(addressOf(blue)));
+        QCOMPARE(list->topLevelItemCount(), 0); // at once
+    }
+
+    // Two daemons of one robot have the same topics.
+    void topicsStayWithTheirDaemon() {
+        auto first = std::make_unique<FakeDaemon>(Mischief());
+        Fleet fleet;
+        QVERIFY(fleet.add(addressOf(*first)));
+        QTRY_VERIFY(fleet.robot()->withTopic("pose"));
+        DaemonLink *const source = fleet.robot()->withTopic("pose");
+        TopicFeed feed(
+            fleet, "pose", {}, [](const TopicUpdate &) {}, nullptr);
+        QCOMPARE(feed.source(), source);
+        const FakeDaemon second{Mischief()};
+        QVERIFY(fleet.add(addressOf(second)));
+        QTRY_COMPARE(int(fleet.robot()->allWithMethod("fake.call").size()), 2);
+        QCOMPARE(feed.source(), source);
+        first.reset();
+        QTRY_COMPARE(int(fleet.robot()->allWithMethod("fake.call").size()), 1);
+        QCOMPARE(feed.source(), source); // it is waited for
+    }
 
 private:
     static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
@@ -42,71 +104,6 @@ private:
         return all;
     }
 };
-
-void TestChosenRobot::mapOfOneIsNotOfTheOther() {
-    FakeDaemon red(withMap());
-    const FakeDaemon blue(robot("blue"));
-    OpenWindow open;
-    QVERIFY(open.show());
-    QVERIFY(open.fleet.add(addressOf(red)));
-    QVERIFY(open.fleet.add(addressOf(blue)));
-    QTRY_VERIFY(open.fleet.robotAt(addressOf(red)) && open.fleet.robotAt(addressOf(blue)));
-    const MapModel &model = open.window.findChild<MapPanel *>()->model();
-    QTRY_COMPARE(model.edges().size(), 1);
-    QTRY_COMPARE(model.scan().size(), 2);
-    QTRY_COMPARE(model.segments().size(), 1);
-    red.say("scan", withMap().topics["scan"]); // when the map is known
-    QTRY_COMPARE(model.correspondences().size(), 1);
-    for (const char *const x : {"1", "2", "3"}) // once the pose is known
-        red.say("odometry", withMap().topics["odometry"].replace("%1", x));
-    QTRY_VERIFY(!model.odometryPath().isEmpty());
-    QTRY_COMPARE(open.window.findChild<QLabel *>("measured0")->text(), QString("0.25"));
-
-    open.fleet.choose(open.fleet.robotAt(addressOf(blue)));
-    QVERIFY(model.edges().isEmpty() && model.scan().isEmpty() && model.segments().isEmpty());
-    QVERIFY(model.correspondences().isEmpty() && model.odometryPath().isEmpty() && !model.pose());
-    QCOMPARE(model.reliability(), 0.0);
-    QTRY_VERIFY(open.window.findChild<QLabel *>("measured0")->text() != "0.25");
-
-    open.fleet.choose(open.fleet.robotAt(addressOf(red)));
-    QTRY_COMPARE(model.edges().size(), 1);
-}
-
-void TestChosenRobot::recordingsOfOneAreNotOfTheOther() {
-    Mischief recorded = robot("red");
-    recorded.results["record.list"] = R"([{"name":"corridor","format":"x","start":1700000000,"bytes":5}])";
-    Mischief slow = robot("blue"); // has recordings, too, but does not tell of them
-    slow.results["record.list"] = "[]},\"x\":{";
-    const FakeDaemon red(recorded), blue(slow);
-    OpenWindow open;
-    QVERIFY(open.fleet.add(addressOf(red)));
-    QVERIFY(open.fleet.add(addressOf(blue)));
-    auto *const list = open.window.findChild<RecordPanel *>()->findChild<QTreeWidget *>("sessions");
-    QTRY_VERIFY(open.fleet.robotAt(addressOf(red)) && open.fleet.robotAt(addressOf(blue)));
-    QTRY_COMPARE(list->topLevelItemCount(), 1);
-    QCOMPARE(list->topLevelItem(0)->text(0), QString("corridor"));
-    open.fleet.choose(open.fleet.robotAt(addressOf(blue)));
-    QCOMPARE(list->topLevelItemCount(), 0); // at once
-}
-
-// Two daemons of one robot have the same topics.
-void TestChosenRobot::topicsStayWithTheirDaemon() {
-    auto first = std::make_unique<FakeDaemon>(Mischief());
-    Fleet fleet;
-    QVERIFY(fleet.add(addressOf(*first)));
-    QTRY_VERIFY(fleet.robot()->withTopic("pose"));
-    DaemonLink *const source = fleet.robot()->withTopic("pose");
-    TopicFeed feed(
-        fleet, "pose", {}, [](const TopicUpdate &) {}, nullptr);
-    QCOMPARE(feed.source(), source);
-    const FakeDaemon second{Mischief()};
-    QVERIFY(fleet.add(addressOf(second)));
-    QTRY_COMPARE(int(fleet.robot()->allWithMethod("fake.call").size()), 2);
-    QCOMPARE(feed.source(), source);
-    first.reset();
-    QTRY_COMPARE(int(fleet.robot()->allWithMethod("fake.call").size()), 1);
-    QCOMPARE(feed.source(), source); // it is waited for
-}
 
 QTEST_MAIN(TestChosenRobot)
 #include "TestChosenRobot.moc"

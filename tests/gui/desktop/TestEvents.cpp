@@ -28,6 +28,7 @@ private Q_SLOTS:
     void killedProcessIsAnError();
     void whoStoppedIsTold();
     void healthIsToldWhileItLasts();
+    void whatWasLoggedWhileTheLinkWasAwayWaits();
     void frozenDaemonIsAnError();
     void hostileTextIsPlain();
     void soundsCanBeSwitchedOff();
@@ -236,6 +237,39 @@ void TestEvents::healthIsToldWhileItLasts() {
     daemon.say("status", status(R"({"name":"disk","level":"ok","message":"fine"})"));
     QTRY_VERIFY2(!rowsOf(window).filter(QRegularExpression("disk: nearly full.* over$")).isEmpty(),
                  qPrintable(rowsOf(window).join('\n')));
+}
+
+// With the time at which it was, not that of the connection.
+void TestEvents::whatWasLoggedWhileTheLinkWasAwayWaits() {
+    const double now = std::floor(QDateTime::currentMSecsSinceEpoch() / 1000.0);
+    const auto record = [now](double ago, const char *text) {
+        return QString(R"({"stamp":%1,"level":"error","source":"test","text":"%2"})")
+            .arg(now - ago, 0, 'f', 3)
+            .arg(text)
+            .toUtf8();
+    };
+    const QByteArray before = record(3000, "before");
+    Mischief mischief;
+    mischief.results["log.tail"] = '[' + before + ']';
+    mischief.topics["log"] = record(2500, "live");
+    FakeDaemon daemon(mischief);
+    OpenWindow window;
+    QVERIFY(window.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+    QVERIFY(window.show());
+    QTRY_COMPARE(rowsOf(window).filter("test: before").size(), 1);
+    QTRY_COMPARE(rowsOf(window).filter("test: live").size(), 1);
+    daemon.setResult("log.tail",
+                     '[' + before + ',' + record(2500, "live") + ',' + record(2000, "missed") + ']');
+    daemon.dropAll();
+    QTRY_COMPARE_WITH_TIMEOUT(rowsOf(window).filter("test: missed").size(), 1, 20000);
+    QCOMPARE(rowsOf(window).filter("test: before").size(), 1);
+    const auto *const model = window.window.findChild<QTreeView *>("events")->model();
+    const QString time = QDateTime::fromMSecsSinceEpoch(qint64(1000 * (now - 2000))).toString("HH:mm:ss");
+    bool isTimed = false;
+    for (int row = 0; row < model->rowCount(); ++row)
+        isTimed = isTimed || (model->index(row, 0).data().toString().contains(time) &&
+                              model->index(row, 3).data().toString().contains("missed"));
+    QVERIFY2(isTimed, qPrintable(time));
 }
 
 void TestEvents::frozenDaemonIsAnError() {

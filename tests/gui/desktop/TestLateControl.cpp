@@ -9,14 +9,110 @@ using namespace hermes::desktop;
 class TestLateControl : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void cleanup();
-    void drivesNobody_data();
-    void drivesNobody();
-    void isNotThatOfTheOther_data();
-    void isNotThatOfTheOther();
-    void refusalIsNotTold();
-    void whatWasLetGoWhileTheWindowStoodStill();
+    void init() {
+        red_ = std::make_unique<FakeDaemon>(robotOf("red"));
+        blue_ = std::make_unique<FakeDaemon>(robotOf("blue"));
+        blue_->setResult("motor.state", // whatever it says, it has not given the control as yet
+                         "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() +
+                             "\"}}");
+        window_ = std::make_unique<OpenWindow>();
+        QVERIFY(window_->show());
+        for (const FakeDaemon *const one : {red_.get(), blue_.get()})
+            QVERIFY(window_->fleet.add(addressOf(*one)));
+        QTRY_VERIFY(robot(*red_) && robot(*blue_));
+        choose(*red_);
+        QTRY_VERIFY(window_->drive.isPossible());
+    }
+
+    void cleanup() {
+        window_.reset();
+        blue_.reset();
+        red_.reset();
+    }
+
+    void drivesNobody_data() {
+        const Rows<bool> row("takesOver");
+        row("asked for by driving", false);
+        row("taken over", true);
+    }
+
+    void drivesNobody() {
+        QFETCH(bool, takesOver);
+        askRed(takesOver);
+        choose(*blue_);
+        letRedAnswer();
+        hold(true);
+        letCommandsGo();
+        QCOMPARE(red_->calls("motor.drive"), 0);
+        if (takesOver)
+            return; // nothing was held before: blue is driven now
+        QVERIFY(!window_->drive.isDriving());
+        QCOMPARE(blue_->calls("motor.drive") + blue_->calls("control.acquire"), 0); // let go first
+    }
+
+    void isNotThatOfTheOther_data() { drivesNobody_data(); }
+
+    void isNotThatOfTheOther() {
+        QFETCH(bool, takesOver);
+        askRed(takesOver);
+        choose(*blue_);
+        blue_->holdBack("control.acquire");
+        holdAnew();
+        QTRY_COMPARE(blue_->calls("control.acquire"), 1);
+        letRedAnswer();
+        letCommandsGo();
+        QVERIFY(!window_->drive.isDriving());
+        QCOMPARE(blue_->calls("motor.drive") + red_->calls("motor.drive"), 0);
+        QCOMPARE(blue_->calls("control.acquire"), 1); // the question is still open
+        blue_->letGo();
+        QTRY_VERIFY(blue_->calls("motor.drive") > 0);
+        QCOMPARE(red_->calls("motor.drive"), 0);
+        hold(false);
+    }
+
+    void refusalIsNotTold() {
+        red_->setResult("control.acquire", R"(null,"error":{"code":-32003,"message":"red says no"})");
+        askRed(false);
+        choose(*blue_);
+        holdAnew();
+        QTRY_VERIFY(blue_->calls("motor.drive") > 0);
+        letRedAnswer();
+        const int driven = blue_->calls("motor.drive");
+        letCommandsGo();
+        QVERIFY(window_->drive.isDriving());
+        QVERIFY(blue_->calls("motor.drive") > driven);
+        QCOMPARE(window_->drive.problem(), QString());
+        hold(false);
+    }
+
+    // The timer of the commands comes before the key that was let go meanwhile.
+    void whatWasLetGoWhileTheWindowStoodStill() {
+        red_->setResult("motor.state", // so does red, which gives it
+                        "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() +
+                            "\"}}");
+        choose(*red_);
+        QTRY_VERIFY(window_->drive.isPossible());
+        QTRY_VERIFY(!window_->drive.mustLetGo());
+        hold(true);
+        QTRY_VERIFY(red_->calls("motor.drive") > 5);
+        for (int i = 0; i < 5; ++i) {
+            QThread::msleep(400);
+            const int before = red_->calls("motor.drive");
+            bool isLetGo = false;
+            QTimer::singleShot(1, this, [&] {
+                hold(false);
+                isLetGo = true;
+            });
+            QThread::msleep(5);
+            QTRY_VERIFY(isLetGo && !window_->drive.isDriving());
+            QTest::qWait(100);
+            QCOMPARE(red_->calls("motor.drive"), before);
+            QTRY_VERIFY(!window_->drive.mustLetGo());
+            hold(true);
+            QTRY_VERIFY(red_->calls("motor.drive") > before + 5);
+        }
+        hold(false);
+    }
 
 private:
     static Mischief robotOf(const QByteArray &name) {
@@ -63,112 +159,6 @@ private:
     std::unique_ptr<FakeDaemon> red_, blue_;
     std::unique_ptr<OpenWindow> window_;
 };
-
-void TestLateControl::init() {
-    red_ = std::make_unique<FakeDaemon>(robotOf("red"));
-    blue_ = std::make_unique<FakeDaemon>(robotOf("blue"));
-    blue_->setResult("motor.state", // whatever it says, it has not given the control as yet
-                     "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() +
-                         "\"}}");
-    window_ = std::make_unique<OpenWindow>();
-    QVERIFY(window_->show());
-    for (const FakeDaemon *const one : {red_.get(), blue_.get()})
-        QVERIFY(window_->fleet.add(addressOf(*one)));
-    QTRY_VERIFY(robot(*red_) && robot(*blue_));
-    choose(*red_);
-    QTRY_VERIFY(window_->drive.isPossible());
-}
-
-void TestLateControl::cleanup() {
-    window_.reset();
-    blue_.reset();
-    red_.reset();
-}
-
-void TestLateControl::drivesNobody_data() {
-    const Rows<bool> row("takesOver");
-    row("asked for by driving", false);
-    row("taken over", true);
-}
-
-void TestLateControl::drivesNobody() {
-    QFETCH(bool, takesOver);
-    askRed(takesOver);
-    choose(*blue_);
-    letRedAnswer();
-    hold(true);
-    letCommandsGo();
-    QCOMPARE(red_->calls("motor.drive"), 0);
-    if (takesOver)
-        return; // nothing was held before: blue is driven now
-    QVERIFY(!window_->drive.isDriving());
-    QCOMPARE(blue_->calls("motor.drive") + blue_->calls("control.acquire"), 0); // let go first
-}
-
-void TestLateControl::isNotThatOfTheOther_data() {
-    drivesNobody_data();
-}
-
-void TestLateControl::isNotThatOfTheOther() {
-    QFETCH(bool, takesOver);
-    askRed(takesOver);
-    choose(*blue_);
-    blue_->holdBack("control.acquire");
-    holdAnew();
-    QTRY_COMPARE(blue_->calls("control.acquire"), 1);
-    letRedAnswer();
-    letCommandsGo();
-    QVERIFY(!window_->drive.isDriving());
-    QCOMPARE(blue_->calls("motor.drive") + red_->calls("motor.drive"), 0);
-    QCOMPARE(blue_->calls("control.acquire"), 1); // the question is still open
-    blue_->letGo();
-    QTRY_VERIFY(blue_->calls("motor.drive") > 0);
-    QCOMPARE(red_->calls("motor.drive"), 0);
-    hold(false);
-}
-
-void TestLateControl::refusalIsNotTold() {
-    red_->setResult("control.acquire", R"(null,"error":{"code":-32003,"message":"red says no"})");
-    askRed(false);
-    choose(*blue_);
-    holdAnew();
-    QTRY_VERIFY(blue_->calls("motor.drive") > 0);
-    letRedAnswer();
-    const int driven = blue_->calls("motor.drive");
-    letCommandsGo();
-    QVERIFY(window_->drive.isDriving());
-    QVERIFY(blue_->calls("motor.drive") > driven);
-    QCOMPARE(window_->drive.problem(), QString());
-    hold(false);
-}
-
-// The timer of the commands comes before the key that was let go meanwhile.
-void TestLateControl::whatWasLetGoWhileTheWindowStoodStill() {
-    red_->setResult("motor.state", // so does red, which gives it
-                    "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() + "\"}}");
-    choose(*red_);
-    QTRY_VERIFY(window_->drive.isPossible());
-    QTRY_VERIFY(!window_->drive.mustLetGo());
-    hold(true);
-    QTRY_VERIFY(red_->calls("motor.drive") > 5);
-    for (int i = 0; i < 5; ++i) {
-        QThread::msleep(400);
-        const int before = red_->calls("motor.drive");
-        bool isLetGo = false;
-        QTimer::singleShot(1, this, [&] {
-            hold(false);
-            isLetGo = true;
-        });
-        QThread::msleep(5);
-        QTRY_VERIFY(isLetGo && !window_->drive.isDriving());
-        QTest::qWait(100);
-        QCOMPARE(red_->calls("motor.drive"), before);
-        QTRY_VERIFY(!window_->drive.mustLetGo());
-        hold(true);
-        QTRY_VERIFY(red_->calls("motor.drive") > before + 5);
-    }
-    hold(false);
-}
 
 QTEST_MAIN(TestLateControl)
 #include "TestLateControl.moc"

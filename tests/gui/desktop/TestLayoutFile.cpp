@@ -12,16 +12,211 @@ using namespace hermes::desktop;
 class TestLayoutFile : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void anyFile_data();
-    void anyFile();
-    void anyState();
-    void ownFileDamaged();
-    void anyValue_data();
-    void anyValue();
-    void programBeginsWithNonsense();
-    void whatCannotBeWrittenIsTold();
-    void linkStaysOne();
+    void init() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        file_ = folder_->filePath("new/gui.ini");
+    }
+
+    void anyFile_data() {
+        const Rows<QByteArray, bool> row("bytes", "isOurs");
+        QByteArray noise(10 << 20, 0);
+        QRandomGenerator random(1);
+        for (char &c : noise)
+            c = char(random.bounded(256));
+        row("empty", QByteArray(), true);
+        row("10 MB of noise", noise, false);
+        row("a little noise", noise.left(1000), false);
+        row("10 MB of lines", QByteArray("[window]\n") + QByteArray("a=b\n").repeated(2 << 20), false);
+        const QByteArray own = "[window]\nlayout=x\n[kept]\na=";
+        row("nearly as large as it may be", own + QByteArray((1 << 20) - 20000, 'x'), true);
+        row("a byte larger", own + QByteArray((1 << 20) + 1 - own.size(), 'x'), false);
+        row("one long line", "[window]\na=" + QByteArray(1000000, 'x'), true);
+        row("another program's", "[Desktop Entry]\nName=x\n", false);
+        row("a text", "Dear diary,\ntoday I drove.\n", false);
+        row("an open section", "[window]\nlayout=x\n[kept\na=b\n", false);
+        row("an open quote", "[window]\nlayout=\"x\n[kept]\na=\"b\"\n", false);
+        row("a quote in a key", "[window]\nlay\"out=x\n", false);
+        row("an open end", "[kept]\n[window]\nlayout=x\\\n", false);
+        row("types of Qt", "[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n", false);
+        row("wrong types",
+            "[window]\ngeometry=1, 2, 3\nstate=@Rect(1 2 3 4)\nlayout=7, 8\n"
+            "[layouts]\nsize=many\n1\\name=a, b\n[robots]\naddresses=5\nnames=x\n"
+            "chosen=1, 2\n",
+            true);
+        row("more than there are",
+            "[layouts]\nsize=2000000000\n1\\name=x\n1\\state=@ByteArray(\\0\\0\\0\\xff)\n"
+            "1\\geometry=@ByteArray(\\x1\\xd9\\xd0)\n1\\plots={\\\"fields\\\":5}\n"
+            "[window]\nlayout=y\n",
+            true);
+        row("addresses",
+            "[robots]\naddresses=:, robot:0, http://x, 127.0.0.1:1, " + QByteArray("x").repeated(10000) +
+                "\nnames=127.0.0.1:1, " + QByteArray("w").repeated(10000) + "\n",
+            true);
+    }
+
+    void anyFile() {
+        FETCH(QByteArray, bytes, bool, isOurs);
+        QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
+        write(bytes);
+        QElapsedTimer clock;
+        clock.start();
+        {
+            LayoutWindow one(file_);
+            QVERIFY(one.isWhole());
+            QVERIFY(one.dock("daemons")->isVisible());
+            QCOMPARE(one.notice().isEmpty(), isOurs && !bytes.contains("1\\state"));
+            QVERIFY(one.fleet.robots().size() <= 2);
+            one.saveAs("mine");
+            QVERIFY(one.isWhole());
+            one.window->close();
+        }
+        QVERIFY(clock.elapsed() < 10000);
+        QCOMPARE(content() == bytes, !isOurs);
+        QCOMPARE(Layouts(file_).names().contains("mine"), isOurs);
+    }
+
+    // Bytes of a layout, changed or cut at random.
+    void anyState() {
+        QRandomGenerator random(newSeed());
+        { LayoutWindow(file_, {"127.0.0.1:1"}).window->close(); }
+        QVERIFY(Layouts(file_).damage().isEmpty());
+        QSettings file(file_, QSettings::IniFormat);
+        const QStringList keys{"layouts/1/state", "layouts/1/geometry"};
+        const QList<QByteArray> good{file.value(keys[0]).toByteArray(), file.value(keys[1]).toByteArray()};
+        for (int round = 0; round < 40; ++round) {
+            const int which = round % 2;
+            QByteArray bytes = good[which];
+            const int place = random.bounded(bytes.size());
+            bytes[place] = char(bytes[place] + 1 + random.bounded(255));
+            if (random.bounded(4) == 0)
+                bytes.truncate(random.bounded(bytes.size()));
+            file.setValue(keys[which], bytes);
+            file.setValue(keys[1 - which], good[1 - which]);
+            file.sync();
+            LayoutWindow one(file_, {"127.0.0.1:1"});
+            QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
+            QVERIFY2(one.notice().contains("damaged"), qPrintable(one.notice()));
+        }
+    }
+
+    // As this program wrote it, but for some bytes, or the rest.
+    void ownFileDamaged() {
+        QRandomGenerator random(newSeed());
+        {
+            LayoutWindow one(file_, {"127.0.0.1:1"});
+            one.saveAs("Bench");
+            one.window->close();
+        }
+        const QByteArray good = content();
+        for (int round = 0; round < 40; ++round) {
+            QByteArray bytes = good;
+            for (int i = random.bounded(4); i >= 0; --i)
+                bytes[random.bounded(bytes.size())] = char(random.bounded(256));
+            if (random.bounded(2) == 0)
+                bytes.truncate(random.bounded(bytes.size()));
+            write(bytes);
+            const bool isRefused = !Layouts(file_).problem().isEmpty();
+            LayoutWindow one(file_);
+            QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
+            QVERIFY(one.window->minimumSizeHint().width() < 1024);
+            QCOMPARE(one.notice().contains("It is left as it is"), isRefused);
+            one.window->close();
+            QVERIFY(!isRefused || content() == bytes);
+        }
+    }
+
+    void anyValue_data() {
+        QTest::addColumn<QString>("key");
+        QTest::addColumn<QByteArray>("value");
+        QByteArray deep = "1";
+        for (int i = 0; i < 900; ++i)
+            deep = "{\"a\":[" + deep + "]}";
+        const QList<QPair<const char *, QByteArray>> values{{"no JSON", "{[\"\\"},
+                                                            {"another kind", "[[1,null],{\"a\":[]}]"},
+                                                            {"deep", deep},
+                                                            {"long", '"' + QByteArray(500000, 'W') + '"'},
+                                                            {"wrong ticks", "{\"gridLayer\":[7],\"\":null}"}};
+        for (const char *const key : {"layers", "plotSets", "buttons", "sounds", "escape", "gamepads/a"})
+            for (const auto &[name, value] : values)
+                QTest::addRow("%s: %s", key, name) << QString(key) << value;
+    }
+
+    void anyValue() {
+        FETCH(QString, key, QByteArray, value);
+        Layouts layouts(file_);
+        layouts.setValue(key, QString::fromUtf8(value));
+        QVERIFY(layouts.save());
+        LayoutWindow one(file_, {"127.0.0.1:1"});
+        QVERIFY(one.isWhole() && one.notice().isEmpty());
+        QVERIFY(!one.window->findChild<QAction *>("escapeStops")->isChecked());
+        QVERIFY(one.window->minimumSizeHint().width() < 1024);
+        one.window->close();
+        QVERIFY(Layouts(file_).problem().isEmpty());
+    }
+
+    void programBeginsWithNonsense() {
+        QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
+        const QByteArray nonsense = QByteArray("\0\xff[window]\n@Variant(", 20).repeated(200000);
+        write(nonsense);
+        QProcess program;
+        program.setProcessChannelMode(QProcess::MergedChannels);
+        program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
+                      {"--connect", "127.0.0.1:1", "--layout", file_});
+        QByteArray told;
+        QTRY_VERIFY2_WITH_TIMEOUT((told += program.readAll()).contains("It is left as it is"),
+                                  told.constData(), 20000);
+        QTest::qWait(1000); // in which it would keep what is set
+        QCOMPARE(program.state(), QProcess::Running);
+        program.terminate();
+        QVERIFY(program.waitForFinished());
+        QCOMPARE(program.exitStatus(), QProcess::NormalExit); // in order
+        QCOMPARE(content(), nonsense);
+    }
+
+    void whatCannotBeWrittenIsTold() {
+        {
+            LayoutWindow folder(folder_->path(), {"127.0.0.1:1"}); // which is no file
+            QVERIFY2(folder.notice().contains("is no file"), qPrintable(folder.notice()));
+            QVERIFY(folder.isWhole());
+        }
+        {
+            LayoutWindow device("/dev/null", {"127.0.0.1:1"});
+            QVERIFY(!device.notice().isEmpty());
+            device.window->close();
+            QVERIFY(QFileInfo::exists("/dev/null") && !QFileInfo("/dev/null").isFile());
+        }
+        file_ = folder_->filePath("gui.ini");
+        write({});
+        {
+            LayoutWindow below(file_ + "/gui.ini", {"127.0.0.1:1"}); // where no folder can be
+            QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
+        }
+        LayoutWindow full(file_, {"127.0.0.1:1"});
+        std::optional<FileSizeLimit> disk(0);
+        full.saveAs("more");
+        const bool isTold =
+            QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
+        full.window->close();
+        const bool isAsked =
+            QTest::qWaitFor([&full] { return full.notice().contains("Close the window once more"); });
+        disk.reset();
+        QVERIFY2(isTold, qPrintable(full.notice()));
+        QVERIFY2(isAsked, qPrintable(full.notice()));
+        full.saveAs("when there is room");
+        QTRY_VERIFY(Layouts(file_).names().contains("when there is room"));
+        QVERIFY(Layouts(file_).names().contains("more")); // the window had it
+    }
+
+    void linkStaysOne() {
+        const QString link = folder_->filePath("link.ini"), second = folder_->filePath("second.ini");
+        QVERIFY(QFile::link(file_, second) && QFile::link("second.ini", link)); // where nothing is as yet
+        for (const char *const name : {"first", "then"}) {
+            LayoutWindow one(link, {"127.0.0.1:1"});
+            one.saveAs(name);
+            QTRY_VERIFY(Layouts(file_).names().contains(name));
+            QVERIFY(QFileInfo(link).isSymLink() && QFileInfo(second).isSymLink());
+        }
+    }
 
 private:
     QByteArray content() const { return contentOf(file_); }
@@ -30,211 +225,6 @@ private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-void TestLayoutFile::init() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    file_ = folder_->filePath("new/gui.ini");
-}
-
-void TestLayoutFile::anyFile_data() {
-    const Rows<QByteArray, bool> row("bytes", "isOurs");
-    QByteArray noise(10 << 20, 0);
-    QRandomGenerator random(1);
-    for (char &c : noise)
-        c = char(random.bounded(256));
-    row("empty", QByteArray(), true);
-    row("10 MB of noise", noise, false);
-    row("a little noise", noise.left(1000), false);
-    row("10 MB of lines", QByteArray("[window]\n") + QByteArray("a=b\n").repeated(2 << 20), false);
-    const QByteArray own = "[window]\nlayout=x\n[kept]\na=";
-    row("nearly as large as it may be", own + QByteArray((1 << 20) - 20000, 'x'), true);
-    row("a byte larger", own + QByteArray((1 << 20) + 1 - own.size(), 'x'), false);
-    row("one long line", "[window]\na=" + QByteArray(1000000, 'x'), true);
-    row("another program's", "[Desktop Entry]\nName=x\n", false);
-    row("a text", "Dear diary,\ntoday I drove.\n", false);
-    row("an open section", "[window]\nlayout=x\n[kept\na=b\n", false);
-    row("an open quote", "[window]\nlayout=\"x\n[kept]\na=\"b\"\n", false);
-    row("a quote in a key", "[window]\nlay\"out=x\n", false);
-    row("an open end", "[kept]\n[window]\nlayout=x\\\n", false);
-    row("types of Qt", "[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n", false);
-    row("wrong types",
-        "[window]\ngeometry=1, 2, 3\nstate=@Rect(1 2 3 4)\nlayout=7, 8\n"
-        "[layouts]\nsize=many\n1\\name=a, b\n[robots]\naddresses=5\nnames=x\n"
-        "chosen=1, 2\n",
-        true);
-    row("more than there are",
-        "[layouts]\nsize=2000000000\n1\\name=x\n1\\state=@ByteArray(\\0\\0\\0\\xff)\n"
-        "1\\geometry=@ByteArray(\\x1\\xd9\\xd0)\n1\\plots={\\\"fields\\\":5}\n"
-        "[window]\nlayout=y\n",
-        true);
-    row("addresses",
-        "[robots]\naddresses=:, robot:0, http://x, 127.0.0.1:1, " + QByteArray("x").repeated(10000) +
-            "\nnames=127.0.0.1:1, " + QByteArray("w").repeated(10000) + "\n",
-        true);
-}
-
-void TestLayoutFile::anyFile() {
-    FETCH(QByteArray, bytes, bool, isOurs);
-    QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
-    write(bytes);
-    QElapsedTimer clock;
-    clock.start();
-    {
-        LayoutWindow one(file_);
-        QVERIFY(one.isWhole());
-        QVERIFY(one.dock("daemons")->isVisible());
-        QCOMPARE(one.notice().isEmpty(), isOurs && !bytes.contains("1\\state"));
-        QVERIFY(one.fleet.robots().size() <= 2);
-        one.saveAs("mine");
-        QVERIFY(one.isWhole());
-        one.window->close();
-    }
-    QVERIFY(clock.elapsed() < 10000);
-    QCOMPARE(content() == bytes, !isOurs);
-    QCOMPARE(Layouts(file_).names().contains("mine"), isOurs);
-}
-
-// Bytes of a layout, changed or cut at random.
-void TestLayoutFile::anyState() {
-    QRandomGenerator random(newSeed());
-    { LayoutWindow(file_, {"127.0.0.1:1"}).window->close(); }
-    QVERIFY(Layouts(file_).damage().isEmpty());
-    QSettings file(file_, QSettings::IniFormat);
-    const QStringList keys{"layouts/1/state", "layouts/1/geometry"};
-    const QList<QByteArray> good{file.value(keys[0]).toByteArray(), file.value(keys[1]).toByteArray()};
-    for (int round = 0; round < 40; ++round) {
-        const int which = round % 2;
-        QByteArray bytes = good[which];
-        const int place = random.bounded(bytes.size());
-        bytes[place] = char(bytes[place] + 1 + random.bounded(255));
-        if (random.bounded(4) == 0)
-            bytes.truncate(random.bounded(bytes.size()));
-        file.setValue(keys[which], bytes);
-        file.setValue(keys[1 - which], good[1 - which]);
-        file.sync();
-        LayoutWindow one(file_, {"127.0.0.1:1"});
-        QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
-        QVERIFY2(one.notice().contains("damaged"), qPrintable(one.notice()));
-    }
-}
-
-// As this program wrote it, but for some bytes, or the rest.
-void TestLayoutFile::ownFileDamaged() {
-    QRandomGenerator random(newSeed());
-    {
-        LayoutWindow one(file_, {"127.0.0.1:1"});
-        one.saveAs("Bench");
-        one.window->close();
-    }
-    const QByteArray good = content();
-    for (int round = 0; round < 40; ++round) {
-        QByteArray bytes = good;
-        for (int i = random.bounded(4); i >= 0; --i)
-            bytes[random.bounded(bytes.size())] = char(random.bounded(256));
-        if (random.bounded(2) == 0)
-            bytes.truncate(random.bounded(bytes.size()));
-        write(bytes);
-        const bool isRefused = !Layouts(file_).problem().isEmpty();
-        LayoutWindow one(file_);
-        QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
-        QVERIFY(one.window->minimumSizeHint().width() < 1024);
-        QCOMPARE(one.notice().contains("It is left as it is"), isRefused);
-        one.window->close();
-        QVERIFY(!isRefused || content() == bytes);
-    }
-}
-
-void TestLayoutFile::anyValue_data() {
-    QTest::addColumn<QString>("key");
-    QTest::addColumn<QByteArray>("value");
-    QByteArray deep = "1";
-    for (int i = 0; i < 900; ++i)
-        deep = "{\"a\":[" + deep + "]}";
-    const QList<QPair<const char *, QByteArray>> values{{"no JSON", "{[\"\\"},
-                                                        {"another kind", "[[1,null],{\"a\":[]}]"},
-                                                        {"deep", deep},
-                                                        {"long", '"' + QByteArray(500000, 'W') + '"'},
-                                                        {"wrong ticks", "{\"gridLayer\":[7],\"\":null}"}};
-    for (const char *const key : {"layers", "plotSets", "buttons", "sounds", "escape", "gamepads/a"})
-        for (const auto &[name, value] : values)
-            QTest::addRow("%s: %s", key, name) << QString(key) << value;
-}
-
-void TestLayoutFile::anyValue() {
-    FETCH(QString, key, QByteArray, value);
-    Layouts layouts(file_);
-    layouts.setValue(key, QString::fromUtf8(value));
-    QVERIFY(layouts.save());
-    LayoutWindow one(file_, {"127.0.0.1:1"});
-    QVERIFY(one.isWhole() && one.notice().isEmpty());
-    QVERIFY(!one.window->findChild<QAction *>("escapeStops")->isChecked());
-    QVERIFY(one.window->minimumSizeHint().width() < 1024);
-    one.window->close();
-    QVERIFY(Layouts(file_).problem().isEmpty());
-}
-
-void TestLayoutFile::programBeginsWithNonsense() {
-    QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
-    const QByteArray nonsense = QByteArray("\0\xff[window]\n@Variant(", 20).repeated(200000);
-    write(nonsense);
-    QProcess program;
-    program.setProcessChannelMode(QProcess::MergedChannels);
-    program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
-                  {"--connect", "127.0.0.1:1", "--layout", file_});
-    QByteArray told;
-    QTRY_VERIFY2_WITH_TIMEOUT((told += program.readAll()).contains("It is left as it is"), told.constData(),
-                              20000);
-    QTest::qWait(1000); // in which it would keep what is set
-    QCOMPARE(program.state(), QProcess::Running);
-    program.terminate();
-    QVERIFY(program.waitForFinished());
-    QCOMPARE(program.exitStatus(), QProcess::NormalExit); // in order
-    QCOMPARE(content(), nonsense);
-}
-
-void TestLayoutFile::whatCannotBeWrittenIsTold() {
-    {
-        LayoutWindow folder(folder_->path(), {"127.0.0.1:1"}); // which is no file
-        QVERIFY2(folder.notice().contains("is no file"), qPrintable(folder.notice()));
-        QVERIFY(folder.isWhole());
-    }
-    {
-        LayoutWindow device("/dev/null", {"127.0.0.1:1"});
-        QVERIFY(!device.notice().isEmpty());
-        device.window->close();
-        QVERIFY(QFileInfo::exists("/dev/null") && !QFileInfo("/dev/null").isFile());
-    }
-    file_ = folder_->filePath("gui.ini");
-    write({});
-    {
-        LayoutWindow below(file_ + "/gui.ini", {"127.0.0.1:1"}); // where no folder can be
-        QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
-    }
-    LayoutWindow full(file_, {"127.0.0.1:1"});
-    std::optional<FileSizeLimit> disk(0);
-    full.saveAs("more");
-    const bool isTold = QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
-    full.window->close();
-    const bool isAsked =
-        QTest::qWaitFor([&full] { return full.notice().contains("Close the window once more"); });
-    disk.reset();
-    QVERIFY2(isTold, qPrintable(full.notice()));
-    QVERIFY2(isAsked, qPrintable(full.notice()));
-    full.saveAs("when there is room");
-    QTRY_VERIFY(Layouts(file_).names().contains("when there is room"));
-    QVERIFY(Layouts(file_).names().contains("more")); // the window had it
-}
-
-void TestLayoutFile::linkStaysOne() {
-    const QString link = folder_->filePath("link.ini"), second = folder_->filePath("second.ini");
-    QVERIFY(QFile::link(file_, second) && QFile::link("second.ini", link)); // where nothing is as yet
-    for (const char *const name : {"first", "then"}) {
-        LayoutWindow one(link, {"127.0.0.1:1"});
-        one.saveAs(name);
-        QTRY_VERIFY(Layouts(file_).names().contains(name));
-        QVERIFY(QFileInfo(link).isSymLink() && QFileInfo(second).isSymLink());
-    }
-}
 
 QTEST_MAIN(TestLayoutFile)
 #include "TestLayoutFile.moc"

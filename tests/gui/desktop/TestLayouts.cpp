@@ -10,129 +10,125 @@ using namespace hermes::desktop;
 class TestLayouts : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void savedSwitchedAndDeletedByHand();
-    void badNamesAreTold();
-    void switchingDropsNoConnectionAndNoBanner();
-    void robotsAreKept();
-    void floatingPanelIsSeenToFloat();
+    void init() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        file_ = folder_->filePath("new/gui.ini");
+    }
+
+    void savedSwitchedAndDeletedByHand() {
+        const QJsonObject plotted{{"daemon", "127.0.0.1:1"}, {"topic", "a"}, {"field", "b"}};
+        {
+            LayoutWindow one(file_, {"127.0.0.1:1"});
+            QVERIFY(one.dock("drive")->isVisible());
+            one.saveAs("Bench & desk");
+            one.dock("drive")->hide();
+            one.window->findChild<PlotsPanel *>()->setState({{"panes", QJsonArray{QJsonArray{plotted}}}});
+            one.pick("layout Usual");
+            QTRY_VERIFY(one.dock("drive")->isVisible());
+            QVERIFY(one.plots().isEmpty()); // they are of the other one
+            one.pick("layout Bench & desk");
+            QTRY_VERIFY(!one.dock("drive")->isVisible());
+            one.window->close();
+        }
+        LayoutWindow next(file_);
+        QVERIFY(!next.dock("drive")->isVisible());
+        QCOMPARE(next.window->layouts().names(), QStringList({"Usual", "Bench & desk"}));
+        QCOMPARE(next.window->layouts().current(), QString("Bench & desk"));
+        QCOMPARE(next.plots(), QJsonArray{plotted});
+        next.pick("resetLayout");
+        QTRY_VERIFY(next.dock("drive")->isVisible());
+        next.pick("removeLayout");
+        QCOMPARE(next.window->layouts().names(), QStringList("Usual"));
+        Q_EMIT next.menu().aboutToShow();
+        auto *const removal =
+            qobject_cast<QMenu *>(next.menu().findChild<QAction *>("removeLayout")->parent());
+        QVERIFY(removal && !removal->menuAction()->isEnabled()); // the last
+        QCOMPARE(next.notice(), QString());
+    }
+
+    void badNamesAreTold() {
+        LayoutWindow one(file_, {"127.0.0.1:1"});
+        one.saveAs("  ");
+        QCOMPARE(one.notice(), QString("A layout needs a name."));
+        one.saveAs("Usual");
+        QCOMPARE(one.notice(), QString("There is a layout Usual already."));
+        for (int i = 1; i < Layouts::most; ++i)
+            one.saveAs(QString("%1\n\u202e").arg(i) + QString(10000, 'x'));
+        QCOMPARE(one.window->layouts().names().size(), Layouts::most);
+        one.saveAs("one more");
+        QVERIFY2(one.notice().startsWith("There are 50 layouts"), qPrintable(one.notice()));
+        for (const QString &name : one.window->layouts().names())
+            QVERIFY(name.size() <= Layouts::longestName && !name.contains('\n'));
+    }
+
+    void switchingDropsNoConnectionAndNoBanner() {
+        Mischief motors;
+        motors.isMotors = true;
+        motors.hasTopics = false;
+        const FakeDaemon daemon(motors);
+        LayoutWindow one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
+        QTRY_VERIFY(one.drive->isPossible());
+        one.saveAs("other");
+        DaemonLink *const link = one.fleet.robot()->daemons().front();
+        QSignalSpy lost(&link->client(), &Client::disconnected);
+        one.drive->stop();
+        auto *const banner = one.window->findChild<QLabel *>("stopBanner");
+        QTRY_VERIFY(banner->isVisible());
+        for (const char *const next : {"layout Usual", "layout other", "resetLayout", "removeLayout"}) {
+            one.pick(next); // in none of which there was a banner when it was kept
+            QVERIFY2(banner->isVisible() && one.isWhole(), next);
+            QVERIFY(one.drive->isStopped());
+        }
+        QCOMPARE(lost.count(), 0);
+        QVERIFY(link->isConnected());
+    }
+
+    void robotsAreKept() {
+        Mischief supervisor;
+        supervisor.topics["processes"] = R"({"robot":"rover","processes":[]})";
+        const FakeDaemon one(supervisor), other(supervisor);
+        const auto address = [](const FakeDaemon &daemon) {
+            return QString("127.0.0.1:%1").arg(daemon.port());
+        };
+        {
+            LayoutWindow first(file_, {address(one), address(other)});
+            QTRY_VERIFY(first.fleet.robotAt(address(one)) && first.fleet.robotAt(address(other)));
+            first.fleet.rename(*first.fleet.robotAt(address(other)), "Blue, \"the\" second; [x]");
+            first.fleet.choose(first.fleet.robotAt(address(other)));
+            first.saveAs("desk");
+            QTRY_COMPARE(Layouts(file_).robots().names.size(), 1); // before it is closed
+        }
+        LayoutWindow next(file_);
+        QTRY_VERIFY(next.fleet.robotAt(address(other)) && next.fleet.robotAt(address(one)));
+        QCOMPARE(next.fleet.robot(), next.fleet.robotAt(address(other)));
+        QCOMPARE(next.fleet.robot()->name(), QString("Blue, \"the\" second; [x]"));
+        next.pick("layout Usual");
+        QCOMPARE(int(next.fleet.robots().size()), 2); // robots are of no layout
+        QCOMPARE(next.window->findChild<QComboBox *>("robots")->currentText(), next.fleet.robot()->name());
+    }
+
+    // By its button it would lie exactly where it was.
+    void floatingPanelIsSeenToFloat() {
+        LayoutWindow first(file_);
+        auto *const dock = static_cast<QDockWidget *>(first.dock("daemons"));
+        const QPoint docked = dock->mapToGlobal(QPoint());
+        dock->setFloating(true); // as its button does
+        const QPoint moved = dock->pos() - docked;
+        QVERIFY2(moved.manhattanLength() >= 40, qPrintable(QString("%1, %2").arg(moved.x()).arg(moved.y())));
+        const QPoint place = dock->pos();
+        dock->setFloating(false);
+        dock->setFloating(true);
+        QCOMPARE(dock->pos(), place); // it does not wander
+        first.window->close();
+        LayoutWindow again(file_);
+        QCOMPARE(again.dock("daemons")->pos(), place);
+        QVERIFY(again.dock("daemons")->isWindow() && again.dock("daemons")->isVisible());
+    }
 
 private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-void TestLayouts::init() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    file_ = folder_->filePath("new/gui.ini");
-}
-
-void TestLayouts::savedSwitchedAndDeletedByHand() {
-    const QJsonObject plotted{{"daemon", "127.0.0.1:1"}, {"topic", "a"}, {"field", "b"}};
-    {
-        LayoutWindow one(file_, {"127.0.0.1:1"});
-        QVERIFY(one.dock("drive")->isVisible());
-        one.saveAs("Bench & desk");
-        one.dock("drive")->hide();
-        one.window->findChild<PlotsPanel *>()->setState({{"panes", QJsonArray{QJsonArray{plotted}}}});
-        one.pick("layout Usual");
-        QTRY_VERIFY(one.dock("drive")->isVisible());
-        QVERIFY(one.plots().isEmpty()); // they are of the other one
-        one.pick("layout Bench & desk");
-        QTRY_VERIFY(!one.dock("drive")->isVisible());
-        one.window->close();
-    }
-    LayoutWindow next(file_);
-    QVERIFY(!next.dock("drive")->isVisible());
-    QCOMPARE(next.window->layouts().names(), QStringList({"Usual", "Bench & desk"}));
-    QCOMPARE(next.window->layouts().current(), QString("Bench & desk"));
-    QCOMPARE(next.plots(), QJsonArray{plotted});
-    next.pick("resetLayout");
-    QTRY_VERIFY(next.dock("drive")->isVisible());
-    next.pick("removeLayout");
-    QCOMPARE(next.window->layouts().names(), QStringList("Usual"));
-    Q_EMIT next.menu().aboutToShow();
-    auto *const removal = qobject_cast<QMenu *>(next.menu().findChild<QAction *>("removeLayout")->parent());
-    QVERIFY(removal && !removal->menuAction()->isEnabled()); // the last
-    QCOMPARE(next.notice(), QString());
-}
-
-void TestLayouts::badNamesAreTold() {
-    LayoutWindow one(file_, {"127.0.0.1:1"});
-    one.saveAs("  ");
-    QCOMPARE(one.notice(), QString("A layout needs a name."));
-    one.saveAs("Usual");
-    QCOMPARE(one.notice(), QString("There is a layout Usual already."));
-    for (int i = 1; i < Layouts::most; ++i)
-        one.saveAs(QString("%1\n\u202e").arg(i) + QString(10000, 'x'));
-    QCOMPARE(one.window->layouts().names().size(), Layouts::most);
-    one.saveAs("one more");
-    QVERIFY2(one.notice().startsWith("There are 50 layouts"), qPrintable(one.notice()));
-    for (const QString &name : one.window->layouts().names())
-        QVERIFY(name.size() <= Layouts::longestName && !name.contains('\n'));
-}
-
-void TestLayouts::switchingDropsNoConnectionAndNoBanner() {
-    Mischief motors;
-    motors.isMotors = true;
-    motors.hasTopics = false;
-    const FakeDaemon daemon(motors);
-    LayoutWindow one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
-    QTRY_VERIFY(one.drive->isPossible());
-    one.saveAs("other");
-    DaemonLink *const link = one.fleet.robot()->daemons().front();
-    QSignalSpy lost(&link->client(), &Client::disconnected);
-    one.drive->stop();
-    auto *const banner = one.window->findChild<QLabel *>("stopBanner");
-    QTRY_VERIFY(banner->isVisible());
-    for (const char *const next : {"layout Usual", "layout other", "resetLayout", "removeLayout"}) {
-        one.pick(next); // in none of which there was a banner when it was kept
-        QVERIFY2(banner->isVisible() && one.isWhole(), next);
-        QVERIFY(one.drive->isStopped());
-    }
-    QCOMPARE(lost.count(), 0);
-    QVERIFY(link->isConnected());
-}
-
-void TestLayouts::robotsAreKept() {
-    Mischief supervisor;
-    supervisor.topics["processes"] = R"({"robot":"rover","processes":[]})";
-    const FakeDaemon one(supervisor), other(supervisor);
-    const auto address = [](const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); };
-    {
-        LayoutWindow first(file_, {address(one), address(other)});
-        QTRY_VERIFY(first.fleet.robotAt(address(one)) && first.fleet.robotAt(address(other)));
-        first.fleet.rename(*first.fleet.robotAt(address(other)), "Blue, \"the\" second; [x]");
-        first.fleet.choose(first.fleet.robotAt(address(other)));
-        first.saveAs("desk");
-        QTRY_COMPARE(Layouts(file_).robots().names.size(), 1); // before it is closed
-    }
-    LayoutWindow next(file_);
-    QTRY_VERIFY(next.fleet.robotAt(address(other)) && next.fleet.robotAt(address(one)));
-    QCOMPARE(next.fleet.robot(), next.fleet.robotAt(address(other)));
-    QCOMPARE(next.fleet.robot()->name(), QString("Blue, \"the\" second; [x]"));
-    next.pick("layout Usual");
-    QCOMPARE(int(next.fleet.robots().size()), 2); // robots are of no layout
-    QCOMPARE(next.window->findChild<QComboBox *>("robots")->currentText(), next.fleet.robot()->name());
-}
-
-// By its button it would lie exactly where it was.
-void TestLayouts::floatingPanelIsSeenToFloat() {
-    LayoutWindow first(file_);
-    auto *const dock = static_cast<QDockWidget *>(first.dock("daemons"));
-    const QPoint docked = dock->mapToGlobal(QPoint());
-    dock->setFloating(true); // as its button does
-    const QPoint moved = dock->pos() - docked;
-    QVERIFY2(moved.manhattanLength() >= 40, qPrintable(QString("%1, %2").arg(moved.x()).arg(moved.y())));
-    const QPoint place = dock->pos();
-    dock->setFloating(false);
-    dock->setFloating(true);
-    QCOMPARE(dock->pos(), place); // it does not wander
-    first.window->close();
-    LayoutWindow again(file_);
-    QCOMPARE(again.dock("daemons")->pos(), place);
-    QVERIFY(again.dock("daemons")->isWindow() && again.dock("daemons")->isVisible());
-}
 
 QTEST_MAIN(TestLayouts)
 #include "TestLayouts.moc"

@@ -21,166 +21,165 @@ class TestMapPanel : public QObject, protected MapWindow {
 private Q_SLOTS:
     void initTestCase() { open(); }
     void cleanupTestCase() { close(); }
-    void measured();
-    void placedByADrag();
-    void exported_data();
-    void exported();
-    void exportThatFails();
-    void savedByCommand();
-    void twoClicksSaveIt();
-    void mapsByTheMenu();
-    void matcherGoneAndBack();
-};
 
-void TestMapPanel::measured() {
-    tool("fit");
-    tool("measure");
-    drag(pixel(0, 0), pixel(3, 4));
-    QVERIFY2(std::abs(message().section(' ', 0, 0).toDouble() - 5) < 2 / scale() + 1e-3,
-             qPrintable(message()));
-    tool("measure"); // off again
-    QVERIFY(view().tool() == MapView::Tool::Pan);
-}
-
-void TestMapPanel::placedByADrag() {
-    const Pose2D at = *model().pose();
-    const double reach = 40 / scale();
-    tool("place");
-    drag(pixel(at.x, at.y), pixel(at.x + reach * std::cos(at.theta), at.y + reach * std::sin(at.theta)));
-    QTRY_VERIFY2(message().startsWith("Placed at"), qPrintable(message()));
-    QVERIFY(view().tool() == MapView::Tool::Pan);
-    QTRY_COMPARE(model().outcome(), QString("matched"));
-    QVERIFY(std::hypot(model().pose()->x - at.x, model().pose()->y - at.y) < 0.2);
-}
-
-void TestMapPanel::exported_data() {
-    const Rows<QString> row("name");
-    row("svg", "view.svg");
-    row("png", "view.png");
-}
-
-void TestMapPanel::exported() {
-    QFETCH(QString, name);
-    const QString file = robot_->path(name);
-    QVERIFY(panel()->exportTo(file).ok());
-    if (name.endsWith("png")) {
-        const QImage picture(file);
-        QCOMPARE(picture.size(), view().size());
-        QVERIFY(picture.convertToFormat(QImage::Format_Indexed8).colorCount() > 3); // not one blank sheet
-        return;
-    }
-    QFile text(file);
-    QVERIFY(text.open(QIODevice::ReadOnly));
-    QXmlStreamReader xml(&text);
-    int lines = 0;
-    while (!xml.atEnd())
-        lines += xml.readNext() == QXmlStreamReader::StartElement && xml.name() == "polyline";
-    QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
-    QVERIFY(lines >= model().edges().size());
-}
-
-void TestMapPanel::exportThatFails() {
-    for (const char *const name : {"nowhere/view.svg", "nowhere/view.png"}) {
-        const auto done = panel()->exportTo(robot_->path(name));
-        QVERIFY(!done.ok());
-        QVERIFY(done.error().message.contains(name));
-    }
-}
-
-void TestMapPanel::savedByCommand() {
-    QVERIFY(window_->choose(window_->fleet.robot()->withName("scanmatcher")));
-    auto *const commands = window_->panel<CommandsPanel>("commands");
-    auto *const methods = commands->findChild<QListWidget *>("methods");
-    methods->setCurrentItem(methods->findItems("map.save", Qt::MatchExactly).value(0));
-    const QString file = robot_->path("maps/saved.csv");
-    OpenWindow::type(commands->findChild<QWidget *>("path")->findChild<QLineEdit *>(), file);
-    OpenWindow::click(commands, "call");
-    QTRY_VERIFY2(QFileInfo(file).size() > 1000,
-                 qPrintable(commands->findChild<QPlainTextEdit *>("answer")->toPlainText()));
-}
-
-void TestMapPanel::twoClicksSaveIt() {
-    auto *const button = panel()->findChild<QToolButton *>("mapMenu");
-    auto *const save = panel()->findChild<QAction *>("saveMap");
-    QTimer second;
-    connect(&second, &QTimer::timeout, this, [&] {
-        QMenu *const menu = button->menu();
-        if (!menu->isVisible())
-            return;
-        second.stop();
-        QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(save).center());
-    });
-    second.start(50);
-    QTest::mouseClick(button, Qt::LeftButton); // returns when the menu is closed
-    QTRY_VERIFY2(message().contains(QRegularExpression("walls to .*/map-20[0-9-]*\\.csv on the robot")),
+    void measured() {
+        tool("fit");
+        tool("measure");
+        drag(pixel(0, 0), pixel(3, 4));
+        QVERIFY2(std::abs(message().section(' ', 0, 0).toDouble() - 5) < 2 / scale() + 1e-3,
                  qPrintable(message()));
-}
+        const QPoint from = pixel(0, 0), to = pixel(3, 4); // let go farther on than it was dragged to
+        QTest::mousePress(&view(), Qt::LeftButton, {}, from);
+        QMouseEvent move(QEvent::MouseMove, (from + to) / 2, Qt::NoButton, Qt::LeftButton, {});
+        QApplication::sendEvent(&view(), &move);
+        QTest::mouseRelease(&view(), Qt::LeftButton, {}, to);
+        QVERIFY2(std::abs(message().section(' ', 0, 0).toDouble() - 5) < 2 / scale() + 1e-3,
+                 qPrintable(message())); // as the line that stays
+        tool("measure");                 // off again
+        QVERIFY(view().tool() == MapView::Tool::Pan);
+    }
 
-void TestMapPanel::mapsByTheMenu() {
-    const auto trigger = [this](const QString &name) {
-        auto *const action = panel()->findChild<QAction *>(name);
-        QVERIFY2(action && action->isEnabled(), qPrintable(name));
-        action->trigger();
-    };
-    const auto accept = [] { // in the dialog that has opened
-        QPushButton *button = nullptr;
-        QTRY_VERIFY([&] {
-            for (QWidget *window : QApplication::topLevelWidgets())
-                if (qobject_cast<QDialog *>(window) && window->isVisible())
-                    button = window->findChild<QPushButton *>("accept");
-            return button != nullptr;
-        }());
-        QVERIFY(!button->window()->isModal());
-        button->click();
-    };
-    panel()->findChild<QLabel *>("message")->clear();
-    trigger("saveMap"); // of the last case: asks whether to replace it
-    accept();
-    QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
-    const int walls = QRegularExpression("(\\d+) walls").match(message()).captured(1).toInt();
-    QVERIFY2(walls > 0, qPrintable(message()));
-    trigger("newMap");
-    QTest::qWait(100);
-    QVERIFY(!model().edges().isEmpty()); // it asks
-    accept();
-    QTRY_VERIFY2(message().startsWith("A new map has begun"), qPrintable(message()));
-    trigger("undoMap");
-    QTRY_VERIFY2(message().startsWith("The last map is back"), qPrintable(message()));
-    QTRY_VERIFY(model().edges().size() >= walls);
-    trigger("localization");
-    QTRY_COMPARE(message(), QString("The map stays as it is."));
-    QTRY_VERIFY(panel()->findChild<QAction *>("localization")->isChecked());
-    trigger("openMap");
-    accept(); // the newest
-    QTRY_VERIFY2(message().startsWith("Opened map-20"), qPrintable(message()));
-    QTRY_COMPARE(model().edges().size(), walls);
-    trigger("saveMapAs");
-    accept();
-    accept(); // it exists: asks whether to replace it
-    QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
-    trigger("mapping");
-    QTRY_COMPARE(message(), QString("The map grows."));
-}
+    void placedByADrag() {
+        const Pose2D at = *model().pose();
+        const double reach = 40 / scale();
+        tool("place");
+        drag(pixel(at.x, at.y), pixel(at.x + reach * std::cos(at.theta), at.y + reach * std::sin(at.theta)));
+        QTRY_VERIFY2(message().startsWith("Placed at"), qPrintable(message()));
+        QVERIFY(view().tool() == MapView::Tool::Pan);
+        QTRY_COMPARE(model().outcome(), QString("matched"));
+        QVERIFY(std::hypot(model().pose()->x - at.x, model().pose()->y - at.y) < 0.2);
+    }
 
-void TestMapPanel::matcherGoneAndBack() {
-    robot_->kill("scanmatcher");
-    QTRY_VERIFY(!panel()->findChild<QAction *>("place")->isEnabled());
-    robot_->start("scanmatcher",
-                  {QString("source.address=127.0.0.1:%1").arg(robot_->port("velodynelogger"))});
-    QTRY_VERIFY_WITH_TIMEOUT(panel()->findChild<QAction *>("place")->isEnabled(), 10000);
-    QTRY_VERIFY_WITH_TIMEOUT(model().edges().size() > 10, 10000);
-    // The map of the new one replaces that of the old one; without scans it stands still, to be compared.
-    robot_->kill("simulator");
-    ConnectedClient client(QString("127.0.0.1:%1").arg(robot_->port("scanmatcher")));
-    int there = -1, shown = -1;
-    const auto areAlike = [&] {
-        const auto map = client.callAndWait("map.get");
-        there = map ? (*map)["edges"].toArray().size() : -1;
-        shown = int(model().edges().size());
-        return there == shown;
-    };
-    QTRY_VERIFY2_WITH_TIMEOUT(areAlike(), qPrintable(QString("%1 shown of %2").arg(shown).arg(there)), 10000);
-}
+    void exported_data() {
+        const Rows<QString> row("name");
+        row("svg", "view.svg");
+        row("png", "view.png");
+    }
+
+    void exported() {
+        QFETCH(QString, name);
+        const QString file = robot_->path(name);
+        QVERIFY(panel()->exportTo(file).ok());
+        if (name.endsWith("png")) {
+            const QImage picture(file);
+            QCOMPARE(picture.size(), view().size());
+            QVERIFY(picture.convertToFormat(QImage::Format_Indexed8).colorCount() > 3); // not one blank sheet
+            return;
+        }
+        QFile text(file);
+        QVERIFY(text.open(QIODevice::ReadOnly));
+        QXmlStreamReader xml(&text);
+        int lines = 0;
+        while (!xml.atEnd())
+            lines += xml.readNext() == QXmlStreamReader::StartElement && xml.name() == "polyline";
+        QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+        QVERIFY(lines >= model().edges().size());
+    }
+
+    void exportThatFails() {
+        for (const char *const name : {"nowhere/view.svg", "nowhere/view.png"}) {
+            const auto done = panel()->exportTo(robot_->path(name));
+            QVERIFY(!done.ok());
+            QVERIFY(done.error().message.contains(name));
+        }
+    }
+
+    void savedByCommand() {
+        QVERIFY(window_->choose(window_->fleet.robot()->withName("scanmatcher")));
+        auto *const commands = window_->panel<CommandsPanel>("commands");
+        auto *const methods = commands->findChild<QListWidget *>("methods");
+        methods->setCurrentItem(methods->findItems("map.save", Qt::MatchExactly).value(0));
+        const QString file = robot_->path("maps/saved.csv");
+        OpenWindow::type(commands->findChild<QWidget *>("path")->findChild<QLineEdit *>(), file);
+        OpenWindow::click(commands, "call");
+        QTRY_VERIFY2(QFileInfo(file).size() > 1000,
+                     qPrintable(commands->findChild<QPlainTextEdit *>("answer")->toPlainText()));
+    }
+
+    void twoClicksSaveIt() {
+        auto *const button = panel()->findChild<QToolButton *>("mapMenu");
+        auto *const save = panel()->findChild<QAction *>("saveMap");
+        QTimer second;
+        connect(&second, &QTimer::timeout, this, [&] {
+            QMenu *const menu = button->menu();
+            if (!menu->isVisible())
+                return;
+            second.stop();
+            QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(save).center());
+        });
+        second.start(50);
+        QTest::mouseClick(button, Qt::LeftButton); // returns when the menu is closed
+        QTRY_VERIFY2(message().contains(QRegularExpression("walls to .*/map-20[0-9-]*\\.csv on the robot")),
+                     qPrintable(message()));
+    }
+
+    void mapsByTheMenu() {
+        const auto trigger = [this](const QString &name) {
+            auto *const action = panel()->findChild<QAction *>(name);
+            QVERIFY2(action && action->isEnabled(), qPrintable(name));
+            action->trigger();
+        };
+        const auto accept = [] { // in the dialog that has opened
+            QPushButton *button = nullptr;
+            QTRY_VERIFY([&] {
+                for (QWidget *window : QApplication::topLevelWidgets())
+                    if (qobject_cast<QDialog *>(window) && window->isVisible())
+                        button = window->findChild<QPushButton *>("accept");
+                return button != nullptr;
+            }());
+            QVERIFY(!button->window()->isModal());
+            button->click();
+        };
+        panel()->findChild<QLabel *>("message")->clear();
+        trigger("saveMap"); // of the last case: asks whether to replace it
+        accept();
+        QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
+        const int walls = QRegularExpression("(\\d+) walls").match(message()).captured(1).toInt();
+        QVERIFY2(walls > 0, qPrintable(message()));
+        trigger("newMap");
+        QTest::qWait(100);
+        QVERIFY(!model().edges().isEmpty()); // it asks
+        accept();
+        QTRY_VERIFY2(message().startsWith("A new map has begun"), qPrintable(message()));
+        trigger("undoMap");
+        QTRY_VERIFY2(message().startsWith("The last map is back"), qPrintable(message()));
+        QTRY_VERIFY(model().edges().size() >= walls);
+        trigger("localization");
+        QTRY_COMPARE(message(), QString("The map stays as it is."));
+        QTRY_VERIFY(panel()->findChild<QAction *>("localization")->isChecked());
+        trigger("openMap");
+        accept(); // the newest
+        QTRY_VERIFY2(message().startsWith("Opened map-20"), qPrintable(message()));
+        QTRY_COMPARE(model().edges().size(), walls);
+        trigger("saveMapAs");
+        accept();
+        accept(); // it exists: asks whether to replace it
+        QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
+        trigger("mapping");
+        QTRY_COMPARE(message(), QString("The map grows."));
+    }
+
+    void matcherGoneAndBack() {
+        robot_->kill("scanmatcher");
+        QTRY_VERIFY(!panel()->findChild<QAction *>("place")->isEnabled());
+        robot_->start("scanmatcher",
+                      {QString("source.address=127.0.0.1:%1").arg(robot_->port("velodynelogger"))});
+        QTRY_VERIFY_WITH_TIMEOUT(panel()->findChild<QAction *>("place")->isEnabled(), 10000);
+        QTRY_VERIFY_WITH_TIMEOUT(model().edges().size() > 10, 10000);
+        // The map of the new one replaces that of the old one; without scans it stands still, to be compared.
+        robot_->kill("simulator");
+        ConnectedClient client(QString("127.0.0.1:%1").arg(robot_->port("scanmatcher")));
+        int there = -1, shown = -1;
+        const auto areAlike = [&] {
+            const auto map = client.callAndWait("map.get");
+            there = map ? (*map)["edges"].toArray().size() : -1;
+            shown = int(model().edges().size());
+            return there == shown;
+        };
+        QTRY_VERIFY2_WITH_TIMEOUT(areAlike(), qPrintable(QString("%1 shown of %2").arg(shown).arg(there)),
+                                  10000);
+    }
+};
 
 QTEST_MAIN(TestMapPanel)
 #include "TestMapPanel.moc"

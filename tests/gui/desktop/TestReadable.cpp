@@ -20,24 +20,6 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// Every text of the window is seen whole or has a tool tip with the rest, stands out, and is in words of an
-/// operator. The theme is that of HERMES_THEME, the scale that of QT_SCALE_FACTOR.
-class TestReadable : public QObject {
-    Q_OBJECT
-private Q_SLOTS:
-    void initTestCase();
-    void textsFit_data();
-    void textsFit();
-    void whatDrivesIsInSight();
-    void coloursStandOut();
-    void quietTextIsPainted();
-    void wordsAreOfAnOperator();
-    void wordsOfDaemonsAreMadePlain();
-
-private:
-    std::unique_ptr<RobotProcesses> robot_;
-};
-
 namespace {
 
 const QRegularExpression &foreignWords() {
@@ -166,131 +148,141 @@ double contrast(const QColor &one, const QColor &other) {
 
 } // namespace
 
-void TestReadable::initTestCase() {
-    theme::apply();
-    robot_ = std::make_unique<RobotProcesses>();
-    robot_->startAll();
-}
-
-void TestReadable::textsFit_data() {
-    const Rows<QSize> row("size");
-    row("1024 x 600", QSize(1024, 600));
-    row("1920 x 1080", QSize(1920, 1080));
-}
-
-void TestReadable::textsFit() {
-    QFETCH(const QSize, size);
-    OpenWindow open(*robot_);
-    QVERIFY(open.show());
-    open.window.resize(size);
-    QTRY_VERIFY_WITH_TIMEOUT(open.fleet.robot() && open.drive.isPossible(), 20000);
-    QTRY_VERIFY_WITH_TIMEOUT(open.fleet.robot()->withName("scanmatcher"), 20000);
-    open.fleet.choose(open.fleet.robot()->withName("scanmatcher"));
-    QStringList found;
-    for (auto *const dock : open.window.findChildren<QDockWidget *>()) {
-        dock->raise();
-        QTRY_VERIFY2(open.window.rect().contains(dock->geometry()), qPrintable(dock->objectName()));
-        QCoreApplication::sendPostedEvents();
-        found += tooNarrow(open.window) + overlapping(open.window);
+/// Every text of the window is seen whole or has a tool tip with the rest, stands out, and is in words of an
+/// operator. The theme is that of HERMES_THEME, the scale that of QT_SCALE_FACTOR.
+class TestReadable : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void initTestCase() {
+        theme::apply();
+        robot_ = std::make_unique<RobotProcesses>();
+        robot_->startAll();
     }
-    found.removeDuplicates();
-    QVERIFY2(open.window.size() == size, qPrintable(QString("%1").arg(open.window.height())));
-    QVERIFY2(found.isEmpty(), qPrintable(found.join('\n')));
-}
 
-void TestReadable::whatDrivesIsInSight() {
-    OpenWindow open(*robot_);
-    QVERIFY(open.show());
-    open.window.resize(1024, 600);
-    QTRY_VERIFY_WITH_TIMEOUT(open.drive.isPossible(), 20000);
-    Client other;
-    other.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
-    QTRY_VERIFY(other.isConnected());
-    QJsonObject anna{{"client", "anna on laptop7"}};
-    QVERIFY(other.callAndWait("motor.estop", anna).ok());
-    QTRY_VERIFY_WITH_TIMEOUT(open.drive.isStopped(), 10000);
-    auto *const banner = open.window.findChild<QToolBar *>("stopLine");
-    QTRY_VERIFY(banner->isVisible());
-    QCOMPARE(open.window.size(), QSize(1024, 600)); // with a banner, too
-    QVERIFY(releaseStop(other, anna));
-    QTRY_VERIFY_WITH_TIMEOUT(!banner->isVisible(), 10000);
-    anna["timeout_s"] = 60; // she does not drive
-    QVERIFY(other.callAndWait("control.acquire", anna).ok());
-    auto *const takeOver = open.window.findChild<QWidget *>("takeOver");
-    QTRY_VERIFY_WITH_TIMEOUT(takeOver->isVisible(), 10000);
-    for (const char *const name : {"stop", "stick", "speedLimit", "limit", "turnLimit", "measured0",
-                                   "measured2", "commanded0", "takeOver"}) {
-        auto *const widget = open.window.findChild<QWidget *>(name);
-        QTRY_VERIFY2(widget->visibleRegion().boundingRect() == widget->rect(), name);
+    void textsFit_data() {
+        const Rows<QSize> row("size");
+        row("1024 x 600", QSize(1024, 600));
+        row("1920 x 1080", QSize(1920, 1080));
     }
-}
 
-void TestReadable::coloursStandOut() {
-    OpenWindow open;
-    QVERIFY(open.show());
-    constexpr double least = 4.5;
-    const QPalette palette = QApplication::palette();
-    for (const auto condition :
-         {Condition::Ready, Condition::Busy, Condition::Warning, Condition::Fault, Condition::Unreachable})
-        for (const auto role : {QPalette::Window, QPalette::Base})
-            QVERIFY2(contrast(theme::colour(condition), palette.color(role)) >= least,
-                     qPrintable(QString("%1 on %2: %3")
-                                    .arg(theme::colour(condition).name(), palette.color(role).name())
-                                    .arg(contrast(theme::colour(condition), palette.color(role)))));
-    for (const QWidget *widget : open.window.findChildren<QWidget *>()) {
-        const bool isText = qobject_cast<const QLabel *>(widget) ||
-                            qobject_cast<const QAbstractButton *>(widget) ||
-                            qobject_cast<const QLineEdit *>(widget);
-        if (!isText || !widget->isEnabled() || !widget->styleSheet().isEmpty())
-            continue;
-        const QColor front = widget->palette().color(widget->foregroundRole()),
-                     back = widget->palette().color(widget->backgroundRole());
-        QVERIFY2(contrast(front, back) >= least,
-                 qPrintable(nameOf(*widget, front.name() + " on " + back.name())));
+    void textsFit() {
+        QFETCH(const QSize, size);
+        OpenWindow open(*robot_);
+        QVERIFY(open.show());
+        open.window.resize(size);
+        QTRY_VERIFY_WITH_TIMEOUT(open.fleet.robot() && open.drive.isPossible(), 20000);
+        QTRY_VERIFY_WITH_TIMEOUT(open.fleet.robot()->withName("scanmatcher"), 20000);
+        open.fleet.choose(open.fleet.robot()->withName("scanmatcher"));
+        QStringList found;
+        for (auto *const dock : open.window.findChildren<QDockWidget *>()) {
+            dock->raise();
+            QTRY_VERIFY2(open.window.rect().contains(dock->geometry()), qPrintable(dock->objectName()));
+            QCoreApplication::sendPostedEvents();
+            found += tooNarrow(open.window) + overlapping(open.window);
+        }
+        found.removeDuplicates();
+        QVERIFY2(open.window.size() == size, qPrintable(QString("%1").arg(open.window.height())));
+        QVERIFY2(found.isEmpty(), qPrintable(found.join('\n')));
     }
-}
 
-// As it is painted: colours of a palette may come out otherwise.
-void TestReadable::quietTextIsPainted() {
-    PlainLabel label("What a setting means");
-    label.setForegroundRole(QPalette::PlaceholderText);
-    label.resize(label.sizeHint());
-    const QImage picture = label.grab().toImage();
-    double best = 1;
-    for (int x = 0; x < picture.width(); ++x)
-        for (int y = 0; y < picture.height(); ++y)
-            best = std::max(best, contrast(picture.pixelColor(x, y), picture.pixelColor(0, 0)));
-    QVERIFY2(best >= 3.5, qPrintable(QString::number(best)));
-}
-
-/// All that the sources give to tr(), with what the window shows at first.
-void TestReadable::wordsAreOfAnOperator() {
-    static const QRegularExpression told("\\btr\\(\\s*((?:\"(?:[^\"\\\\]|\\\\.)*\"\\s*)+)");
-    QDirIterator files(qEnvironmentVariable("HERMES_SOURCE") + "/gui/desktop", {"*.cpp", "*.h"}, QDir::Files,
-                       QDirIterator::Subdirectories);
-    QStringList found;
-    int texts = 0;
-    while (files.hasNext()) {
-        for (auto all = told.globalMatch(QString::fromUtf8(contentOf(files.next()))); all.hasNext(); ++texts)
-            if (const QString text = all.next().captured(1); text.contains(foreignWords()))
-                found.append(files.fileName() + ": " + text);
+    void whatDrivesIsInSight() {
+        OpenWindow open(*robot_);
+        QVERIFY(open.show());
+        open.window.resize(1024, 600);
+        QTRY_VERIFY_WITH_TIMEOUT(open.drive.isPossible(), 20000);
+        Client other;
+        other.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+        QTRY_VERIFY(other.isConnected());
+        QJsonObject anna{{"client", "anna on laptop7"}};
+        QVERIFY(other.callAndWait("motor.estop", anna).ok());
+        QTRY_VERIFY_WITH_TIMEOUT(open.drive.isStopped(), 10000);
+        auto *const banner = open.window.findChild<QToolBar *>("stopLine");
+        QTRY_VERIFY(banner->isVisible());
+        QCOMPARE(open.window.size(), QSize(1024, 600)); // with a banner, too
+        QVERIFY(releaseStop(other, anna));
+        QTRY_VERIFY_WITH_TIMEOUT(!banner->isVisible(), 10000);
+        anna["timeout_s"] = 60; // she does not drive
+        QVERIFY(other.callAndWait("control.acquire", anna).ok());
+        auto *const takeOver = open.window.findChild<QWidget *>("takeOver");
+        QTRY_VERIFY_WITH_TIMEOUT(takeOver->isVisible(), 10000);
+        for (const char *const name : {"stop", "stick", "speedLimit", "limit", "turnLimit", "measured0",
+                                       "measured2", "commanded0", "takeOver"}) {
+            auto *const widget = open.window.findChild<QWidget *>(name);
+            QTRY_VERIFY2(widget->visibleRegion().boundingRect() == widget->rect(), name);
+        }
     }
-    QVERIFY2(texts > 400, qPrintable(QString::number(texts)));
-    OpenWindow open;
-    for (const QWidget *widget : open.window.findChildren<QWidget *>())
-        for (const QString &text : {widget->toolTip(), widget->property("text").toString(),
-                                    widget->property("placeholderText").toString()})
-            if (text.contains(foreignWords()))
-                found.append(nameOf(*widget, text));
-    QVERIFY2(found.isEmpty(), qPrintable(found.join('\n')));
-}
 
-void TestReadable::wordsOfDaemonsAreMadePlain() {
-    QCOMPARE(inPlainWords("stop by anna, tcp://10.0.0.2:4711 (user root); motor.reset_estop releases it"),
-             QString("stop by anna, 10.0.0.2:4711 (user root); Release ends it"));
-    QCOMPARE(inPlainWords("no answer of tcp://10.0.0.2:7410?protocol=json: refused"),
-             QString("no answer of 10.0.0.2:7410: refused"));
-}
+    void coloursStandOut() {
+        OpenWindow open;
+        QVERIFY(open.show());
+        constexpr double least = 4.5;
+        const QPalette palette = QApplication::palette();
+        for (const auto condition : {Condition::Ready, Condition::Busy, Condition::Warning, Condition::Fault,
+                                     Condition::Unreachable})
+            for (const auto role : {QPalette::Window, QPalette::Base})
+                QVERIFY2(contrast(theme::colour(condition), palette.color(role)) >= least,
+                         qPrintable(QString("%1 on %2: %3")
+                                        .arg(theme::colour(condition).name(), palette.color(role).name())
+                                        .arg(contrast(theme::colour(condition), palette.color(role)))));
+        for (const QWidget *widget : open.window.findChildren<QWidget *>()) {
+            const bool isText = qobject_cast<const QLabel *>(widget) ||
+                                qobject_cast<const QAbstractButton *>(widget) ||
+                                qobject_cast<const QLineEdit *>(widget);
+            if (!isText || !widget->isEnabled() || !widget->styleSheet().isEmpty())
+                continue;
+            const QColor front = widget->palette().color(widget->foregroundRole()),
+                         back = widget->palette().color(widget->backgroundRole());
+            QVERIFY2(contrast(front, back) >= least,
+                     qPrintable(nameOf(*widget, front.name() + " on " + back.name())));
+        }
+    }
+
+    // As it is painted: colours of a palette may come out otherwise.
+    void quietTextIsPainted() {
+        PlainLabel label("What a setting means");
+        label.setForegroundRole(QPalette::PlaceholderText);
+        label.resize(label.sizeHint());
+        const QImage picture = label.grab().toImage();
+        double best = 1;
+        for (int x = 0; x < picture.width(); ++x)
+            for (int y = 0; y < picture.height(); ++y)
+                best = std::max(best, contrast(picture.pixelColor(x, y), picture.pixelColor(0, 0)));
+        QVERIFY2(best >= 3.5, qPrintable(QString::number(best)));
+    }
+
+    /// All that the sources give to tr(), with what the window shows at first.
+    void wordsAreOfAnOperator() {
+        static const QRegularExpression told("\\btr\\(\\s*((?:\"(?:[^\"\\\\]|\\\\.)*\"\\s*)+)");
+        QDirIterator files(qEnvironmentVariable("HERMES_SOURCE") + "/gui/desktop", {"*.cpp", "*.h"},
+                           QDir::Files, QDirIterator::Subdirectories);
+        QStringList found;
+        int texts = 0;
+        while (files.hasNext()) {
+            for (auto all = told.globalMatch(QString::fromUtf8(contentOf(files.next()))); all.hasNext();
+                 ++texts)
+                if (const QString text = all.next().captured(1); text.contains(foreignWords()))
+                    found.append(files.fileName() + ": " + text);
+        }
+        QVERIFY2(texts > 400, qPrintable(QString::number(texts)));
+        OpenWindow open;
+        for (const QWidget *widget : open.window.findChildren<QWidget *>())
+            for (const QString &text : {widget->toolTip(), widget->property("text").toString(),
+                                        widget->property("placeholderText").toString()})
+                if (text.contains(foreignWords()))
+                    found.append(nameOf(*widget, text));
+        QVERIFY2(found.isEmpty(), qPrintable(found.join('\n')));
+    }
+
+    void wordsOfDaemonsAreMadePlain() {
+        QCOMPARE(inPlainWords("stop by anna, tcp://10.0.0.2:4711 (user root); motor.reset_estop releases it"),
+                 QString("stop by anna, 10.0.0.2:4711 (user root); Release ends it"));
+        QCOMPARE(inPlainWords("no answer of tcp://10.0.0.2:7410?protocol=json: refused"),
+                 QString("no answer of 10.0.0.2:7410: refused"));
+    }
+
+private:
+    std::unique_ptr<RobotProcesses> robot_;
+};
 
 QTEST_MAIN(TestReadable)
 #include "TestReadable.moc"

@@ -16,20 +16,250 @@ using namespace hermes::desktop;
 class TestRobots : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void cleanup();
-    void drivingOneNeverMovesTheOther();
-    void stopGoesToTheChosenOne();
-    void panelsShowTheChosenOne();
-    void aSupervisorThatDiesLosesNobody();
-    void aDriveEndsWhenItsDaemonMoves();
-    void theSameWheelsAreDrivenAfterTheMove();
-    void aStopSurvivesTheMove();
-    void aStopForNobodyGoesToWhoIsFound();
-    void whoIsDrivenOrStoppedIsNotRemoved();
-    void removedAndBroughtBackByHand();
-    void renamedByHand();
-    void partedByHand();
+    void init() {
+        red_ = std::make_unique<One>();
+        blue_ = std::make_unique<One>();
+        red_->name = "red";
+        blue_->name = "blue";
+        for (One *one : {red_.get(), blue_.get()}) {
+            one->processes.add("motorcontrol", one->motors.port());
+            one->eye.connectTo(motorsOf(*one));
+        }
+        for (One *one : {red_.get(), blue_.get()})
+            QVERIFY(one->eye.waitConnected());
+        open_ = std::make_unique<OpenWindow>();
+        QVERIFY(open_->show());
+    }
+
+    void cleanup() {
+        open_.reset();
+        red_.reset();
+        blue_.reset();
+    }
+
+    void drivingOneNeverMovesTheOther() {
+        openBoth();
+        QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
+        drive(*red_);
+        QCOMPARE(speed(*blue_), 0.0);
+        choose(*blue_);
+        QCOMPARE(find<QComboBox>("robots")->currentText(), QString("blue"));
+        QTRY_COMPARE(open_->window.windowTitle(), QString("blue - Hermes"));
+        QTRY_COMPARE(state(*red_)["target"].toObject()["vx"].toDouble(), 0.0);
+        QTRY_VERIFY(speed(*red_) < 0.01);
+        QCOMPARE(speed(*blue_), 0.0); // the key is held still
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+        drive(*blue_);
+        QVERIFY(speed(*red_) < 0.01);
+        red_->motors.end();
+        blue_->motors.end(); // nobody else is driven instead
+        QTRY_VERIFY(!open_->drive.isPossible());
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+    }
+
+    void stopGoesToTheChosenOne() {
+        openBoth();
+        choose(*blue_);
+        pressStop();
+        QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
+        QVERIFY(isStopped(*blue_));
+        QVERIFY(!isStopped(*red_));
+        QTRY_VERIFY2(banner().contains("motorcontrol of blue"), qPrintable(banner()));
+        choose(*red_);
+        QCOMPARE(open_->drive.stopping().phase(), StopPhase::None);
+        QVERIFY(!isStopped(*red_));
+    }
+
+    void panelsShowTheChosenOne() {
+        openBoth();
+        QVERIFY(open_->choose(robot(*red_)->withName("motorcontrol")));
+        auto *const settings = open_->panel<SettingsPanel>("settings");
+        auto *const commands = open_->panel<CommandsPanel>("commands");
+        const auto title = [](QWidget *panel) { return panel->findChild<QLabel *>("title")->text(); };
+        QTRY_COMPARE(title(settings), QString("motorcontrol of red"));
+        choose(*blue_);
+        QCOMPARE(title(settings), QString("Choose a daemon to see its settings."));
+        QCOMPARE(title(commands), QString("Choose a daemon to see its commands."));
+        QVERIFY(!commands->findChild<QPushButton *>("call")->isEnabled());
+        QTRY_COMPARE(find<QTreeWidget>("tree")->currentItem(), rowOf(*blue_));
+        choose(*red_);
+        QCOMPARE(title(settings), QString("motorcontrol of red")); // as it was
+    }
+
+    void aSupervisorThatDiesLosesNobody() {
+        openBoth();
+        const auto daemons = robot(*red_)->daemons();
+        QCOMPARE(int(daemons.size()), 2);
+        Robot *const before = robot(*red_);
+        red_->processes.kill("supervisor");
+        QTRY_VERIFY(!before->supervisor());
+        drive(*red_);
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+        QCOMPARE(red_->processes.supervise("crimson"), red_->processes.port("supervisor"));
+        QTRY_VERIFY_WITH_TIMEOUT(before->supervisor(), 10000);
+        QTRY_COMPARE(before->name(), QString("crimson"));
+        QVERIFY(robot(*red_) == before && before->daemons() == daemons);
+        QCOMPARE(int(open_->fleet.robots().size()), 2);
+    }
+
+    void aDriveEndsWhenItsDaemonMoves() {
+        QVERIFY(open_->fleet.add(motorsOf(*red_)));
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+        drive(*red_);
+        addSupervisor(*red_);
+        QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && robot(*red_)->withName("motorcontrol"), 20000);
+        QTRY_COMPARE(state(*red_)["target"].toObject()["vx"].toDouble(), 0.0);
+        QTRY_VERIFY(speed(*red_) < 0.01);
+        QTRY_COMPARE(find<QLabel>("problem")->text(),
+                     QString("The drive has ended: motorcontrol belongs to the robot red now."));
+        QTest::qWait(300);
+        QVERIFY(speed(*red_) < 0.01); // the key is held all the time
+        QCOMPARE(open_->fleet.robot(), robot(*red_));
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+        drive(*red_);
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+    }
+
+    void theSameWheelsAreDrivenAfterTheMove() {
+        addBothMotors();
+        addSupervisor(*blue_); // who is not driven
+        QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withName("motorcontrol"), 20000);
+        QCOMPARE(open_->fleet.robot()->address(), QString("127.0.0.1"));
+        drive(*red_);
+        open_->fleet.place(motorLinkOf(*red_), nullptr);
+        QTRY_VERIFY(speed(*red_) < 0.01);
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+        drive(*red_);
+        QCOMPARE(speed(*blue_), 0.0);
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+    }
+
+    void aStopSurvivesTheMove() {
+        addBothMotors();
+        red_->motors.freeze();
+        pressStop();
+        QTRY_VERIFY(isStopped(*blue_)); // it is of the same set
+        addSupervisor(*red_);
+        QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && open_->fleet.robotOf(robot(*red_)->withName("motorcontrol")),
+                                 20000);
+        QCOMPARE(open_->fleet.robot(), robot(*red_)); // who would be driven
+        QTRY_VERIFY(open_->drive.stopping().isLate());
+        QTRY_VERIFY2(banner().contains("motorcontrol of red"), qPrintable(banner()));
+        QVERIFY(open_->drive.isStopped());
+        OpenWindow::click(&open_->window, "release"); // of a robot that does not answer: it is not lost
+        QTest::qWait(300);
+        QVERIFY(!banner().isEmpty());
+        pressStop();
+        red_->motors.thaw();
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().phase() == StopPhase::Confirmed, 10000);
+        QVERIFY(isStopped(*red_));
+        OpenWindow::click(&open_->window, "release");
+        QTRY_VERIFY(!isStopped(*red_));
+        QVERIFY(isStopped(*blue_)); // it was stopped, too, and not released
+    }
+
+    void aStopForNobodyGoesToWhoIsFound() {
+        One &late = *red_;
+        late.processes.supervise(late.name);
+        late.processes.signal("supervisor", SIGSTOP); // it has not answered as yet
+        late.supervisor = QString("127.0.0.1:%1").arg(late.processes.port("supervisor"));
+        QVERIFY(open_->fleet.add(late.supervisor));
+        pressStop();
+        QTRY_VERIFY2(banner().contains("REACHES NOBODY"), qPrintable(banner()));
+        late.processes.signal("supervisor", SIGCONT);
+        QTRY_VERIFY_WITH_TIMEOUT(robot(late), 20000);
+        QTRY_VERIFY_WITH_TIMEOUT(isStopped(late), 20000);
+        QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
+        QVERIFY2(!banner().contains("NOBODY"), qPrintable(banner()));
+        QVERIFY(!isStopped(*blue_));
+    }
+
+    void whoIsDrivenOrStoppedIsNotRemoved() {
+        openBoth();
+        drive(*red_);
+        const auto refusal = [&] {
+            const auto removed = open_->fleet.remove(robot(*red_));
+            return removed ? QString() : removed.error().message;
+        };
+        QCOMPARE(refusal(), QString("red is driven: let go first."));
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+        pressStop();
+        QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
+        QCOMPARE(refusal(), QString("STOP was pressed for red: release it first."));
+        choose(*blue_);
+        QVERIFY(!refusal().isEmpty());
+        QVERIFY(open_->fleet.remove(robot(*blue_))); // the other may go
+        QCOMPARE(open_->fleet.robot(), robot(*red_));
+        OpenWindow::click(&open_->window, "release");
+        QTRY_VERIFY(!open_->drive.isStopped());
+        QCOMPARE(refusal(), QString());
+        QVERIFY(open_->fleet.robots().empty());
+        QVERIFY(!open_->drive.isPossible());
+    }
+
+    void removedAndBroughtBackByHand() {
+        openBoth();
+        open_->window.resize(1024, 600);
+        auto *const panel = open_->panel<DaemonsPanel>("daemons");
+        QTRY_VERIFY(rowOf(*blue_));
+        fromMenu(rowOf(*blue_), "removeRobot");
+        QTRY_COMPARE(int(open_->fleet.robots().size()), 1);
+        QTRY_VERIFY(!rowOf(*blue_));
+        QCOMPARE(open_->fleet.robot(), robot(*red_));
+        auto *const back = panel->findChild<QPushButton *>("undoRemoval");
+        QCOMPARE(back->text(), QString("Bring blue back"));
+        QTRY_VERIFY(!back->visibleRegion().isEmpty()); // in a low window, too
+        OpenWindow::click(panel, "undoRemoval");
+        QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withMethod("motor.drive"), 20000);
+        QTRY_VERIFY(rowOf(*blue_));
+        QVERIFY(!back->isVisible());
+    }
+
+    void renamedByHand() {
+        openBoth();
+        open_->panel<DaemonsPanel>("daemons");
+        auto *const tree = find<QTreeWidget>("tree");
+        QTRY_VERIFY(rowOf(*blue_));
+        fromMenu(rowOf(*blue_), "renameRobot");
+        QCOMPARE(open_->fleet.robot(), robot(*red_)); // a menu chooses nobody
+        QTRY_VERIFY(tree->findChild<QLineEdit *>());
+        QTest::qWait(100); // daemons tell of themselves meanwhile
+        auto *const editor = tree->findChild<QLineEdit *>();
+        QVERIFY(editor);
+        open_->window.activateWindow(); // which a menu without a window manager does not give back
+        QTRY_COMPARE(QApplication::focusWidget(), editor);
+        editor->selectAll();
+        QTest::keyClicks(editor, "north pole");
+        QTest::keyClick(editor, Qt::Key_Return);
+        QTRY_COMPARE(robot(*blue_)->name(), QString("north pole"));
+        QTRY_COMPARE(rowOf(*blue_)->text(0), QString("north pole"));
+        QTRY_COMPARE(find<QComboBox>("robots")->itemText(1), QString("north pole"));
+        QCOMPARE(speed(*red_) + speed(*blue_), 0.0); // the letters drove nobody
+        QVERIFY(!isStopped(*red_) && !isStopped(*blue_));
+    }
+
+    // Without supervisors.
+    void partedByHand() {
+        QVERIFY(open_->fleet.add(motorsOf(*red_)));
+        QVERIFY(open_->fleet.add(motorsOf(*blue_)));
+        QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robot()->allWithMethod("motor.drive").size()), 2, 10000);
+        QTRY_VERIFY(open_->fleet.robot()->problem().startsWith("2 of its daemons can be driven"));
+        open_->panel<DaemonsPanel>("daemons");
+        QTRY_VERIFY(open_->row(motorLinkOf(*blue_)));
+        fromMenu(open_->row(motorLinkOf(*blue_)), "putTo ");
+        QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
+        Robot *const blue = open_->fleet.robotOf(motorLinkOf(*blue_));
+        QVERIFY(blue != open_->fleet.robotOf(motorLinkOf(*red_)));
+        QCOMPARE(blue->problem(), QString());
+        open_->fleet.choose(blue);
+        QTRY_VERIFY(open_->drive.isPossible());
+        drive(*blue_);
+        QCOMPARE(speed(*red_), 0.0);
+        QTest::keyRelease(&open_->window, Qt::Key_W);
+        pressStop();
+        QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
+        QVERIFY(isStopped(*blue_) && !isStopped(*red_));
+    }
 
 private:
     /// One of the robots, with an independent eye on its motors.
@@ -40,7 +270,16 @@ private:
         QString name, supervisor;
     };
 
-    void openBoth();
+    void openBoth() {
+        for (One *one : {red_.get(), blue_.get()}) {
+            addSupervisor(*one);
+            QTRY_VERIFY_WITH_TIMEOUT(robot(*one) && robot(*one)->withMethod("motor.drive"), 20000);
+        }
+        QCOMPARE(int(open_->fleet.robots().size()), 2);
+        QCOMPARE(open_->fleet.robot(), robot(*red_));
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+    }
+
     /// Of the robot of their host; those of red are the ones that are driven.
     void addBothMotors() {
         QVERIFY(open_->fleet.add(motorsOf(*red_)));
@@ -114,280 +353,23 @@ private:
         return nullptr;
     }
     /// Chooses from the menu of a row.
-    void fromMenu(QTreeWidgetItem *row, const QString &name);
+    void fromMenu(QTreeWidgetItem *row, const QString &name) {
+        auto *const tree = find<QTreeWidget>("tree");
+        QVERIFY(row);
+        const QPoint place = tree->visualItemRect(row).center();
+        QTest::mouseClick(tree->viewport(), Qt::RightButton, {}, place);
+        QContextMenuEvent event(QContextMenuEvent::Mouse, place, tree->viewport()->mapToGlobal(place));
+        QApplication::sendEvent(tree->viewport(), &event);
+        auto *const menu = tree->findChild<QMenu *>("rowMenu");
+        QTRY_VERIFY(menu && menu->isVisible());
+        auto *const action = menu->findChild<QAction *>(name);
+        QVERIFY(action);
+        QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(action).center());
+    }
 
     std::unique_ptr<One> red_, blue_;
     std::unique_ptr<OpenWindow> open_;
 };
-
-void TestRobots::init() {
-    red_ = std::make_unique<One>();
-    blue_ = std::make_unique<One>();
-    red_->name = "red";
-    blue_->name = "blue";
-    for (One *one : {red_.get(), blue_.get()}) {
-        one->processes.add("motorcontrol", one->motors.port());
-        one->eye.connectTo(motorsOf(*one));
-    }
-    for (One *one : {red_.get(), blue_.get()})
-        QVERIFY(one->eye.waitConnected());
-    open_ = std::make_unique<OpenWindow>();
-    QVERIFY(open_->show());
-}
-
-void TestRobots::cleanup() {
-    open_.reset();
-    red_.reset();
-    blue_.reset();
-}
-
-void TestRobots::openBoth() {
-    for (One *one : {red_.get(), blue_.get()}) {
-        addSupervisor(*one);
-        QTRY_VERIFY_WITH_TIMEOUT(robot(*one) && robot(*one)->withMethod("motor.drive"), 20000);
-    }
-    QCOMPARE(int(open_->fleet.robots().size()), 2);
-    QCOMPARE(open_->fleet.robot(), robot(*red_));
-    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
-}
-
-void TestRobots::fromMenu(QTreeWidgetItem *row, const QString &name) {
-    auto *const tree = find<QTreeWidget>("tree");
-    QVERIFY(row);
-    const QPoint place = tree->visualItemRect(row).center();
-    QTest::mouseClick(tree->viewport(), Qt::RightButton, {}, place);
-    QContextMenuEvent event(QContextMenuEvent::Mouse, place, tree->viewport()->mapToGlobal(place));
-    QApplication::sendEvent(tree->viewport(), &event);
-    auto *const menu = tree->findChild<QMenu *>("rowMenu");
-    QTRY_VERIFY(menu && menu->isVisible());
-    auto *const action = menu->findChild<QAction *>(name);
-    QVERIFY(action);
-    QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(action).center());
-}
-
-void TestRobots::drivingOneNeverMovesTheOther() {
-    openBoth();
-    QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
-    drive(*red_);
-    QCOMPARE(speed(*blue_), 0.0);
-    choose(*blue_);
-    QCOMPARE(find<QComboBox>("robots")->currentText(), QString("blue"));
-    QTRY_COMPARE(open_->window.windowTitle(), QString("blue - Hermes"));
-    QTRY_COMPARE(state(*red_)["target"].toObject()["vx"].toDouble(), 0.0);
-    QTRY_VERIFY(speed(*red_) < 0.01);
-    QCOMPARE(speed(*blue_), 0.0); // the key is held still
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-    drive(*blue_);
-    QVERIFY(speed(*red_) < 0.01);
-    red_->motors.end();
-    blue_->motors.end(); // nobody else is driven instead
-    QTRY_VERIFY(!open_->drive.isPossible());
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-}
-
-void TestRobots::stopGoesToTheChosenOne() {
-    openBoth();
-    choose(*blue_);
-    pressStop();
-    QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
-    QVERIFY(isStopped(*blue_));
-    QVERIFY(!isStopped(*red_));
-    QTRY_VERIFY2(banner().contains("motorcontrol of blue"), qPrintable(banner()));
-    choose(*red_);
-    QCOMPARE(open_->drive.stopping().phase(), StopPhase::None);
-    QVERIFY(!isStopped(*red_));
-}
-
-void TestRobots::panelsShowTheChosenOne() {
-    openBoth();
-    QVERIFY(open_->choose(robot(*red_)->withName("motorcontrol")));
-    auto *const settings = open_->panel<SettingsPanel>("settings");
-    auto *const commands = open_->panel<CommandsPanel>("commands");
-    const auto title = [](QWidget *panel) { return panel->findChild<QLabel *>("title")->text(); };
-    QTRY_COMPARE(title(settings), QString("motorcontrol of red"));
-    choose(*blue_);
-    QCOMPARE(title(settings), QString("Choose a daemon to see its settings."));
-    QCOMPARE(title(commands), QString("Choose a daemon to see its commands."));
-    QVERIFY(!commands->findChild<QPushButton *>("call")->isEnabled());
-    QTRY_COMPARE(find<QTreeWidget>("tree")->currentItem(), rowOf(*blue_));
-    choose(*red_);
-    QCOMPARE(title(settings), QString("motorcontrol of red")); // as it was
-}
-
-void TestRobots::aSupervisorThatDiesLosesNobody() {
-    openBoth();
-    const auto daemons = robot(*red_)->daemons();
-    QCOMPARE(int(daemons.size()), 2);
-    Robot *const before = robot(*red_);
-    red_->processes.kill("supervisor");
-    QTRY_VERIFY(!before->supervisor());
-    drive(*red_);
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-    QCOMPARE(red_->processes.supervise("crimson"), red_->processes.port("supervisor"));
-    QTRY_VERIFY_WITH_TIMEOUT(before->supervisor(), 10000);
-    QTRY_COMPARE(before->name(), QString("crimson"));
-    QVERIFY(robot(*red_) == before && before->daemons() == daemons);
-    QCOMPARE(int(open_->fleet.robots().size()), 2);
-}
-
-void TestRobots::aDriveEndsWhenItsDaemonMoves() {
-    QVERIFY(open_->fleet.add(motorsOf(*red_)));
-    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
-    drive(*red_);
-    addSupervisor(*red_);
-    QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && robot(*red_)->withName("motorcontrol"), 20000);
-    QTRY_COMPARE(state(*red_)["target"].toObject()["vx"].toDouble(), 0.0);
-    QTRY_VERIFY(speed(*red_) < 0.01);
-    QTRY_COMPARE(find<QLabel>("problem")->text(),
-                 QString("The drive has ended: motorcontrol belongs to the robot red now."));
-    QTest::qWait(300);
-    QVERIFY(speed(*red_) < 0.01); // the key is held all the time
-    QCOMPARE(open_->fleet.robot(), robot(*red_));
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-    drive(*red_);
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-}
-
-void TestRobots::theSameWheelsAreDrivenAfterTheMove() {
-    addBothMotors();
-    addSupervisor(*blue_); // who is not driven
-    QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withName("motorcontrol"), 20000);
-    QCOMPARE(open_->fleet.robot()->address(), QString("127.0.0.1"));
-    drive(*red_);
-    open_->fleet.place(motorLinkOf(*red_), nullptr);
-    QTRY_VERIFY(speed(*red_) < 0.01);
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-    drive(*red_);
-    QCOMPARE(speed(*blue_), 0.0);
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-}
-
-void TestRobots::aStopSurvivesTheMove() {
-    addBothMotors();
-    red_->motors.freeze();
-    pressStop();
-    QTRY_VERIFY(isStopped(*blue_)); // it is of the same set
-    addSupervisor(*red_);
-    QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && open_->fleet.robotOf(robot(*red_)->withName("motorcontrol")),
-                             20000);
-    QCOMPARE(open_->fleet.robot(), robot(*red_)); // who would be driven
-    QTRY_VERIFY(open_->drive.stopping().isLate());
-    QTRY_VERIFY2(banner().contains("motorcontrol of red"), qPrintable(banner()));
-    QVERIFY(open_->drive.isStopped());
-    OpenWindow::click(&open_->window, "release"); // of a robot that does not answer: it is not lost
-    QTest::qWait(300);
-    QVERIFY(!banner().isEmpty());
-    pressStop();
-    red_->motors.thaw();
-    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().phase() == StopPhase::Confirmed, 10000);
-    QVERIFY(isStopped(*red_));
-    OpenWindow::click(&open_->window, "release");
-    QTRY_VERIFY(!isStopped(*red_));
-    QVERIFY(isStopped(*blue_)); // it was stopped, too, and not released
-}
-
-void TestRobots::aStopForNobodyGoesToWhoIsFound() {
-    One &late = *red_;
-    late.processes.supervise(late.name);
-    late.processes.signal("supervisor", SIGSTOP); // it has not answered as yet
-    late.supervisor = QString("127.0.0.1:%1").arg(late.processes.port("supervisor"));
-    QVERIFY(open_->fleet.add(late.supervisor));
-    pressStop();
-    QTRY_VERIFY2(banner().contains("REACHES NOBODY"), qPrintable(banner()));
-    late.processes.signal("supervisor", SIGCONT);
-    QTRY_VERIFY_WITH_TIMEOUT(robot(late), 20000);
-    QTRY_VERIFY_WITH_TIMEOUT(isStopped(late), 20000);
-    QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
-    QVERIFY2(!banner().contains("NOBODY"), qPrintable(banner()));
-    QVERIFY(!isStopped(*blue_));
-}
-
-void TestRobots::whoIsDrivenOrStoppedIsNotRemoved() {
-    openBoth();
-    drive(*red_);
-    const auto refusal = [&] {
-        const auto removed = open_->fleet.remove(robot(*red_));
-        return removed ? QString() : removed.error().message;
-    };
-    QCOMPARE(refusal(), QString("red is driven: let go first."));
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-    pressStop();
-    QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
-    QCOMPARE(refusal(), QString("STOP was pressed for red: release it first."));
-    choose(*blue_);
-    QVERIFY(!refusal().isEmpty());
-    QVERIFY(open_->fleet.remove(robot(*blue_))); // the other may go
-    QCOMPARE(open_->fleet.robot(), robot(*red_));
-    OpenWindow::click(&open_->window, "release");
-    QTRY_VERIFY(!open_->drive.isStopped());
-    QCOMPARE(refusal(), QString());
-    QVERIFY(open_->fleet.robots().empty());
-    QVERIFY(!open_->drive.isPossible());
-}
-
-void TestRobots::removedAndBroughtBackByHand() {
-    openBoth();
-    open_->window.resize(1024, 600);
-    auto *const panel = open_->panel<DaemonsPanel>("daemons");
-    QTRY_VERIFY(rowOf(*blue_));
-    fromMenu(rowOf(*blue_), "removeRobot");
-    QTRY_COMPARE(int(open_->fleet.robots().size()), 1);
-    QTRY_VERIFY(!rowOf(*blue_));
-    QCOMPARE(open_->fleet.robot(), robot(*red_));
-    auto *const back = panel->findChild<QPushButton *>("undoRemoval");
-    QCOMPARE(back->text(), QString("Bring blue back"));
-    QTRY_VERIFY(!back->visibleRegion().isEmpty()); // in a low window, too
-    OpenWindow::click(panel, "undoRemoval");
-    QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withMethod("motor.drive"), 20000);
-    QTRY_VERIFY(rowOf(*blue_));
-    QVERIFY(!back->isVisible());
-}
-
-void TestRobots::renamedByHand() {
-    openBoth();
-    open_->panel<DaemonsPanel>("daemons");
-    auto *const tree = find<QTreeWidget>("tree");
-    QTRY_VERIFY(rowOf(*blue_));
-    fromMenu(rowOf(*blue_), "renameRobot");
-    QCOMPARE(open_->fleet.robot(), robot(*red_)); // a menu chooses nobody
-    QTRY_VERIFY(tree->findChild<QLineEdit *>());
-    QTest::qWait(100); // daemons tell of themselves meanwhile
-    auto *const editor = tree->findChild<QLineEdit *>();
-    QVERIFY(editor);
-    open_->window.activateWindow(); // which a menu without a window manager does not give back
-    QTRY_COMPARE(QApplication::focusWidget(), editor);
-    editor->selectAll();
-    QTest::keyClicks(editor, "north pole");
-    QTest::keyClick(editor, Qt::Key_Return);
-    QTRY_COMPARE(robot(*blue_)->name(), QString("north pole"));
-    QTRY_COMPARE(rowOf(*blue_)->text(0), QString("north pole"));
-    QTRY_COMPARE(find<QComboBox>("robots")->itemText(1), QString("north pole"));
-    QCOMPARE(speed(*red_) + speed(*blue_), 0.0); // the letters drove nobody
-    QVERIFY(!isStopped(*red_) && !isStopped(*blue_));
-}
-
-// Without supervisors.
-void TestRobots::partedByHand() {
-    QVERIFY(open_->fleet.add(motorsOf(*red_)));
-    QVERIFY(open_->fleet.add(motorsOf(*blue_)));
-    QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robot()->allWithMethod("motor.drive").size()), 2, 10000);
-    QTRY_VERIFY(open_->fleet.robot()->problem().startsWith("2 of its daemons can be driven"));
-    open_->panel<DaemonsPanel>("daemons");
-    QTRY_VERIFY(open_->row(motorLinkOf(*blue_)));
-    fromMenu(open_->row(motorLinkOf(*blue_)), "putTo ");
-    QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
-    Robot *const blue = open_->fleet.robotOf(motorLinkOf(*blue_));
-    QVERIFY(blue != open_->fleet.robotOf(motorLinkOf(*red_)));
-    QCOMPARE(blue->problem(), QString());
-    open_->fleet.choose(blue);
-    QTRY_VERIFY(open_->drive.isPossible());
-    drive(*blue_);
-    QCOMPARE(speed(*red_), 0.0);
-    QTest::keyRelease(&open_->window, Qt::Key_W);
-    pressStop();
-    QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
-    QVERIFY(isStopped(*blue_) && !isStopped(*red_));
-}
 
 QTEST_MAIN(TestRobots)
 #include "TestRobots.moc"

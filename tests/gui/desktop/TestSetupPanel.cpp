@@ -17,21 +17,182 @@ using namespace hermes::desktop;
 class TestSetupPanel : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void cleanup();
-    void findsProposesWritesAndUndoes();
-    void sampleIsWritten();
-    void refusalIsTold();
-    void withoutSupervisorNothingIsPossible();
-    void wheelsTurnOnlyWhenLifted();
-    void testOfWheelsGivesSettings();
-    void stopEndsTheTestOfWheels();
-    void outOfSightNoWheelTurns_data();
-    void outOfSightNoWheelTurns();
-    void givenUpEarlyLeavesTheControl();
+    void init() {
+        robot_ = std::make_unique<RobotProcesses>();
+        folder_ = robot_->path("etc");
+        motors_ = robot_->path("motors");
+    }
+
+    void cleanup() {
+        window_.reset();
+        robot_.reset();
+    }
+
+    void findsProposesWritesAndUndoes() {
+        open(false);
+        QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
+        search(false);
+        QCOMPARE(what(motors_), QString("not asked"));
+        QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
+        search(true);
+        QTRY_COMPARE(what(motors_), QString("motors"));
+        for (const char *tick : {"ask", "release"}) // they are said for one search
+            QVERIFY(!find<QCheckBox>(tick)->isChecked());
+        QTRY_COMPARE(change("controllers.2.address"), folder_ + "/motorcontrol.json  129");
+        QVERIFY(file("motorcontrol").toObject().isEmpty());
+        OpenWindow::click(panel(), "applySetup");
+        QTRY_VERIFY2_WITH_TIMEOUT(message().startsWith("Written: "), qPrintable(message()), 30000);
+        QCOMPARE(file("motorcontrol")["controllers"]["2"]["address"].toInt(), 129);
+        QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
+        OpenWindow::click(panel(), "undoSetup");
+        QTRY_VERIFY(file("motorcontrol").toObject().isEmpty());
+        QTRY_VERIFY2(message().startsWith("Written: "), qPrintable(message()));
+        OpenWindow::click(panel(), "undoSetup");
+        QTRY_VERIFY2(message().contains("nothing to undo"), qPrintable(message()));
+    }
+
+    void sampleIsWritten() {
+        open(false);
+        auto *const samples = find<QComboBox>("samples");
+        const int row = samples->findData("mecanum");
+        QVERIFY(row > 0);
+        samples->setFocus();
+        while (samples->currentIndex() != row)
+            QTest::keyClick(samples, Qt::Key_Down);
+        OpenWindow::click(panel(), "applySetup");
+        QTRY_VERIFY2_WITH_TIMEOUT(message().startsWith("Written: "), qPrintable(message()), 30000);
+        QVERIFY(QFile::exists(folder_ + "/scanmatcher.json"));
+        QCOMPARE(samples->currentIndex(), 0);
+    }
+
+    void refusalIsTold() {
+        open(false);
+        search(true);
+        QTRY_VERIFY(find<QPushButton>("applySetup")->isEnabled());
+        QVERIFY(QDir(folder_).removeRecursively());
+        OpenWindow::click(panel(), "applySetup");
+        QTRY_VERIFY2_WITH_TIMEOUT(message().contains("motorcontrol.json"), qPrintable(message()), 30000);
+        QVERIFY(!message().startsWith("Written"));
+        QVERIFY(find<QPushButton>("applySetup")->isEnabled()); // to be tried again
+    }
+
+    void withoutSupervisorNothingIsPossible() {
+        open(false);
+        robot_->kill("supervisor");
+        QTRY_VERIFY(!find<QPushButton>("findDevices")->isEnabled());
+        QVERIFY(find<QPushButton>("findDevices")->toolTip().contains("supervisor"));
+        QVERIFY(!find<QPushButton>("undoSetup")->isEnabled());
+    }
+
+    void wheelsTurnOnlyWhenLifted() {
+        open(true);
+        auto *const test = find<QPushButton>("testWheels");
+        QVERIFY(!test->isEnabled());
+        lift();
+        awaitTurning();
+        QVERIFY(ask("motorcontrol", "control.state")["held"].toBool());
+        OpenWindow::click(panel(), "lifted"); // it is set down
+        QTRY_VERIFY(areStanding());
+        QTRY_VERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
+        QVERIFY2(wheelMessage().contains("not lifted"), qPrintable(wheelMessage()));
+        QVERIFY(!test->isEnabled());
+    }
+
+    void testOfWheelsGivesSettings() {
+        open(true);
+        lift();
+        // Told: front left, front right, rear left, rear right. Seen: the first backward, the others as told.
+        for (const char *const wheel : {"front left", "front right", "rear left", "rear right"}) {
+            auto *const seen = find<QComboBox>("seen");
+            QTRY_VERIFY2_WITH_TIMEOUT(seen->isEnabled() && seen->currentText().startsWith(wheel),
+                                      qPrintable(wheelMessage()), 15000);
+            QVERIFY2(areStanding(), wheel);
+            QVERIFY2(QRegExp(".*tells (0\\.9|1\\.0)\\d rad/s.*").exactMatch(wheelMessage()),
+                     qPrintable(wheelMessage()));
+            if (wheel == QString("front left"))
+                seen->setCurrentIndex(1);
+            OpenWindow::click(panel(), "nextWheel");
+        }
+        QTRY_COMPARE(change("wheels.front_left.reversed"), folder_ + "/motorcontrol.json false true");
+        QVERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
+        QVERIFY(!find<QPushButton>("testWheels")->isEnabled()); // lifted was said of one test
+        OpenWindow::click(panel(), "applySetup");
+        QTRY_COMPARE_WITH_TIMEOUT(file("motorcontrol")["wheels"]["front_left"]["reversed"].toBool(), true,
+                                  30000);
+    }
+
+    void stopEndsTheTestOfWheels() {
+        open(true);
+        lift();
+        awaitTurning();
+        QTest::keyClick(panel(), Qt::Key_Space);
+        QTRY_VERIFY(areStanding());
+        QTRY_VERIFY2(wheelMessage().startsWith("The test of the wheels has ended"),
+                     qPrintable(wheelMessage()));
+        QVERIFY(ask("motorcontrol", "motor.state")["estop"].toBool());
+        QVERIFY(!find<QCheckBox>("lifted")->isChecked());
+    }
+
+    void outOfSightNoWheelTurns_data() {
+        const Rows<bool> row("isClosed");
+        row("its dock is closed", true);
+        row("another tab is over it", false);
+    }
+
+    void outOfSightNoWheelTurns() {
+        QFETCH(bool, isClosed);
+        open(true);
+        lift();
+        awaitTurning();
+        const auto *const lifted = find<QCheckBox>("lifted");
+        if (isClosed)
+            window_->window.findChild<QDockWidget *>("setup")->hide();
+        else
+            window_->window.findChild<QDockWidget *>("settings")->raise();
+        QTRY_VERIFY(!lifted->isChecked());
+        QTRY_VERIFY(areStanding());
+        QVERIFY2(wheelMessage().contains("not in sight"), qPrintable(wheelMessage()));
+    }
+
+    /// While the control is asked for.
+    void givenUpEarlyLeavesTheControl() {
+        open(true);
+        ConnectedClient motors(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+        WheelTurn turn(motors, "test", Client::defaultTimeout);
+        bool isOver = false;
+        Result<double> measured = 0.0;
+        turn.begin("front_left", [&](const Result<double> &result) {
+            isOver = true;
+            measured = result;
+        });
+        QTimer each; // time that the event loop turns
+        connect(&each, &QTimer::timeout, &turn, [&] {
+            if (turn.isAcquiring())
+                turn.giveUp();
+        });
+        each.start(0);
+        QTRY_VERIFY(isOver);
+        QVERIFY(!measured);
+        QVERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
+    }
 
 private:
-    void open(bool withMotors);
+    void open(bool withMotors) {
+        if (withMotors)
+            robot_->startMotors();
+        else
+            robot_->start("simulator",
+                          {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json",
+                           "motors.link=" + motors_});
+        robot_->startSupervisor({motors_}, reservePort());
+        window_ = std::make_unique<OpenWindow>(*robot_);
+        QVERIFY(window_->show());
+        window_->window.resize(1280, 900);
+        QTRY_COMPARE_WITH_TIMEOUT(find<QComboBox>("samples")->count(), 5, 10000);
+        if (withMotors)
+            QTRY_VERIFY_WITH_TIMEOUT(ask("motorcontrol", "motor.state")["ready"].toBool(), 10000);
+    }
+
     SetupPanel *panel() const { return window_->panel<SetupPanel>("setup"); }
     template <typename T>
     T *find(const char *name) const {
@@ -86,179 +247,6 @@ private:
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> window_;
 };
-
-void TestSetupPanel::init() {
-    robot_ = std::make_unique<RobotProcesses>();
-    folder_ = robot_->path("etc");
-    motors_ = robot_->path("motors");
-}
-
-void TestSetupPanel::open(bool withMotors) {
-    if (withMotors)
-        robot_->startMotors();
-    else
-        robot_->start("simulator",
-                      {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json",
-                       "motors.link=" + motors_});
-    robot_->startSupervisor({motors_}, reservePort());
-    window_ = std::make_unique<OpenWindow>(*robot_);
-    QVERIFY(window_->show());
-    window_->window.resize(1280, 900);
-    QTRY_COMPARE_WITH_TIMEOUT(find<QComboBox>("samples")->count(), 5, 10000);
-    if (withMotors)
-        QTRY_VERIFY_WITH_TIMEOUT(ask("motorcontrol", "motor.state")["ready"].toBool(), 10000);
-}
-
-void TestSetupPanel::cleanup() {
-    window_.reset();
-    robot_.reset();
-}
-
-void TestSetupPanel::findsProposesWritesAndUndoes() {
-    open(false);
-    QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
-    search(false);
-    QCOMPARE(what(motors_), QString("not asked"));
-    QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
-    search(true);
-    QTRY_COMPARE(what(motors_), QString("motors"));
-    for (const char *tick : {"ask", "release"}) // they are said for one search
-        QVERIFY(!find<QCheckBox>(tick)->isChecked());
-    QTRY_COMPARE(change("controllers.2.address"), folder_ + "/motorcontrol.json  129");
-    QVERIFY(file("motorcontrol").toObject().isEmpty());
-    OpenWindow::click(panel(), "applySetup");
-    QTRY_VERIFY2_WITH_TIMEOUT(message().startsWith("Written: "), qPrintable(message()), 30000);
-    QCOMPARE(file("motorcontrol")["controllers"]["2"]["address"].toInt(), 129);
-    QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
-    OpenWindow::click(panel(), "undoSetup");
-    QTRY_VERIFY(file("motorcontrol").toObject().isEmpty());
-    QTRY_VERIFY2(message().startsWith("Written: "), qPrintable(message()));
-    OpenWindow::click(panel(), "undoSetup");
-    QTRY_VERIFY2(message().contains("nothing to undo"), qPrintable(message()));
-}
-
-void TestSetupPanel::sampleIsWritten() {
-    open(false);
-    auto *const samples = find<QComboBox>("samples");
-    const int row = samples->findData("mecanum");
-    QVERIFY(row > 0);
-    samples->setFocus();
-    while (samples->currentIndex() != row)
-        QTest::keyClick(samples, Qt::Key_Down);
-    OpenWindow::click(panel(), "applySetup");
-    QTRY_VERIFY2_WITH_TIMEOUT(message().startsWith("Written: "), qPrintable(message()), 30000);
-    QVERIFY(QFile::exists(folder_ + "/scanmatcher.json"));
-    QCOMPARE(samples->currentIndex(), 0);
-}
-
-void TestSetupPanel::refusalIsTold() {
-    open(false);
-    search(true);
-    QTRY_VERIFY(find<QPushButton>("applySetup")->isEnabled());
-    QVERIFY(QDir(folder_).removeRecursively());
-    OpenWindow::click(panel(), "applySetup");
-    QTRY_VERIFY2_WITH_TIMEOUT(message().contains("motorcontrol.json"), qPrintable(message()), 30000);
-    QVERIFY(!message().startsWith("Written"));
-    QVERIFY(find<QPushButton>("applySetup")->isEnabled()); // to be tried again
-}
-
-void TestSetupPanel::withoutSupervisorNothingIsPossible() {
-    open(false);
-    robot_->kill("supervisor");
-    QTRY_VERIFY(!find<QPushButton>("findDevices")->isEnabled());
-    QVERIFY(find<QPushButton>("findDevices")->toolTip().contains("supervisor"));
-    QVERIFY(!find<QPushButton>("undoSetup")->isEnabled());
-}
-
-void TestSetupPanel::wheelsTurnOnlyWhenLifted() {
-    open(true);
-    auto *const test = find<QPushButton>("testWheels");
-    QVERIFY(!test->isEnabled());
-    lift();
-    awaitTurning();
-    QVERIFY(ask("motorcontrol", "control.state")["held"].toBool());
-    OpenWindow::click(panel(), "lifted"); // it is set down
-    QTRY_VERIFY(areStanding());
-    QTRY_VERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
-    QVERIFY2(wheelMessage().contains("not lifted"), qPrintable(wheelMessage()));
-    QVERIFY(!test->isEnabled());
-}
-
-void TestSetupPanel::testOfWheelsGivesSettings() {
-    open(true);
-    lift();
-    // Told: front left, front right, rear left, rear right. Seen: the first backward, the others as told.
-    for (const char *const wheel : {"front left", "front right", "rear left", "rear right"}) {
-        auto *const seen = find<QComboBox>("seen");
-        QTRY_VERIFY2_WITH_TIMEOUT(seen->isEnabled() && seen->currentText().startsWith(wheel),
-                                  qPrintable(wheelMessage()), 15000);
-        QVERIFY2(areStanding(), wheel);
-        QVERIFY2(QRegExp(".*tells (0\\.9|1\\.0)\\d rad/s.*").exactMatch(wheelMessage()),
-                 qPrintable(wheelMessage()));
-        if (wheel == QString("front left"))
-            seen->setCurrentIndex(1);
-        OpenWindow::click(panel(), "nextWheel");
-    }
-    QTRY_COMPARE(change("wheels.front_left.reversed"), folder_ + "/motorcontrol.json false true");
-    QVERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
-    QVERIFY(!find<QPushButton>("testWheels")->isEnabled()); // lifted was said of one test
-    OpenWindow::click(panel(), "applySetup");
-    QTRY_COMPARE_WITH_TIMEOUT(file("motorcontrol")["wheels"]["front_left"]["reversed"].toBool(), true, 30000);
-}
-
-void TestSetupPanel::stopEndsTheTestOfWheels() {
-    open(true);
-    lift();
-    awaitTurning();
-    QTest::keyClick(panel(), Qt::Key_Space);
-    QTRY_VERIFY(areStanding());
-    QTRY_VERIFY2(wheelMessage().startsWith("The test of the wheels has ended"), qPrintable(wheelMessage()));
-    QVERIFY(ask("motorcontrol", "motor.state")["estop"].toBool());
-    QVERIFY(!find<QCheckBox>("lifted")->isChecked());
-}
-
-void TestSetupPanel::outOfSightNoWheelTurns_data() {
-    const Rows<bool> row("isClosed");
-    row("its dock is closed", true);
-    row("another tab is over it", false);
-}
-
-void TestSetupPanel::outOfSightNoWheelTurns() {
-    QFETCH(bool, isClosed);
-    open(true);
-    lift();
-    awaitTurning();
-    const auto *const lifted = find<QCheckBox>("lifted");
-    if (isClosed)
-        window_->window.findChild<QDockWidget *>("setup")->hide();
-    else
-        window_->window.findChild<QDockWidget *>("settings")->raise();
-    QTRY_VERIFY(!lifted->isChecked());
-    QTRY_VERIFY(areStanding());
-    QVERIFY2(wheelMessage().contains("not in sight"), qPrintable(wheelMessage()));
-}
-
-/// While the control is asked for.
-void TestSetupPanel::givenUpEarlyLeavesTheControl() {
-    open(true);
-    ConnectedClient motors(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
-    WheelTurn turn(motors, "test", Client::defaultTimeout);
-    bool isOver = false;
-    Result<double> measured = 0.0;
-    turn.begin("front_left", [&](const Result<double> &result) {
-        isOver = true;
-        measured = result;
-    });
-    QTimer each; // time that the event loop turns
-    connect(&each, &QTimer::timeout, &turn, [&] {
-        if (turn.isAcquiring())
-            turn.giveUp();
-    });
-    each.start(0);
-    QTRY_VERIFY(isOver);
-    QVERIFY(!measured);
-    QVERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
-}
 
 QTEST_MAIN(TestSetupPanel)
 #include "TestSetupPanel.moc"

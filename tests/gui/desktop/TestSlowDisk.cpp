@@ -58,14 +58,102 @@ Q_DECLARE_METATYPE(Set)
 class TestSlowDisk : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
+    void init() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        file_ = folder_->filePath("gui.ini");
+    }
+
     void cleanup() { isSlow = false; }
-    void whatIsSet_data();
-    void whatIsSet();
-    void exports_data();
-    void exports();
-    void closing();
-    void closingAgainWaitsForNothing();
+
+    void whatIsSet_data() {
+        const Rows<Set> row("set");
+        row("layout", [](LayoutWindow &one) { one.saveAs("Bench"); });
+        row("layer",
+            Set([](LayoutWindow &one) { one.window->findChild<QAction *>("trustLayer")->trigger(); }));
+        row("robot added", [](LayoutWindow &one) { one.fleet.add("127.0.0.1:2"); });
+        row("robot renamed",
+            Set([](LayoutWindow &one) { one.fleet.rename(*one.fleet.robots().front(), "Blue"); }));
+        row("robot chosen", [](LayoutWindow &one) {
+            one.fleet.add("127.0.0.1:2");
+            one.fleet.choose(one.fleet.robots().back().get());
+        });
+        row("plots",
+            Set([](LayoutWindow &one) { one.window->findChild<PlotsPanel *>()->board().time().setSpan(7); }));
+    }
+
+    void whatIsSet() {
+        QFETCH(Set, set);
+        LayoutWindow one(file_, {"127.0.0.1:1"});
+        QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty()); // how it began
+        QTest::qWait(1000);
+        isSlow = true;
+        const int before = syncs;
+        Standing standing;
+        set(one);
+        QTRY_VERIFY(syncs > before);
+        QTest::qWait(300); // in the middle of it
+        isSlow = false;
+        QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+    }
+
+    void exports_data() {
+        const Rows<QString, QString> row("action", "name");
+        row("map as SVG", "export", "map.svg");
+        row("map as PNG", "export", "map.png");
+        row("plots as SVG", "picture", "plots.svg");
+        row("plots as PNG", "picture", "plots.png");
+        row("plots as CSV", "csv", "plots.csv");
+    }
+
+    void exports() {
+        FETCH(QString, action, QString, name);
+        LayoutWindow one({}, {"127.0.0.1:1"});
+        one.window->findChild<QAction *>(action)->trigger();
+        auto *const dialog = one.window->findChild<QFileDialog *>();
+        QVERIFY(dialog && !dialog->isModal());
+        QTest::qWait(500);
+        isSlow = true;
+        const int before = syncs;
+        const QString path = folder_->filePath(name);
+        Standing standing;
+        Q_EMIT dialog->fileSelected(path);
+        QTRY_VERIFY(syncs > before);
+        QTest::qWait(300);
+        isSlow = false;
+        QTRY_VERIFY_WITH_TIMEOUT(QFileInfo(path).size() > 0, 20000);
+        QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+    }
+
+    void closing() {
+        LayoutWindow one(file_, {"127.0.0.1:1"});
+        QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty());
+        QTest::qWait(1000);
+        isSlow = true;
+        Standing standing;
+        one.window->findChild<QAction *>("trustLayer")->trigger();
+        one.window->close();
+        QVERIFY(one.window->isVisible() && one.isWhole()); // STOP is in reach
+        QVERIFY2(one.notice().contains("still being written"), qPrintable(one.notice()));
+        isSlow = false;
+        QTRY_VERIFY_WITH_TIMEOUT(!one.window->isVisible(), 20000); // by itself
+        QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+        QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true"));
+    }
+
+    void closingAgainWaitsForNothing() {
+        {
+            LayoutWindow one(file_, {"127.0.0.1:1"});
+            QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty());
+            QTest::qWait(1000);
+            isSlow = true;
+            one.window->findChild<QAction *>("trustLayer")->trigger();
+            one.window->close();
+            QVERIFY(one.window->isVisible());
+            one.window->close();
+            QVERIFY(!one.window->isVisible());
+        }
+        QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true")); // the end waited
+    }
 
 private:
     static constexpr qint64 limit_ms = 700; // with other tests beside; the disk takes three times as much
@@ -73,100 +161,6 @@ private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-void TestSlowDisk::init() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    file_ = folder_->filePath("gui.ini");
-}
-
-void TestSlowDisk::whatIsSet_data() {
-    const Rows<Set> row("set");
-    row("layout", [](LayoutWindow &one) { one.saveAs("Bench"); });
-    row("layer", Set([](LayoutWindow &one) { one.window->findChild<QAction *>("trustLayer")->trigger(); }));
-    row("robot added", [](LayoutWindow &one) { one.fleet.add("127.0.0.1:2"); });
-    row("robot renamed",
-        Set([](LayoutWindow &one) { one.fleet.rename(*one.fleet.robots().front(), "Blue"); }));
-    row("robot chosen", [](LayoutWindow &one) {
-        one.fleet.add("127.0.0.1:2");
-        one.fleet.choose(one.fleet.robots().back().get());
-    });
-    row("plots",
-        Set([](LayoutWindow &one) { one.window->findChild<PlotsPanel *>()->board().time().setSpan(7); }));
-}
-
-void TestSlowDisk::whatIsSet() {
-    QFETCH(Set, set);
-    LayoutWindow one(file_, {"127.0.0.1:1"});
-    QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty()); // how it began
-    QTest::qWait(1000);
-    isSlow = true;
-    const int before = syncs;
-    Standing standing;
-    set(one);
-    QTRY_VERIFY(syncs > before);
-    QTest::qWait(300); // in the middle of it
-    isSlow = false;
-    QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
-}
-
-void TestSlowDisk::exports_data() {
-    const Rows<QString, QString> row("action", "name");
-    row("map as SVG", "export", "map.svg");
-    row("map as PNG", "export", "map.png");
-    row("plots as SVG", "picture", "plots.svg");
-    row("plots as PNG", "picture", "plots.png");
-    row("plots as CSV", "csv", "plots.csv");
-}
-
-void TestSlowDisk::exports() {
-    FETCH(QString, action, QString, name);
-    LayoutWindow one({}, {"127.0.0.1:1"});
-    one.window->findChild<QAction *>(action)->trigger();
-    auto *const dialog = one.window->findChild<QFileDialog *>();
-    QVERIFY(dialog && !dialog->isModal());
-    QTest::qWait(500);
-    isSlow = true;
-    const int before = syncs;
-    const QString path = folder_->filePath(name);
-    Standing standing;
-    Q_EMIT dialog->fileSelected(path);
-    QTRY_VERIFY(syncs > before);
-    QTest::qWait(300);
-    isSlow = false;
-    QTRY_VERIFY_WITH_TIMEOUT(QFileInfo(path).size() > 0, 20000);
-    QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
-}
-
-void TestSlowDisk::closing() {
-    LayoutWindow one(file_, {"127.0.0.1:1"});
-    QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty());
-    QTest::qWait(1000);
-    isSlow = true;
-    Standing standing;
-    one.window->findChild<QAction *>("trustLayer")->trigger();
-    one.window->close();
-    QVERIFY(one.window->isVisible() && one.isWhole()); // STOP is in reach
-    QVERIFY2(one.notice().contains("still being written"), qPrintable(one.notice()));
-    isSlow = false;
-    QTRY_VERIFY_WITH_TIMEOUT(!one.window->isVisible(), 20000); // by itself
-    QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
-    QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true"));
-}
-
-void TestSlowDisk::closingAgainWaitsForNothing() {
-    {
-        LayoutWindow one(file_, {"127.0.0.1:1"});
-        QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty());
-        QTest::qWait(1000);
-        isSlow = true;
-        one.window->findChild<QAction *>("trustLayer")->trigger();
-        one.window->close();
-        QVERIFY(one.window->isVisible());
-        one.window->close();
-        QVERIFY(!one.window->isVisible());
-    }
-    QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true")); // the end waited
-}
 
 QTEST_MAIN(TestSlowDisk)
 #include "TestSlowDisk.moc"

@@ -17,11 +17,90 @@ using namespace hermes::desktop;
 class TestTopics : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void cleanup();
-    void rateAndAge();
-    void newestMessageAsATree();
-    void largeMessagesAreCut();
+    void init() {
+        robot_ = std::make_unique<FakeRobot>();
+        window_ = std::make_unique<OpenWindow>(robot_->address());
+        QVERIFY(window_->show());
+        panel_ = window_->panel<PlotsPanel>("plots");
+    }
+
+    void cleanup() {
+        window_.reset();
+        robot_.reset();
+    }
+
+    void rateAndAge() {
+        QTreeWidgetItem *const odometry = row("odometry");
+        QVERIFY(odometry);
+        const auto rate_hz = [odometry] { return odometry->text(1).section(" Hz, ", 0, 0).toDouble(); };
+        QTRY_VERIFY_WITH_TIMEOUT(rate_hz() > 30 && rate_hz() < 60, 20000); // 50 Hz on a machine with time
+        QVERIFY2(odometry->text(1).endsWith(" s"), qPrintable(odometry->text(1)));
+        QCOMPARE(odometry->foreground(1), QBrush());
+        robot_->setSilent(true);
+        QTRY_VERIFY_WITH_TIMEOUT(odometry->foreground(1) != QBrush(), 5000); // grey
+        QTRY_VERIFY2_WITH_TIMEOUT(odometry->text(1).startsWith("no data for "), qPrintable(odometry->text(1)),
+                                  8000);
+        robot_->setSilent(false);
+        QTRY_VERIFY_WITH_TIMEOUT(odometry->text(1).contains(" Hz, "), 8000);
+        // What nobody sees is not asked for.
+        window_->panel<QWidget>("log");
+        QTRY_COMPARE(odometry->text(1), QString());
+        window_->panel<PlotsPanel>("plots");
+        QTRY_VERIFY_WITH_TIMEOUT(odometry->text(1).contains(" Hz, "), 8000);
+    }
+
+    void newestMessageAsATree() {
+        chooseMessage("odometry");
+        QTRY_COMPARE(at({"twist", "vx"}).value(1), QString("m/s"));
+        QCOMPARE(at({"twist", "omega"}).value(1), QString("rad/s"));
+        QCOMPARE(at({"covariance"}).value(0), QString("9 in a list"));
+        QTRY_VERIFY2(head().startsWith("odometry of motorcontrol: ") && head().contains(" Hz, "),
+                     qPrintable(head()));
+        const QString mono = at({"mono"}).value(0);
+        QTRY_VERIFY(at({"mono"}).value(0) != mono); // it goes on
+        const DaemonLink *const motors = window_->fleet.robot()->withTopic("power");
+        const auto schema = [motors](const QString &topic) {
+            return topicDescription(motors->description(), topic)["schema"].toObject();
+        };
+        QVERIFY(!isHeavy(schema("power")) && !isHeavy(schema("odometry"))); // so it comes ten times a second
+        QVERIFY(isHeavy({{"type", "array"}, {"items", QJsonObject{{"type", "number"}}}}));
+        chooseMessage("power");
+        QTRY_COMPARE(at({"controllers", "0", "battery_v"}).value(1), QString("V"));
+        QCOMPARE(at({"controllers", "0", "temperature_c"}).value(1), QString("°C"));
+        QCOMPARE(at({"controllers", "0", "current_a", "1"}).value(1), QString("A"));
+        QCOMPARE(at({"controllers", "0", "ready"}).value(0), QString("yes"));
+        chooseMessage("odometry");
+        QTRY_VERIFY2(head().startsWith("odometry of ") && head().contains(" Hz, "), qPrintable(head()));
+        robot_->setSilent(true);
+        QTRY_VERIFY_WITH_TIMEOUT(head().contains("no data for "), 10000);
+    }
+
+    // As large as messages may be, as fast as they come.
+    void largeMessagesAreCut() {
+        Mischief mischief = ofTopic("free",
+                                    "{\"count\":%1,\"long\":" + listOf("0.123456", 15000) + ",\"deep\":" +
+                                        inBrackets("1", 50) + ",\"wide\":" + objectOf("{\"a\":[1,2]}", 3000) +
+                                        ",\"text\":\"" + QByteArray(50000, 'W') + "\"}",
+                                    -1);
+        const FakeDaemon daemon(mischief);
+        QVERIFY(window_->fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QTRY_VERIFY(row("free"));
+        chooseMessage("free");
+        QTRY_COMPARE(at({"long"}).value(0), QString("15000 in a list"));
+        QCOMPARE(at({"long", "39"}).value(0), QString("0.123456"));
+        QVERIFY(!at({"long", "and 14960 more"}).isEmpty());
+        QVERIFY(at({"text"}).value(0).size() < 200);
+        int rows = 0;
+        for (QTreeWidgetItemIterator i(message()); *i; ++i)
+            ++rows;
+        QVERIFY2(rows < 600, qPrintable(QString::number(rows)));
+        LoopWatch watch;
+        const QString count = at({"count"}).value(0);
+        QTest::qWait(1500);
+        QVERIFY(at({"count"}).value(0) != count);
+        qInfo("busy %.1f ms", watch.longestCpu_ms());
+        QVERIFY2(watch.longestCpu_ms() < 40 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
+    }
 
 private:
     QTreeWidgetItem *row(const QString &name) const {
@@ -53,91 +132,6 @@ private:
     std::unique_ptr<OpenWindow> window_;
     PlotsPanel *panel_ = nullptr;
 };
-
-void TestTopics::init() {
-    robot_ = std::make_unique<FakeRobot>();
-    window_ = std::make_unique<OpenWindow>(robot_->address());
-    QVERIFY(window_->show());
-    panel_ = window_->panel<PlotsPanel>("plots");
-}
-
-void TestTopics::cleanup() {
-    window_.reset();
-    robot_.reset();
-}
-
-void TestTopics::rateAndAge() {
-    QTreeWidgetItem *const odometry = row("odometry");
-    QVERIFY(odometry);
-    const auto rate_hz = [odometry] { return odometry->text(1).section(" Hz, ", 0, 0).toDouble(); };
-    QTRY_VERIFY_WITH_TIMEOUT(rate_hz() > 30 && rate_hz() < 60, 20000); // 50 Hz on a machine with time
-    QVERIFY2(odometry->text(1).endsWith(" s"), qPrintable(odometry->text(1)));
-    QCOMPARE(odometry->foreground(1), QBrush());
-    robot_->setSilent(true);
-    QTRY_VERIFY_WITH_TIMEOUT(odometry->foreground(1) != QBrush(), 5000); // grey
-    QTRY_VERIFY2_WITH_TIMEOUT(odometry->text(1).startsWith("no data for "), qPrintable(odometry->text(1)),
-                              8000);
-    robot_->setSilent(false);
-    QTRY_VERIFY_WITH_TIMEOUT(odometry->text(1).contains(" Hz, "), 8000);
-    // What nobody sees is not asked for.
-    window_->panel<QWidget>("log");
-    QTRY_COMPARE(odometry->text(1), QString());
-    window_->panel<PlotsPanel>("plots");
-    QTRY_VERIFY_WITH_TIMEOUT(odometry->text(1).contains(" Hz, "), 8000);
-}
-
-void TestTopics::newestMessageAsATree() {
-    chooseMessage("odometry");
-    QTRY_COMPARE(at({"twist", "vx"}).value(1), QString("m/s"));
-    QCOMPARE(at({"twist", "omega"}).value(1), QString("rad/s"));
-    QCOMPARE(at({"covariance"}).value(0), QString("9 in a list"));
-    QTRY_VERIFY2(head().startsWith("odometry of motorcontrol: ") && head().contains(" Hz, "),
-                 qPrintable(head()));
-    const QString mono = at({"mono"}).value(0);
-    QTRY_VERIFY(at({"mono"}).value(0) != mono); // it goes on
-    const DaemonLink *const motors = window_->fleet.robot()->withTopic("power");
-    const auto schema = [motors](const QString &topic) {
-        return topicDescription(motors->description(), topic)["schema"].toObject();
-    };
-    QVERIFY(!isHeavy(schema("power")) && !isHeavy(schema("odometry"))); // so it comes ten times a second
-    QVERIFY(isHeavy({{"type", "array"}, {"items", QJsonObject{{"type", "number"}}}}));
-    chooseMessage("power");
-    QTRY_COMPARE(at({"controllers", "0", "battery_v"}).value(1), QString("V"));
-    QCOMPARE(at({"controllers", "0", "temperature_c"}).value(1), QString("°C"));
-    QCOMPARE(at({"controllers", "0", "current_a", "1"}).value(1), QString("A"));
-    QCOMPARE(at({"controllers", "0", "ready"}).value(0), QString("yes"));
-    chooseMessage("odometry");
-    QTRY_VERIFY2(head().startsWith("odometry of ") && head().contains(" Hz, "), qPrintable(head()));
-    robot_->setSilent(true);
-    QTRY_VERIFY_WITH_TIMEOUT(head().contains("no data for "), 10000);
-}
-
-// As large as messages may be, as fast as they come.
-void TestTopics::largeMessagesAreCut() {
-    Mischief mischief = ofTopic(
-        "free",
-        "{\"count\":%1,\"long\":" + listOf("0.123456", 15000) + ",\"deep\":" + inBrackets("1", 50) +
-            ",\"wide\":" + objectOf("{\"a\":[1,2]}", 3000) + ",\"text\":\"" + QByteArray(50000, 'W') + "\"}",
-        -1);
-    const FakeDaemon daemon(mischief);
-    QVERIFY(window_->fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
-    QTRY_VERIFY(row("free"));
-    chooseMessage("free");
-    QTRY_COMPARE(at({"long"}).value(0), QString("15000 in a list"));
-    QCOMPARE(at({"long", "39"}).value(0), QString("0.123456"));
-    QVERIFY(!at({"long", "and 14960 more"}).isEmpty());
-    QVERIFY(at({"text"}).value(0).size() < 200);
-    int rows = 0;
-    for (QTreeWidgetItemIterator i(message()); *i; ++i)
-        ++rows;
-    QVERIFY2(rows < 600, qPrintable(QString::number(rows)));
-    LoopWatch watch;
-    const QString count = at({"count"}).value(0);
-    QTest::qWait(1500);
-    QVERIFY(at({"count"}).value(0) != count);
-    qInfo("busy %.1f ms", watch.longestCpu_ms());
-    QVERIFY2(watch.longestCpu_ms() < 40 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
-}
 
 QTEST_MAIN(TestTopics)
 #include "TestTopics.moc"

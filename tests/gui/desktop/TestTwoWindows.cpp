@@ -8,12 +8,76 @@ using namespace hermes::desktop;
 class TestTwoWindows : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void initTestCase();
-    void init();
-    void theFirstKeeps();
-    void theSecondTakesOver();
-    void theSecondLeavesWhatTheFirstChanged();
-    void whatAnotherProgramWroteIsLeft();
+    void initTestCase() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        file_ = folder_->filePath("new/gui.ini");
+        const auto one = opened();
+        QTest::qWait(1500); // until all is kept as a window begins with it
+        one->window->close();
+        usual_ = contentOf(file_);
+    }
+
+    void init() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        file_ = folder_->filePath("gui.ini");
+        put(file_, usual_);
+    }
+
+    void theFirstKeeps() {
+        const auto first = opened();
+        QCOMPARE(first->notice(), QString());
+        auto second = opened();
+        QVERIFY2(second->notice().contains("Another window keeps the layouts"), qPrintable(second->notice()));
+        QVERIFY(noteOf(*second).contains("Another window keeps the layouts") && noteOf(*first).isEmpty());
+        first->saveAs("Precious");
+        second->saveAs("Other");
+        QTRY_VERIFY(kept().contains("Precious"));
+        second->window->close();
+        QVERIFY(!second->window->isVisible()); // it was said
+        second.reset();
+        QCOMPARE(kept(), QStringList({"Usual", "Precious"}));
+        QCOMPARE(first->notice(), QString());
+    }
+
+    void theSecondTakesOver() {
+        auto first = opened();
+        QTest::qWait(1500); // until it has nothing to write
+        const auto second = opened();
+        second->saveAs("Mine");
+        QTest::qWait(1000);
+        QCOMPARE(kept(), QStringList("Usual"));
+        first->window->close();
+        first.reset();
+        QTRY_VERIFY2_WITH_TIMEOUT(kept().contains("Mine"), qPrintable(noteOf(*second)), 15000);
+        QTRY_VERIFY(noteOf(*second).isEmpty());
+    }
+
+    void theSecondLeavesWhatTheFirstChanged() {
+        auto first = opened();
+        auto second = opened();
+        first->saveAs("Precious");
+        QTRY_VERIFY(kept().contains("Precious"));
+        first->window->close();
+        first.reset();
+        second->saveAs("Other");
+        QTRY_VERIFY2_WITH_TIMEOUT(second->notice().contains("were changed by another window"),
+                                  qPrintable(second->notice()), 15000);
+        second->window->close();
+        second.reset();
+        QCOMPARE(kept(), QStringList({"Usual", "Precious"}));
+    }
+
+    void whatAnotherProgramWroteIsLeft() {
+        auto one = opened();
+        QTest::qWait(1000);
+        Layouts other(file_);
+        QVERIFY(other.saveAs("By hand").ok() && other.save().ok());
+        one->saveAs("Mine");
+        QTRY_VERIFY2(one->notice().contains("were changed by another"), qPrintable(one->notice()));
+        QVERIFY(noteOf(*one).contains("were changed by another"));
+        one.reset();
+        QCOMPARE(kept(), QStringList({"Usual", "By hand"}));
+    }
 
 private:
     std::unique_ptr<LayoutWindow> opened() const {
@@ -30,77 +94,6 @@ private:
     QString file_;
     QByteArray usual_; // what is kept as a window begins
 };
-
-void TestTwoWindows::initTestCase() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    file_ = folder_->filePath("new/gui.ini");
-    const auto one = opened();
-    QTest::qWait(1500); // until all is kept as a window begins with it
-    one->window->close();
-    usual_ = contentOf(file_);
-}
-
-void TestTwoWindows::init() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    file_ = folder_->filePath("gui.ini");
-    put(file_, usual_);
-}
-
-void TestTwoWindows::theFirstKeeps() {
-    const auto first = opened();
-    QCOMPARE(first->notice(), QString());
-    auto second = opened();
-    QVERIFY2(second->notice().contains("Another window keeps the layouts"), qPrintable(second->notice()));
-    QVERIFY(noteOf(*second).contains("Another window keeps the layouts") && noteOf(*first).isEmpty());
-    first->saveAs("Precious");
-    second->saveAs("Other");
-    QTRY_VERIFY(kept().contains("Precious"));
-    second->window->close();
-    QVERIFY(!second->window->isVisible()); // it was said
-    second.reset();
-    QCOMPARE(kept(), QStringList({"Usual", "Precious"}));
-    QCOMPARE(first->notice(), QString());
-}
-
-void TestTwoWindows::theSecondTakesOver() {
-    auto first = opened();
-    QTest::qWait(1500); // until it has nothing to write
-    const auto second = opened();
-    second->saveAs("Mine");
-    QTest::qWait(1000);
-    QCOMPARE(kept(), QStringList("Usual"));
-    first->window->close();
-    first.reset();
-    QTRY_VERIFY2_WITH_TIMEOUT(kept().contains("Mine"), qPrintable(noteOf(*second)), 15000);
-    QTRY_VERIFY(noteOf(*second).isEmpty());
-}
-
-void TestTwoWindows::theSecondLeavesWhatTheFirstChanged() {
-    auto first = opened();
-    auto second = opened();
-    first->saveAs("Precious");
-    QTRY_VERIFY(kept().contains("Precious"));
-    first->window->close();
-    first.reset();
-    second->saveAs("Other");
-    QTRY_VERIFY2_WITH_TIMEOUT(second->notice().contains("were changed by another window"),
-                              qPrintable(second->notice()), 15000);
-    second->window->close();
-    second.reset();
-    QCOMPARE(kept(), QStringList({"Usual", "Precious"}));
-}
-
-void TestTwoWindows::whatAnotherProgramWroteIsLeft() {
-    auto one = opened();
-    QTest::qWait(1000);
-    Layouts other(file_);
-    QVERIFY(other.saveAs("By hand").ok() && other.save().ok());
-    one->saveAs("Mine");
-    QTRY_VERIFY2(one->notice().contains("were changed by another"), qPrintable(one->notice()));
-    QVERIFY(noteOf(*one).contains("were changed by another"));
-    one.reset();
-    QCOMPARE(kept(), QStringList({"Usual", "By hand"}));
-}
 
 QTEST_MAIN(TestTwoWindows)
 #include "TestTwoWindows.moc"

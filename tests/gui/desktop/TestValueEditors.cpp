@@ -15,6 +15,10 @@ private Q_SLOTS:
     void numbersAreOneLine();
     void choicesHaveTitles();
     void numbersStepAndKeepTheirDigits();
+    void digitsThatWouldBeLostAreRefused_data();
+    void digitsThatWouldBeLostAreRefused();
+    void secretsAreHidden();
+    void whatIsOnlyToldIsNotEdited();
     void amountsAreSpoken();
     void patternsAndFormats_data();
     void patternsAndFormats();
@@ -92,6 +96,47 @@ void TestValueEditors::numbersStepAndKeepTheirDigits() {
     open_->showOne(R"({"type":"number","increment":0.25,"default":1})");
     QTest::keyClick(open_->seen<QLineEdit>(), Qt::Key_Up);
     QCOMPARE(open_->value(), QByteArray("1.25"));
+}
+
+void TestValueEditors::digitsThatWouldBeLostAreRefused_data() {
+    const Rows<QByteArray, QString> row("schema", "text");
+    row("number", R"({"type":"integer","default":1})", "9007199254740995");
+    row("list", R"({"type":"array","items":{"type":"integer"}})", "1, -9007199254740993");
+    row("any", R"({"default":0})", R"({"a": 12345678901234567})");
+}
+
+void TestValueEditors::digitsThatWouldBeLostAreRefused() {
+    FETCH(QByteArray, schema, QString, text);
+    open_->showOne(schema);
+    OpenForm::type(open_->seen<QLineEdit>(), text);
+    QVERIFY2(!form_->isValid(), open_->value());
+    QVERIFY2(open_->note().contains("15 digits"), qPrintable(open_->note()));
+    OpenForm::type(open_->seen<QLineEdit>(), QString(text).replace(QRegularExpression("\\d{16,}"),
+                                                                   "9007199254740992")); // 2^53
+    QVERIFY2(form_->isValid(), qPrintable(open_->note()));
+}
+
+void TestValueEditors::secretsAreHidden() {
+    for (const char *const schema : {R"({"type":"string","writeOnly":true,"default":"pass123"})",
+                                     R"({"type":"string","format":"password","default":"pass123"})"}) {
+        open_->showOne(schema);
+        auto *const line = open_->seen<QLineEdit>();
+        QVERIFY(!line->displayText().contains("pass123"));
+        QVERIFY(!line->placeholderText().contains("pass123"));
+        QVERIFY2(!line->parentWidget()->toolTip().contains("pass123"),
+                 qPrintable(line->parentWidget()->toolTip()));
+        OpenForm::type(line, "other");
+        QCOMPARE(open_->value(), QByteArray("\"other\""));
+    }
+}
+
+void TestValueEditors::whatIsOnlyToldIsNotEdited() {
+    open_->showOne(R"({"type":"integer","readOnly":true,"default":1})", "5");
+    auto *const line = open_->seen<QLineEdit>();
+    QVERIFY(!line->isEnabled());
+    QCOMPARE(line->text(), QString("5"));
+    form_->setDefaults();
+    QVERIFY(form_->changes().isEmpty());
 }
 
 void TestValueEditors::amountsAreSpoken() {
