@@ -12,8 +12,8 @@ namespace {
 constexpr double day_s = 1893456000; // 2030-01-01
 constexpr double knot = 1852.0 / 3600;
 
-/// A moment as it was, and what of it reached the logger.
-struct Moment {
+/// What was true at a moment, and what of it reached the logger.
+struct Truth {
     double time = 0;
     bool hasFix = true;
     int latitude = 0, longitude = 0; // 0.0001 minutes
@@ -45,7 +45,7 @@ public:
             drawMoment(i);
     }
 
-    QList<Moment> moments;
+    QList<Truth> moments;
     QList<Part> parts;
     bool isLossless() const { return loss_ == 0; }
     int damaged = 0, wrong = 0, whole = 0;
@@ -197,7 +197,7 @@ private:
     double loss_ = 0; ///< share of the sentences
     int decimals_ = 0;
     QByteArrayList order_;
-    Moment moment_;
+    Truth moment_;
 };
 
 NmeaStream played(const DrawnStream &drawn, bool live) {
@@ -242,7 +242,7 @@ private:
         quint64 lacking = 0;
         int next = 0;
         bool dateKnown = false;
-        for (const Moment &moment : drawn.moments) {
+        for (const Truth &moment : drawn.moments) {
             if (moment.told) {
                 QVERIFY(next < stream.fixes.size());
                 const QJsonObject &fix = stream.fixes[next++];

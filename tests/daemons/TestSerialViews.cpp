@@ -25,7 +25,7 @@ struct Sentence {
     }
 };
 
-Arrival at(int ms) {
+Moment at(int ms) {
     return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000};
 }
 
