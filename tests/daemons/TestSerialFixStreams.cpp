@@ -164,9 +164,9 @@ private:
         if (chance(0.03))
             steps = pick({2, 17, rate_hz_ * 3600});
         else if (number > 5 && pauses_ && chance(0.03))
-            // Its clock is set right. Where no pause is seen, a time told again soon would pass for a
-            // repetition.
-            steps = rate_hz_ > 10 ? -7 * rate_hz_ : !isLossless() ? -7 : pick({-1, -7});
+            // Its clock is set right. Where no pause is seen, or all between was lost, a time told again soon
+            // would pass for a repetition.
+            steps = rate_hz_ > 10 || !isLossless() ? -7 * rate_hz_ : pick({-1, -7});
         moment_.time = std::round((moment_.time + double(steps) / rate_hz_) * 1000) / 1000;
         moment_.hasFix = moment_.hasFix ? !chance(0.05) : chance(0.3);
         moment_.latitude += number % 2 ? -1234 : 1233;
