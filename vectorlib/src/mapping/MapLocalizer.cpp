@@ -28,7 +28,7 @@ VECTORLIB_BODY void MapLocalizer::seek() {
     tracker.process(seen);
     const Relocalized found = search();
     if (found.isFound())
-        propose(found.places.front().pose);
+        propose(found.places.front());
 }
 
 VECTORLIB_BODY bool MapLocalizer::isFarFromSought(const TimedScan &scan) {
@@ -40,8 +40,9 @@ VECTORLIB_BODY bool MapLocalizer::isFarFromSought(const TimedScan &scan) {
     return sinceSought_ >= settings.keyScans;
 }
 
-VECTORLIB_BODY void MapLocalizer::propose(const Pose2D &pose) {
-    if (track(kept_.back(), pose) != ScanReport::Outcome::Matched) {
+VECTORLIB_BODY void MapLocalizer::propose(const Place &place) {
+    against_ = place.against;
+    if (track(kept_.back(), place.pose, against_) != ScanReport::Outcome::Matched) {
         scans_.back().pose.reset();
         return;
     }
@@ -90,7 +91,7 @@ VECTORLIB_BODY void MapLocalizer::confirm() {
         kept_.clear();
     } else {
         drop();
-        propose(pose);
+        propose(found.places.front());
     }
 }
 
@@ -99,7 +100,7 @@ VECTORLIB_BODY void MapLocalizer::traceBack() {
         std::find_if(kept_.begin(), kept_.end(), [this](const Kept &k) { return k.number == proposal_; });
     const Pose2D here = *scans_.back().pose;
     followBack(std::make_reverse_iterator(first == kept_.end() ? first : first + 1), kept_.rend());
-    track(kept_.back(), here); // from where the drive goes on
+    track(kept_.back(), here, against_); // from where the drive goes on
 }
 
 template <typename Iterator>
@@ -110,7 +111,8 @@ void MapLocalizer::followBack(Iterator from, Iterator end) {
     lostInARow_ = 0;
     auto lost = from;
     for (; from != end && lostInARow_ < settings.lostBeforeSearch; ++from, start.reset()) {
-        const bool isLost = track({from->number, backwards(from->scan)}, start) == ScanReport::Outcome::Lost;
+        const bool isLost =
+            track({from->number, backwards(from->scan)}, start, against_) == ScanReport::Outcome::Lost;
         scans_[from->number].stamp = -scans_[from->number].stamp;
         lostInARow_ = isLost ? lostInARow_ + 1 : 0;
         if (!isLost)
@@ -132,9 +134,10 @@ VECTORLIB_BODY TimedScan MapLocalizer::backwards(TimedScan scan) {
     return scan;
 }
 
-VECTORLIB_BODY ScanReport::Outcome MapLocalizer::track(const Kept &kept, const std::optional<Pose2D> &pose) {
+VECTORLIB_BODY ScanReport::Outcome MapLocalizer::track(const Kept &kept, const std::optional<Pose2D> &pose,
+                                                       double against) {
     if (pose)
-        tracker.place(*pose);
+        tracker.place(*pose, against);
     TimedScan scan = kept.scan;
     const ScanReport &report = tracker.process(scan);
     scans_[kept.number] = {scan.stamp, report.pose, report.outcome == ScanReport::Outcome::Matched};

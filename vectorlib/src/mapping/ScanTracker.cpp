@@ -23,6 +23,10 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     scanner.closed = scan.closed;
     builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
     straight_ = locate(scan, begin, end);
+    if (builder.report().outcome == ScanReport::Outcome::Matched && !builder.settings.grow)
+        weigh(scan.points, scan.stamp);
+    if (isContradicted())
+        builder.refuse();
     const ScanReport &report = builder.conclude(scan.points, straight_);
     points_ = scan.points;
     motion_.update(report.pose, scan.stamp);
@@ -42,8 +46,17 @@ VECTORLIB_BODY void ScanTracker::check(const OdometryTrack &track, double stamp)
         check_.add(stamp, track.at(stamp).pose(), builder.report().pose * settings_.sensorOnRobot.inverse());
 }
 
-VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose) {
+VECTORLIB_BODY void ScanTracker::weigh(PointSpan<float> points, double stamp) {
+    const PlaceFit fit =
+        search_.judge(builder.map.slots(), builder.edges(), points, Transformation2D(builder.report().pose));
+    const double since_s = lastStamp_ ? std::max(0.0, stamp - *lastStamp_) : 0;
+    against_ += std::max(least, 1 - std::exp(-since_s / against_s)) * (fit.against() - against_);
+    knownAgainst_ -= forgotten * knownAgainst_;
+}
+
+VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     isPlaced_ = true;
+    against_ = knownAgainst_ = against;
     motion_.reset(pose);
     odometry_.reset();
     check_.restart();
@@ -56,7 +69,7 @@ VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
         return {};
     const Relocalized &result = search_(builder.map.slots(), builder.edges(), points_);
     if (apply && result.isFound())
-        place(result.places.front().pose);
+        place(result.places.front().pose, result.places.front().against);
     return result;
 }
 

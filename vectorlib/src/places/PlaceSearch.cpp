@@ -128,6 +128,14 @@ VECTORLIB_BODY const Relocalized &PlaceSearch::operator()(const std::vector<MapE
     return result_;
 }
 
+VECTORLIB_BODY PlaceFit PlaceSearch::judge(const std::vector<MapEdge> &slots,
+                                           const std::vector<EdgeRaw2D> &edges, PointSpan<float> points,
+                                           const Transformation2D &pose) {
+    scan.take(edges, points);
+    index_.follow(slots);
+    return fit.judge(index_.tiles(), scan.points(), pose, 1, true, scan.wallOfPoint());
+}
+
 template <typename IsLate>
 void PlaceSearch::search(IsLate isLate) {
     refine(propose(index_, scan, isLate));
@@ -220,6 +228,7 @@ VECTORLIB_BODY Place PlaceSearch::placeOf(const PlaceFit &f, double probability,
     place.ambiguity = f.meanSquare();
     place.discrepancy = f.discrepancy;
     place.matchedShare = f.explainedShare();
+    place.against = f.against();
     place.covariance = f.covariance();
     return place;
 }

@@ -93,7 +93,7 @@ private:
     }
 
     // The last scan was taken there, if it matches the map.
-    void propose(const Pose2D &pose);
+    void propose(const Place &place);
     // Forgets what followed from it.
     void drop();
     void forget(const Kept &kept) { scans_[kept.number] = {scans_[kept.number].stamp, std::nullopt, false}; }
@@ -106,7 +106,7 @@ private:
     void followBack(Iterator from, Iterator end);
     static TimedScan backwards(TimedScan scan);
     // Finds a scan from the scan before, or from a pose.
-    ScanReport::Outcome track(const Kept &kept, const std::optional<Pose2D> &pose);
+    ScanReport::Outcome track(const Kept &kept, const std::optional<Pose2D> &pose, double against = 0);
 
     // Where the last search of the whole map was made, by odometry.
     struct Sought {
@@ -119,6 +119,7 @@ private:
     State state_ = State::Lost;
     std::size_t proposal_ = 0; // the scan that proposed a place
     Transformation2D keyPose_; // of the last scan that was sought, where a place is proposed
+    double against_ = 0;       // what speaks against the place
     std::optional<Sought> sought_;
     std::size_t sinceSought_ = 0;
     int lostInARow_ = 0;

@@ -32,6 +32,8 @@ struct ScanTrackerSettings {
     TrackingSettings tracking;    ///< where the pose is well expected
     /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
     double moment = 0.5;
+    /// How much of the last scans may speak against a pose in a finished map; see ScanTracker::against.
+    double mostAgainst = 0.3;
     std::int64_t relocalizeAfter = 10; ///< lost scans in a row; 0: never by itself
     double relocalizeSeconds = 3;      ///< longest search
 };
@@ -70,8 +72,8 @@ public:
     /// moment, the middle of its time, and its stamp this moment, to which the pose refers.
     const ScanReport &process(TimedScan &scan);
 
-    /// Puts the sensor somewhere, standing still.
-    void place(const Pose2D &pose);
+    /// Puts the sensor somewhere, standing still. `against`: what is known to speak against the place.
+    void place(const Pose2D &pose, double against = 0);
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
     Relocalized relocalize(bool apply);
     /// The same by itself, to be called after each scan: when enough scans in a row were lost, and for at
@@ -95,8 +97,14 @@ public:
     /// or skipped, or that the map had nothing to compare with.
     double trust() const {
         const auto features = trustFeatures();
-        return features ? poseTrust(*features) : 0;
+        return features ? poseTrust(*features) * belief() : 0;
     }
+    /// What speaks against the pose in a finished map: of the points of the last scans the share that is seen
+    /// through walls, and half of the share that lies on none. Less what was known when the place was found,
+    /// as the world may have changed. 0 while the map grows.
+    double against() const { return std::max(0.0, against_ - knownAgainst_); }
+    /// Whether that is too much for the pose to be right: the scan then counts as lost.
+    bool isContradicted() const { return against() > settings_.mostAgainst; }
     /// What it goes by; nothing where it is 0 anyway.
     std::optional<PoseTrust::Features> trustFeatures() const;
     /// The frame of the odometry in that of the map, by the last scan that had any.
@@ -114,7 +122,9 @@ private:
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int mostTries = 3;
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
-    static constexpr double muchBetter = 1.02; // a score, where the odometry tells otherwise
+    static constexpr double against_s = 0.5; // over which what speaks against a pose is smoothed
+    static constexpr double least = 0.2, forgotten = 0.02; // shares by which the mean follows a scan
+    static constexpr double muchBetter = 1.02;             // a score, where the odometry tells otherwise
 
     // Where the sensor is thought to be, how it moves, and how sure that is.
     struct Guess {
@@ -142,6 +152,9 @@ private:
     TwistCorrection::Result twistError(const TimedScan &scan);
     void check(const OdometryTrack &track, double stamp);
     // The two guesses differ by more than the speed of a robot changes between two scans.
+    // What speaks against the pose that was found.
+    void weigh(PointSpan<float> points, double stamp);
+    double belief() const { return std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0); }
     static bool leaps(const Guess &a, const Guess &b, double seconds);
     void tellHowSure(const Guess &guess);
     // Searches at least as widely as it is set up.
@@ -171,6 +184,7 @@ private:
     bool byOdometry_ = false, straight_ = true, isWellExpected_ = false; // the last scan
     bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false;     // since the last scan, and before it
     int lostInARow_ = 0;
+    double against_ = 0, knownAgainst_ = 0; // shares of the last scans, and of them what the search knew of
     Clock::time_point nextSearch_;
 };
 

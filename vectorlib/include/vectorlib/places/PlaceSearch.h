@@ -123,6 +123,9 @@ public:
     /// counter-clockwise. Without points the edges stand for them. Valid until the next call.
     const Relocalized &operator()(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
                                   PointSpan<float> points);
+    /// How the scan lies in the map at a pose, whatever other places there are.
+    PlaceFit judge(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
+                   PointSpan<float> points, const Transformation2D &pose);
     PlaceIndex &index() { return index_; }
 
 private:

@@ -61,6 +61,7 @@ struct Place {
     double ambiguity = 0;    ///< mean squared distance of the explained points from their walls; m^2
     double discrepancy = 0;  ///< area seen behind walls of the map; m^2
     double matchedShare = 0; ///< of the scan's points, that lie on walls of the map
+    double against = 0;      ///< PlaceFit::against
     double lead = 0; ///< of the first place over this one, as PlaceFit::leadOver; of the first its least
     /// Of x, y (metres) and theta (radians); nothing where the walls do not fix the place.
     std::optional<Eigen::Matrix3d> covariance;
