@@ -5,13 +5,8 @@
 #include "tests/support/RealData.h"
 
 #include <QFile>
-#include <QProcess>
 #include <QStandardPaths>
-#include <QTemporaryDir>
 #include <QtEndian>
-#include <QtTest>
-
-#include <random>
 
 using namespace hermes;
 

@@ -2,8 +2,6 @@
 #include "tests/common/CaptureFiles.h"
 
 #include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
 
 #include <pcap/pcap.h>
 

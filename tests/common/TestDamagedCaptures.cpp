@@ -2,8 +2,6 @@
 #include "common/capture/PcapReader.h"
 #include "tests/common/CaptureFiles.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::captures;
 

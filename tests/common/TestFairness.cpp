@@ -2,9 +2,6 @@
 #include "common/daemon/Daemon.h"
 #include "protocol/jsonrpc/JsonRpc.h"
 #include "protocol/wire/JsonText.h"
-#include "tests/support/Patience.h"
-
-#include <QTcpSocket>
 
 using namespace hermes;
 

@@ -2,10 +2,6 @@
 #include "common/capture/LidarStream.h"
 #include "tests/support/Sensor.h"
 
-#include <QtTest>
-
-#include <vector>
-
 using namespace hermes;
 using velodyne::TurnAssembler;
 

@@ -3,11 +3,8 @@
 #include "common/capture/PcapReader.h"
 
 #include <QFile>
-#include <QProcess>
 #include <QRegularExpression>
 #include <QStandardPaths>
-#include <QTemporaryDir>
-#include <QtTest>
 
 using namespace hermes;
 

@@ -1,10 +1,6 @@
 #include "common/Mailbox.h"
 
-#include <QtTest>
-
-#include <memory>
 #include <poll.h>
-#include <thread>
 
 using namespace hermes;
 

@@ -1,8 +1,6 @@
 // Of several sensors one is taken.
 #include "common/capture/LidarStream.h"
 
-#include <QtTest>
-
 using namespace hermes;
 
 namespace {

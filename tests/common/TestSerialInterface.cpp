@@ -3,9 +3,6 @@
 #include "common/interface/PtyInterface.h"
 #include "common/interface/SerialInterface.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <fcntl.h>
 #include <termios.h>
 #include <unistd.h>

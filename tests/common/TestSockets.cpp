@@ -2,7 +2,6 @@
 #include "common/platform/Sockets.h"
 
 #include <QElapsedTimer>
-#include <QtTest>
 #include <csignal>
 #include <sys/socket.h>
 #include <sys/time.h>

@@ -1,10 +1,7 @@
 #include "common/recording/Sidecar.h"
 #include "common/recording/StoredRecording.h"
-#include "tests/support/Files.h"
 
 #include <QDir>
-#include <QTemporaryDir>
-#include <QtTest>
 
 #include <sys/stat.h>
 

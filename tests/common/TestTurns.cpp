@@ -3,12 +3,7 @@
 
 #include <QEventLoop>
 #include <QTest>
-#include <QTimer>
-#include <algorithm>
 #include <list>
-#include <memory>
-#include <random>
-#include <vector>
 
 namespace hermes {
 namespace {

@@ -1,11 +1,7 @@
 #include "common/world/World.h"
 
 #include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 using namespace hermes;

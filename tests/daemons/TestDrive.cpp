@@ -3,13 +3,7 @@
 #include "daemons/motorcontrol/EncoderMonitor.h"
 #include "daemons/motorcontrol/Threshold.h"
 
-#include <QJsonArray>
-#include <QtTest>
-
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <memory>
 
 Q_DECLARE_METATYPE(std::function<void(hermes::motorcontrol::Drive &)>)
 Q_DECLARE_METATYPE(std::function<double(double)>)

@@ -4,9 +4,6 @@
 #include "tests/support/FileSizeLimit.h"
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <malloc.h>
 #include <set>
 

@@ -3,7 +3,6 @@
 #include "vectorlib/geometry/Angle.h"
 
 #include <QUdpSocket>
-#include <QtTest>
 
 #include <atomic>
 

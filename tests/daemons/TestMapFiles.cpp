@@ -2,16 +2,13 @@
 #include "MatcherFixture.h"
 #include "tests/support/PatientClient.h"
 
-#include "tests/support/Files.h"
 #include "tests/support/LoopWatch.h"
 #include "vectorlib/io/MapCsv.h"
 
-#include <QProcess>
 #include <QRegularExpression>
 #include <atomic>
 #include <fstream>
 #include <sys/syscall.h>
-#include <thread>
 #include <unistd.h>
 
 using namespace hermes;

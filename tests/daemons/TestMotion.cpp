@@ -2,11 +2,6 @@
 #include "daemons/motorcontrol/MotionLimits.h"
 #include "daemons/motorcontrol/Odometry.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <random>
-
 Q_DECLARE_METATYPE(vectorlib::Twist2D)
 Q_DECLARE_METATYPE(vectorlib::Pose2D)
 Q_DECLARE_METATYPE(hermes::motorcontrol::WheelValues)

@@ -3,7 +3,6 @@
 #include "common/settings/DottedPath.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QTcpSocket>
 #include <QUrl>
 #include <atomic>
 #include <ctime>

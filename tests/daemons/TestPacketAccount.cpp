@@ -2,11 +2,6 @@
 #include "daemons/velodynelogger/PacketAccount.h"
 #include "tests/support/Sensor.h"
 
-#include <QtTest>
-
-#include <random>
-#include <thread>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 

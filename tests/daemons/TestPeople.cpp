@@ -1,9 +1,5 @@
 #include "daemons/simulator/RobotBody.h"
 
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::simulator;
 using Point = vectorlib::Vector2D<double>;

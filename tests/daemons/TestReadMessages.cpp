@@ -1,11 +1,6 @@
 // What the scan matcher reads of other daemons' messages.
 #include "daemons/scanmatcher/MatcherMessages.h"
 
-#include <QJsonArray>
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::scanmatcher;
 

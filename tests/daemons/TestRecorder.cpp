@@ -4,10 +4,7 @@
 #include "tests/support/FileSizeLimit.h"
 #include "tests/support/Sensor.h"
 
-#include <QProcess>
 #include <QStandardPaths>
-#include <QTemporaryDir>
-#include <QtTest>
 
 using namespace hermes;
 using namespace hermes::velodynelogger;

@@ -4,7 +4,6 @@
 #include "vectorlib/observation/SimulatedScanner.h"
 
 #include <fstream>
-#include <random>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;

@@ -2,11 +2,6 @@
 #include "protocol/roboclaw/Bus.h"
 #include "tests/support/HeapGrowth.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <random>
-
 using namespace hermes;
 using namespace hermes::simulator;
 using namespace hermes::roboclaw;

@@ -3,8 +3,6 @@
 #include "daemons/seriallogger/SerialMessages.h"
 #include "protocol/wire/Fields.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::seriallogger;
 

@@ -6,8 +6,6 @@
 #include "tests/support/FreePort.h"
 
 #include <QElapsedTimer>
-#include <QJsonArray>
-#include <QTemporaryDir>
 #include <QUdpSocket>
 #include <future>
 #include <sys/stat.h>

@@ -4,11 +4,7 @@
 #include "daemons/softwaretrigger/Schedule.h"
 #include "daemons/softwaretrigger/Watch.h"
 
-#include <QTemporaryDir>
 #include <QTimeZone>
-#include <QtTest>
-#include <cmath>
-#include <thread>
 
 using namespace hermes;
 using namespace hermes::softwaretrigger;

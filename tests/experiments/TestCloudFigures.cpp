@@ -5,8 +5,6 @@
 #include "vectorlib/experiments/MeanBand.h"
 #include "vectorlib/vectorization/FtlsVectorizer.h"
 
-#include <random>
-
 using namespace hermes::experiments;
 using Points = std::vector<vectorlib::Vector2D<double>>;
 

@@ -3,7 +3,6 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/experiments/report/ScanPair.h"
 
-#include <QJsonArray>
 #include <QXmlStreamReader>
 
 using namespace hermes;

@@ -4,7 +4,6 @@
 #include "vectorlib/geometry/Transformation2D.h"
 
 #include <QXmlStreamReader>
-#include <random>
 
 using vectorlib::Pose2D;
 using vectorlib::Transformation2D;

@@ -1,9 +1,6 @@
 #include "tests/gui/VectorProgram.h"
 
-#include <QJsonArray>
 #include <QXmlStreamReader>
-
-#include <random>
 
 /// hermes-vector match: scans of a room from two places, as points, as segments and against a map.
 class TestMatch : public QObject, protected TestFolder {

@@ -1,6 +1,5 @@
 #include "tests/gui/VectorProgram.h"
 
-#include <QJsonArray>
 #include <QXmlStreamReader>
 
 /// hermes-vector relocalize: the place of a scan in a map, its picture, and a scan out of a log.

@@ -5,9 +5,7 @@
 #include "protocol/wire/Fields.h"
 
 #include <QCborValue>
-#include <QtTest>
 
-#include <cmath>
 #include <limits>
 
 using namespace hermes;

@@ -4,8 +4,6 @@
 #include "protocol/nmea/SentenceParser.h"
 #include "tests/support/AllocationCounter.h"
 
-#include <QtTest>
-#include <cmath>
 #include <limits>
 
 using namespace hermes::nmea;

@@ -3,9 +3,6 @@
 #include "protocol/nmea/Vtg.h"
 #include "protocol/nmea/Zda.h"
 
-#include <QtTest>
-#include <cmath>
-
 using namespace hermes::nmea;
 
 namespace {

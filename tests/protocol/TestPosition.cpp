@@ -2,11 +2,7 @@
 #include "protocol/velodyne/PositionPacket.h"
 #include "tests/support/RealData.h"
 
-#include <QtTest>
-
-#include <cmath>
 #include <cstring>
-#include <random>
 
 using namespace hermes;
 using namespace hermes::velodyne;

@@ -1,10 +1,6 @@
 #include "protocol/roboclaw/Bus.h"
 #include "protocol/roboclaw/Packet.h"
 
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes::roboclaw;
 
 namespace {

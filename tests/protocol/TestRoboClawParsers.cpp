@@ -3,10 +3,6 @@
 #include "protocol/roboclaw/Packet.h"
 #include "protocol/roboclaw/Status.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace hermes::roboclaw;
 
 namespace {

@@ -1,8 +1,6 @@
 // The sensor tells the time within the hour; the hour comes from elsewhere.
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <QtTest>
-
 using namespace hermes::velodyne;
 
 namespace {

@@ -1,8 +1,6 @@
 #include "NmeaText.h"
 #include "protocol/nmea/SentenceParser.h"
 
-#include <QtTest>
-
 using namespace hermes::nmea;
 
 namespace {

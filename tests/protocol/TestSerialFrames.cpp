@@ -3,10 +3,6 @@
 #include "protocol/serial/Crc32c.h"
 #include "protocol/serial/Piece.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace hermes;
 
 namespace {

@@ -7,11 +7,7 @@
 #include "protocol/wire/JsonWriters.h"
 #include "protocol/wire/Outgoing.h"
 
-#include <QtTest>
-
-#include <cmath>
 #include <limits>
-#include <random>
 
 using namespace hermes;
 

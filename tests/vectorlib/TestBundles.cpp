@@ -3,10 +3,6 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
-#include <map>
-
 using namespace vectorlib;
 
 namespace {

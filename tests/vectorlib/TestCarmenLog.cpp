@@ -2,10 +2,6 @@
 
 #include <vectorlib/io/CarmenLog.h>
 
-#include <QtTest>
-
-#include <sstream>
-
 using namespace vectorlib;
 
 namespace {

@@ -5,10 +5,6 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
-#include <chrono>
-
 using namespace vectorlib;
 
 namespace {

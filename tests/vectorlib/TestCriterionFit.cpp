@@ -3,8 +3,6 @@
 #include <vectorlib/similarity/CriterionMinimizer.h>
 #include <vectorlib/similarity/NelderMeadFitter.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

@@ -1,9 +1,6 @@
 #include <vectorlib/edges/EdgeExtractor.h>
 
-#include <QtTest>
-
 #include <limits>
-#include <random>
 
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;

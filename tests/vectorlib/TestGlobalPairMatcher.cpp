@@ -2,11 +2,8 @@
 #include <vectorlib/simd/Lanes.h>
 
 #include "tests/support/AllocationCounter.h"
-#include "tests/support/Patience.h"
 #include "tests/vectorlib/RepeatingWorlds.h"
 #include "tests/vectorlib/ScanWorld.h"
-
-#include <QtTest>
 
 using namespace vectorlib;
 using Points = ScanWorld::Points;

@@ -2,8 +2,6 @@
 
 #include <vectorlib/similarity/HausdorffDistances.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

@@ -1,11 +1,6 @@
 #include <vectorlib/geometry/Angle.h>
 #include <vectorlib/tls/TlsFit.h>
 
-#include <QtTest>
-
-#include <random>
-#include <vector>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<double>>;
 

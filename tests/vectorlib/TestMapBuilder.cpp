@@ -1,10 +1,6 @@
 #include <vectorlib/mapping/MapBuilder.h>
 #include <vectorlib/motion/MotionModel.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

@@ -4,8 +4,6 @@
 
 #include "tests/vectorlib/ScanWorld.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
 
 namespace {

@@ -2,10 +2,7 @@
 
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
 #include <ctime>
-#include <random>
 
 using namespace vectorlib;
 

@@ -1,10 +1,6 @@
 #include "vectorlib/observation/Observer.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 
 namespace {

@@ -3,10 +3,6 @@
 #include <vectorlib/motion/MotionModel.h>
 #include <vectorlib/motion/OdometryBuffer.h>
 
-#include <QtTest>
-
-#include <cmath>
-
 using namespace vectorlib;
 using Outcome = OdometryBuffer::Outcome;
 

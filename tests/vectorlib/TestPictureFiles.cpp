@@ -3,14 +3,9 @@
 #include <vectorlib/io/Svg.h>
 #include <vectorlib/io/Tum.h>
 
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QJsonObject>
 #include <QXmlStreamReader>
-#include <QtTest>
 
 #include <limits>
-#include <sstream>
 
 using namespace vectorlib;
 

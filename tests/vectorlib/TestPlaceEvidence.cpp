@@ -6,8 +6,6 @@
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 
 namespace {

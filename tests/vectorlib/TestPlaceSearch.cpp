@@ -1,6 +1,5 @@
 // The search of a scan's place in a whole map.
 #include "PlaceCase.h"
-#include "tests/support/Patience.h"
 
 #include "tests/support/AllocationCounter.h"
 
@@ -10,7 +9,6 @@
 #include <vectorlib/places/PlaceSearch.h>
 
 #include <QElapsedTimer>
-#include <QtTest>
 
 #include <set>
 

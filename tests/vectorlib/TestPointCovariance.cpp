@@ -3,8 +3,6 @@
 #include "tests/vectorlib/ScanWorld.h"
 #include <vectorlib/observation/FloorPlan.h>
 
-#include <QtTest>
-
 #include <Eigen/LU>
 
 using namespace vectorlib;

@@ -1,11 +1,6 @@
 #include <vectorlib/graph/PoseGraph.h>
 #include <vectorlib/io/Tum.h>
 
-#include <QtTest>
-
-#include <random>
-#include <sstream>
-
 using namespace vectorlib;
 
 namespace {

@@ -3,8 +3,6 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/PublishedSearch.h"
 
-#include <QtTest>
-
 #include <limits>
 #include <set>
 

@@ -1,9 +1,5 @@
 #include <vectorlib/correspondence/QuadrangleMatcher.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 using Segments = std::vector<Segment>;

@@ -4,10 +4,6 @@
 #include <vectorlib/registration/LineSegmentRegistration.h>
 #include <vectorlib/registration/PointRefinement.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

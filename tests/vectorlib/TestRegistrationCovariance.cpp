@@ -1,9 +1,5 @@
 #include <vectorlib/registration/RegistrationCovariance.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

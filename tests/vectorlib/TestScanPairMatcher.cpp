@@ -4,8 +4,6 @@
 #include "tests/support/AllocationCounter.h"
 #include "tests/vectorlib/ScanWorld.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Points = ScanWorld::Points;
 

@@ -2,10 +2,7 @@
 #include <vectorlib/mapping/ScanTracker.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 
-#include <QtTest>
-
 #include <limits>
-#include <random>
 
 using namespace vectorlib;
 

@@ -2,8 +2,6 @@
 
 #include <vectorlib/similarity/EdgeSetComparator.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

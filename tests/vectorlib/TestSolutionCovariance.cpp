@@ -1,10 +1,6 @@
 #include <vectorlib/correspondence/CorrespondenceFinder.h>
 #include <vectorlib/correspondence/SearchResult.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 

@@ -3,11 +3,6 @@
 #include <vectorlib/io/MapCsv.h>
 #include <vectorlib/io/Pcd.h>
 
-#include <QtTest>
-
-#include <random>
-#include <sstream>
-
 using namespace vectorlib;
 
 namespace {

@@ -1,12 +1,5 @@
 #include <vectorlib/tls/TlsFit.h>
 
-#include "tests/support/Rows.h"
-
-#include <QtTest>
-
-#include <random>
-#include <vector>
-
 using namespace vectorlib;
 
 namespace {

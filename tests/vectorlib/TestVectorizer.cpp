@@ -2,10 +2,6 @@
 
 #include "tests/support/AllocationCounter.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
 

@@ -1,9 +1,5 @@
 #include "vectorlib/observation/Discrepancy.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 
 namespace {

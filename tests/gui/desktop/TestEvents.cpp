@@ -6,7 +6,6 @@
 #include "tests/support/ReleaseStop.h"
 
 #include <QCheckBox>
-#include <QLabel>
 #include <QSignalSpy>
 #include <QTreeView>
 

@@ -5,16 +5,9 @@
 #include <QAbstractItemView>
 #include <QAction>
 #include <QCheckBox>
-#include <QComboBox>
-#include <QDockWidget>
-#include <QLabel>
-#include <QLineEdit>
-#include <QPushButton>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QToolTip>
-#include <QTreeWidget>
-#include <QtTest>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -4,11 +4,9 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QComboBox>
 #include <QDirIterator>
 #include <QHeaderView>
 #include <QHelpEvent>
-#include <QLabel>
 #include <QLayout>
 #include <QRegularExpression>
 #include <QScrollArea>

@@ -3,7 +3,6 @@
 
 #include <QFileDialog>
 #include <atomic>
-#include <thread>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -3,7 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
 
-#include <QComboBox>
 #include <QDialog>
 #include <QFileDialog>
 #include <QMenu>
