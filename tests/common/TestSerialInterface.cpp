@@ -9,14 +9,6 @@
 
 using namespace hermes;
 
-namespace {
-
-InterfaceUrl urlOf(const QString &text) {
-    return *InterfaceUrl::parse(text);
-}
-
-} // namespace
-
 // A folder as sysfs has it, and a device that is a link to its port.
 static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseconds) {
     QVERIFY(QDir(system.path()).mkpath("class/tty/ttyUSB7/device"));
@@ -30,6 +22,9 @@ static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseco
 /// Serial lines on real pseudo-terminals.
 class TestSerialInterface : public QObject {
     Q_OBJECT
+
+    static InterfaceUrl urlOf(const QString &text) { return *InterfaceUrl::parse(text); }
+
 private Q_SLOTS:
     void latencyOfAnAdapterIsLowered() {
         const QTemporaryDir system;

@@ -7,9 +7,7 @@
 
 using namespace hermes;
 
-namespace {
-
-QJsonObject usual() {
+static QJsonObject usual() {
     return {{"format", Sidecar::format},
             {"start", 1000.5},
             {"end", 1003},
@@ -19,13 +17,11 @@ QJsonObject usual() {
             {"files", QJsonArray{QJsonObject{{"name", "logger-0001.pcap"}}, QJsonObject{{"name", "b"}}}}};
 }
 
-QJsonObject with(const char *member, const QJsonValue &value) {
+static QJsonObject with(const char *member, const QJsonValue &value) {
     QJsonObject content = usual();
     content.insert(member, value);
     return content;
 }
-
-} // namespace
 
 /// Recordings that are found to be replayed, and sidecars that somebody has edited.
 class TestStoredRecording : public QObject {

@@ -6,15 +6,11 @@
 #include <list>
 
 namespace hermes {
-namespace {
-
-void spend(double duration_s) {
+static void spend(double duration_s) {
     const double end = monotonicNow() + duration_s;
     while (monotonicNow() < end) {
     }
 }
-
-} // namespace
 
 class TestTurns : public QObject {
     Q_OBJECT

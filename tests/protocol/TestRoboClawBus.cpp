@@ -3,54 +3,51 @@
 
 using namespace hermes::roboclaw;
 
-namespace {
-
-/// A bus and what it did, on a clock of the test's own.
-struct Line {
-    explicit Line(const Bus::Options &options = {})
-        : bus(options) {}
-
-    Bus bus;
-    double now = 0;
-    std::vector<std::string> ended; ///< "COMMAND result attempts"
-    std::vector<int> sent;          ///< commands
-
-    bool submit(Command command, const Values &values = {}, Bus::Urgency urgency = Bus::Urgency::Normal,
-                std::uint8_t address = 0x80) {
-        const auto handler = [this](const Request &request, const Bus::Outcome &outcome) {
-            static const char *const results[] = {"done",       "timed out", "bad CRC",
-                                                  "unexpected", "cancelled", "line closed"};
-            ended.push_back(std::to_string(int(request.command)) + ' ' + results[int(outcome.result)] + ' ' +
-                            std::to_string(outcome.attempts));
-        };
-        return bus.submit(*Request::make(address, command, values), handler, urgency);
-    }
-    bool poll() {
-        const Bytes *bytes = bus.poll(now);
-        if (bytes)
-            sent.push_back((*bytes)[1]);
-        return bytes;
-    }
-    /// Lets time pass without an answer until something is sent again, or nothing is left to do.
-    bool pollLater() {
-        while (std::isfinite(bus.deadline())) {
-            now = std::max(now, bus.deadline()) + 1e-9;
-            if (poll())
-                return true;
-        }
-        return false;
-    }
-    void feed(const QByteArray &hex) {
-        const QByteArray bytes = QByteArray::fromHex(hex);
-        bus.feed(reinterpret_cast<const std::uint8_t *>(bytes.data()), std::size_t(bytes.size()), now);
-    }
-    std::string last() const { return ended.empty() ? "nothing" : ended.back(); }
-};
-
-} // namespace
-
 class TestRoboClawBus : public QObject {
     Q_OBJECT
+
+    /// A bus and what it did, on a clock of the test's own.
+    struct Line {
+        explicit Line(const Bus::Options &options = {})
+            : bus(options) {}
+
+        Bus bus;
+        double now = 0;
+        std::vector<std::string> ended; ///< "COMMAND result attempts"
+        std::vector<int> sent;          ///< commands
+
+        bool submit(Command command, const Values &values = {}, Bus::Urgency urgency = Bus::Urgency::Normal,
+                    std::uint8_t address = 0x80) {
+            const auto handler = [this](const Request &request, const Bus::Outcome &outcome) {
+                static const char *const results[] = {"done",       "timed out", "bad CRC",
+                                                      "unexpected", "cancelled", "line closed"};
+                ended.push_back(std::to_string(int(request.command)) + ' ' + results[int(outcome.result)] +
+                                ' ' + std::to_string(outcome.attempts));
+            };
+            return bus.submit(*Request::make(address, command, values), handler, urgency);
+        }
+        bool poll() {
+            const Bytes *bytes = bus.poll(now);
+            if (bytes)
+                sent.push_back((*bytes)[1]);
+            return bytes;
+        }
+        /// Lets time pass without an answer until something is sent again, or nothing is left to do.
+        bool pollLater() {
+            while (std::isfinite(bus.deadline())) {
+                now = std::max(now, bus.deadline()) + 1e-9;
+                if (poll())
+                    return true;
+            }
+            return false;
+        }
+        void feed(const QByteArray &hex) {
+            const QByteArray bytes = QByteArray::fromHex(hex);
+            bus.feed(reinterpret_cast<const std::uint8_t *>(bytes.data()), std::size_t(bytes.size()), now);
+        }
+        std::string last() const { return ended.empty() ? "nothing" : ended.back(); }
+    };
+
 private Q_SLOTS:
     void sendsOneAfterTheOther() {
         Line line;

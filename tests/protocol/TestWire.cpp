@@ -67,9 +67,7 @@ const Fields<Sample> &fieldsOf(Of<Sample>) {
 
 } // namespace hermes
 
-namespace {
-
-QJsonObject sampleJson() {
+static QJsonObject sampleJson() {
     return {{"name", "a\"\n\u00e4"},
             {"on", true},
             {"inner", QJsonObject{{"length", 1.5}, {"count", 2}}},
@@ -81,8 +79,6 @@ QJsonObject sampleJson() {
             {"open", QJsonArray{1, "x", QJsonValue::Null}},
             {"small", 255}};
 }
-
-} // namespace
 
 /// No schema without the names of its members, but those declared open.
 static void requireClosed(const QJsonObject &schema, const QString &path) {

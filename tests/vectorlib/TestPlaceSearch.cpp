@@ -15,19 +15,15 @@
 using namespace vectorlib;
 using Outcome = Relocalized::Outcome;
 
-namespace {
-
-// As long as a sanitizer or a busy machine may take.
-constexpr int muchTooLongMs = 60000;
-
-} // namespace
-
 Q_DECLARE_METATYPE(Points)
 Q_DECLARE_METATYPE(Walls)
 Q_DECLARE_METATYPE(vectorlib::Relocalized::Outcome)
 
 class TestPlaceSearch : public QObject {
     Q_OBJECT
+
+    // As long as a sanitizer or a busy machine may take.
+    static constexpr int muchTooLongMs = 60000;
 
 private Q_SLOTS:
     void init() {
