@@ -37,6 +37,11 @@ bool SensorChoice::takes(const Datagram &packet) {
     return true;
 }
 
+bool SensorChoice::isFromTaken(const Datagram &datagram) const {
+    const Sensor *const sensor = taken();
+    return datagram.source == (sensor ? sensor->address : options_.address.value_or(datagram.source));
+}
+
 bool SensorChoice::mayTake(const Datagram &datagram) const {
     return isWanted(datagram) && (!taken_ || isOf(sensors_[*taken_], datagram));
 }

@@ -43,10 +43,7 @@ public:
     /// Whether any other datagram can be of that sensor, as far as addresses and ports tell.
     bool mayTake(const Datagram &datagram) const;
     /// Whether it comes from the address of that sensor; as long as there is none, whether it may.
-    bool isFromTaken(const Datagram &datagram) const {
-        return (taken_ ? sensors_[*taken_].address : options_.address.value_or(datagram.source)) ==
-               datagram.source;
-    }
+    bool isFromTaken(const Datagram &datagram) const;
     /// The packets that follow are of another time.
     void jump() { lastTaken_ns_.reset(); }
 

@@ -17,6 +17,14 @@ Result<void> SavedFile::commit() {
     return QSaveFile::commit() ? Result<void>() : failure();
 }
 
+// A disk with too little room takes a part, without an error: that comes with the rest.
+qint64 SavedFile::writeData(const char *data, qint64 size) {
+    qint64 done = 0, more = 1;
+    for (; done < size && more > 0; done += std::max<qint64>(0, more))
+        more = QSaveFile::writeData(data + done, size - done);
+    return more < 0 ? -1 : done;
+}
+
 Error SavedFile::failure() const {
     return Error(ErrorCode::InputOutput,
                  QStringLiteral("%1: cannot be written: %2")

@@ -17,6 +17,9 @@ public:
     Result<void> sync();
     Result<void> commit();
 
+protected:
+    qint64 writeData(const char *data, qint64 size) override;
+
 private:
     Error failure() const;
 };

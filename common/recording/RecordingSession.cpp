@@ -89,15 +89,15 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     plan_ = {*folder, options.logger, options.fileBytes, options.fileSeconds};
     session_ =
         session.session.isEmpty() ? QUuid::createUuid().toString(QUuid::WithoutBraces) : session.session;
-    const double stamp = stampNow();
+    const Moment now = Moment::now();
     head_ = {{"format", Sidecar::format},
              {"logger", options.logger},
              {"name", session.name},
              {"session", session_},
              {"host", QSysInfo::machineHostName()},
-             {"start", stamp},
-             {"start_utc", toUtc(stamp)},
-             {"start_mono", monotonicNow()},
+             {"start", now.stamp()},
+             {"start_utc", toUtc(now.stamp())},
+             {"start_mono", now.mono()},
              {"boot", bootIdentity()},
              {"settings", options.settings}};
     const auto refused = [&](const Error &error) {
@@ -167,11 +167,11 @@ Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Erro
         if (!fine && !broken)
             broken = fine.error();
     const std::optional<Error> failure = error ? error : broken;
-    const double stamp = stampNow();
+    const Moment now = Moment::now();
     QJsonObject content = describe();
-    content.insert("end", stamp);
-    content.insert("end_utc", toUtc(stamp));
-    content.insert("end_mono", monotonicNow());
+    content.insert("end", now.stamp());
+    content.insert("end_utc", toUtc(now.stamp()));
+    content.insert("end_mono", now.mono());
     content.insert("ended", toText(broken ? RecordingEnd::Failed : end));
     content.insert("complete", !broken);
     if (failure)

@@ -134,7 +134,7 @@ void DriveLoop::report() {
         telemetry.controllers[i].strayBytes = line.strayBytes();
         telemetry.controllers[i].advice = lineOf_[i]->advice();
     }
-    telemetry.stamp = stampNow() - (monotonicNow() - telemetry.mono);
+    telemetry.stamp = Moment::ofMono(telemetry.mono).stamp();
     telemetry.cycle = timer_.statistics();
     telemetry.unread += !mail_.reports.post(telemetry);
 }

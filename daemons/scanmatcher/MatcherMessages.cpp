@@ -111,7 +111,8 @@ const Fields<OdometryState> &fieldsOf(Of<OdometryState>) {
             .add("restarts", &S::restarts, "Times it began anew: a reset, or a gap")
             .add("dropped", &S::dropped, "By the source, as this daemon read too slowly")
             .add("unknown_fields", &S::unknownFields, "Members of messages that this program does not know")
-            .add("scans_without", &S::scansWithout, "Scans that found no odometry of their time");
+            .add("scans_without", &S::scansWithout, "Scans that found no odometry of their time")
+            .add("contradicted", &S::contradicted, "Pieces of way of which the scans show another");
     return fields;
 }
 

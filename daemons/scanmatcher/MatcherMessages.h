@@ -34,6 +34,7 @@ struct OdometryState {
     bool connected = false;
     quint64 messages = 0, refused = 0, outOfOrder = 0, restarts = 0, dropped = 0, unknownFields = 0;
     quint64 scansWithout = 0;
+    quint64 contradicted = 0;
 };
 
 /// What matcher.state gives.

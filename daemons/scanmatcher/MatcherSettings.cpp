@@ -46,6 +46,12 @@ void ScanMatcher::declareSettings() {
                    .byDefault("")
                    .group("Odometry"));
     addSetting(Field::text("odometry.topic", "Its topic").byDefault("odometry").group("Odometry"));
+    addSetting(
+        Field::boolean("odometry.stop",
+                       "Send motor.stop to this daemon when the scans contradict its odometry, as wheels "
+                       "that turn on the spot make them")
+            .byDefault(true)
+            .group("Odometry"));
     const auto sensor = [this](const char *name, const char *text, const char *unit) {
         addSetting(Field::number(name, text).unit(unit).range(-100, 100).byDefault(0).group("Odometry"));
     };

@@ -83,8 +83,33 @@ std::optional<OdometryTrack> OdometrySource::over(double begin, double end) {
     return track;
 }
 
+void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool stops) {
+    const auto text = [](const vectorlib::Pose2D &way) {
+        return QString("%1 m and %2 degrees")
+            .arg(std::hypot(way.x, way.y), 0, 'f', 2)
+            .arg(way.theta * 180 / vectorlib::pi, 0, 'f', 0);
+    };
+    ++contradicted_;
+    contradiction_ =
+        QString("the scans contradict the odometry: it tells of %1 in %2 s, they show %3; the wheels "
+                "turn on the spot, or the scans are not this robot's")
+            .arg(text(ways.odometry))
+            .arg(ways.seconds, 0, 'f', 1)
+            .arg(text(ways.scans));
+    logWarning("odometry", contradiction_);
+    if (stops && client_.isConnected())
+        client_.call("motor.stop",
+                     QJsonObject{{"client", "scanmatcher, as the scans contradict the odometry"}},
+                     [](const auto &answer) {
+                         if (!answer)
+                             logError("odometry", "motor.stop: " + answer.error().message);
+                     });
+}
+
 QString OdometrySource::pastText() const {
     QString text;
+    if (contradicted_ > 0)
+        text += "; " + contradiction_;
     if (refused_ > 0)
         text += QString("; refused %1 messages, the last: %2").arg(refused_).arg(lastRefused_);
     if (dropped_ > 0)
@@ -111,12 +136,13 @@ void OdometrySource::report(Health &health) {
                                        "expected from the scans alone")
                                    .arg(withoutInARow_));
     else
-        set(faults_.level(double(refused_ + dropped_)), "connected to " + address_ + pastText());
+        set(faults_.level(double(refused_ + dropped_ + contradicted_)),
+            "connected to " + address_ + pastText());
 }
 
 OdometryState OdometrySource::state() const {
-    return {client_.isConnected(), messages_, refused_, outOfOrder_, restarts_, dropped_, unknown_,
-            scansWithout_};
+    return {client_.isConnected(), messages_,    refused_, outOfOrder_, restarts_, dropped_, unknown_,
+            scansWithout_,         contradicted_};
 }
 
 } // namespace hermes::scanmatcher

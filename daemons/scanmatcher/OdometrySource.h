@@ -19,9 +19,12 @@ public:
 
     /// What is known from begin to end, seconds since the Unix epoch.
     std::optional<vectorlib::OdometryTrack> over(double begin, double end);
+    /// The scans show another way of the robot: tells it, and stops whoever drives.
+    void contradict(const vectorlib::OdometryCheck::Ways &ways, bool stops);
     /// Sets the health item `odometry`, or removes it when there is no source.
     void report(Health &health);
-    /// Counts: {connected, messages, refused, out_of_order, restarts, dropped, scans_without}.
+    /// Counts: {connected, messages, refused, out_of_order, restarts, dropped, scans_without,
+    /// contradicted}.
     OdometryState state() const;
     /// For its signals.
     const Client &client() const { return client_; }
@@ -38,8 +41,9 @@ private:
     vectorlib::OdometryBuffer buffer_;
     QString lastRefused_;
     PastFaults faults_;
+    QString contradiction_; // the last
     quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0,
-            unknown_ = 0;
+            contradicted_ = 0, unknown_ = 0;
     int withoutInARow_ = 0;
 };
 

@@ -253,11 +253,14 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &sc
     o.outcome = tracker.builder.report().outcome;
     o.points = scan.data.points.size();
     o.counts = tracker.counts();
+    o.contradiction = tracker.contradiction();
     o.changes = takeChanges(tracker.builder.map);
     return o;
 }
 
 void ScanMatcher::show(const Outcome &o) {
+    if (o.contradiction && o.counts.contradicted > counts_.contradicted)
+        odometry_.contradict(*o.contradiction, !replayed_ && settings().flag("odometry.stop"));
     counts_ = o.counts;
     lostInARow_ = o.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
     if (lostInARow_ == 0)

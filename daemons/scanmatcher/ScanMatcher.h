@@ -36,7 +36,8 @@ private:
         MapChanges changes;
         vectorlib::ScanTrackerCounts counts;
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
-        std::size_t points = 0;                         ///< of the scan
+        std::size_t points = 0; ///< of the scan
+        std::optional<vectorlib::OdometryCheck::Ways> contradiction;
         std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
     };
 

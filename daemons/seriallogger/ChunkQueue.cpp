@@ -30,7 +30,7 @@ void ChunkQueue::close() {
     open_ = false;
 }
 
-bool ChunkQueue::push(const char *bytes, std::size_t size, const Arrival &arrival) {
+bool ChunkQueue::push(const char *bytes, std::size_t size, const Moment &arrival) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!open_ || size == 0)
         return false;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/Arrival.h"
+#include "common/Time.h"
 
 #include <cstddef>
 #include <mutex>
@@ -11,7 +11,7 @@ namespace hermes::seriallogger {
 /// Bytes that came in together, in the order of their arrival.
 struct ChunkBatch {
     struct Chunk {
-        Arrival arrival;
+        Moment arrival;
         std::size_t size = 0;         ///< bytes
         std::uint64_t lostBefore = 0; ///< bytes dropped just before it
         bool isJump = false;          ///< it does not follow the chunk before: a replay was sought
@@ -36,7 +36,7 @@ public:
     void close();
 
     /// True when the queue was empty before.
-    bool push(const char *bytes, std::size_t size, const Arrival &arrival);
+    bool push(const char *bytes, std::size_t size, const Moment &arrival);
     /// The next chunk does not follow the last one.
     void jump();
     /// Whether a chunk of this size would be taken.

@@ -4,12 +4,12 @@
 
 namespace hermes::seriallogger {
 
-void FixCalendar::set(const nmea::Date &date, const nmea::UtcTime &time, const Arrival &arrival) {
+void FixCalendar::set(const nmea::Date &date, const nmea::UtcTime &time, const Moment &arrival) {
     stamp_ = nmea::toStamp(date, time);
     mono_ns_ = arrival.mono_ns;
 }
 
-std::optional<double> FixCalendar::stampOf(const nmea::UtcTime &time, const Arrival &arrival) {
+std::optional<double> FixCalendar::stampOf(const nmea::UtcTime &time, const Moment &arrival) {
     constexpr double day = 86400;
     if (!stamp_)
         return std::nullopt;

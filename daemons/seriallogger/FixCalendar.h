@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/Arrival.h"
+#include "common/Time.h"
 #include "protocol/nmea/UtcTime.h"
 
 namespace hermes::seriallogger {
@@ -10,11 +10,11 @@ namespace hermes::seriallogger {
 class FixCalendar {
 public:
     /// A sentence that arrived then told the date.
-    void set(const nmea::Date &date, const nmea::UtcTime &time, const Arrival &arrival);
+    void set(const nmea::Date &date, const nmea::UtcTime &time, const Moment &arrival);
     bool isSet() const { return stamp_.has_value(); }
     /// Seconds since the Unix epoch of a time that arrived then, of the day that brings it nearest to the one
     /// expected; it is remembered. Nothing before a date was told.
-    std::optional<double> stampOf(const nmea::UtcTime &time, const Arrival &arrival);
+    std::optional<double> stampOf(const nmea::UtcTime &time, const Moment &arrival);
 
 private:
     std::optional<double> stamp_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/Arrival.h"
+#include "common/Time.h"
 #include "daemons/seriallogger/FixReport.h"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace hermes::seriallogger {
 
 /// What a GPS receiver said about one moment, in all its sentences; what it does not know is empty.
 struct Fix {
-    Arrival arrival;            ///< of the first byte of the first sentence
+    Moment arrival;             ///< of the first byte of the first sentence
     std::optional<double> time; ///< seconds since the epoch of the fix itself, by the satellites
     bool valid = false;         ///< the receiver vouches for it, in each sentence that says so or not
     std::optional<nmea::Position> position;
@@ -31,7 +31,7 @@ public:
     static constexpr unsigned Position = 1, Quality = 2, Motion = 4, Date = 8, allParts = 15;
 
     /// arrival: of the first byte of its first sentence.
-    explicit FixEpoch(const Arrival &arrival)
+    explicit FixEpoch(const Moment &arrival)
         : arrival_(arrival) {}
 
     /// address: talker and type, "GPRMC".
@@ -47,14 +47,14 @@ public:
     /// One sentence vouches for the position, another does not.
     bool isContradictory() const;
 
-    const Arrival &arrival() const { return arrival_; }
+    const Moment &arrival() const { return arrival_; }
     const std::optional<nmea::UtcTime> &timeOfDay() const { return time_; }
     const std::optional<nmea::Date> &date() const { return date_; }
     /// All but the time.
     Fix fix() const;
 
 private:
-    const Arrival arrival_;
+    const Moment arrival_;
     std::vector<std::string> addresses_;
     std::array<std::optional<FixReport>, FixReport::kinds> reports_;
     std::optional<nmea::UtcTime> time_;

@@ -23,7 +23,7 @@ bool isSame(const std::optional<nmea::UtcTime> &a, const std::optional<nmea::Utc
 
 } // namespace
 
-void FixTracker::feed(std::string_view bytes, const Arrival &arrival, const Sink &sink) {
+void FixTracker::feed(std::string_view bytes, const Moment &arrival, const Sink &sink) {
     if (last_ && arrival.mono_ns - last_->mono_ns >= pause_ns())
         paused_ = true;
     last_ = arrival;

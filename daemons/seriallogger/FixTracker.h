@@ -25,7 +25,7 @@ public:
     explicit FixTracker(nmea::ChecksumRule rule)
         : parser_(rule) {}
 
-    void feed(std::string_view bytes, const Arrival &arrival, const Sink &sink);
+    void feed(std::string_view bytes, const Moment &arrival, const Sink &sink);
     /// Until when to wait for more bytes before the fix begun is given by pause(); nothing when none waits.
     std::optional<std::int64_t> waitUntilMono_ns() const;
     /// Nothing more came, or nothing more will: gives the fix begun.
@@ -53,9 +53,9 @@ private:
     std::int64_t pause_ns() const;
 
     nmea::SentenceParser parser_;
-    Arrival sentenceArrival_;
-    std::optional<Arrival> last_; ///< of the last bytes
-    bool paused_ = true;          ///< since the last sentence of an epoch
+    Moment sentenceArrival_;
+    std::optional<Moment> last_; ///< of the last bytes
+    bool paused_ = true;         ///< since the last sentence of an epoch
     std::optional<FixEpoch> epoch_;
     bool given_ = false;
     std::optional<nmea::UtcTime> before_; ///< time of the epoch before

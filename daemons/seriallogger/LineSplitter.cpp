@@ -2,7 +2,7 @@
 
 namespace hermes::seriallogger {
 
-void LineSplitter::feed(std::string_view bytes, const Arrival &arrival, const Sink &sink) {
+void LineSplitter::feed(std::string_view bytes, const Moment &arrival, const Sink &sink) {
     for (const char byte : bytes) {
         if (byte == '\n' || byte == '\r') {
             emitLine(false, sink);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/Arrival.h"
+#include "common/Time.h"
 
 #include <cstddef>
 #include <functional>
@@ -15,14 +15,14 @@ public:
     static constexpr std::size_t longest = 1024; ///< bytes; what is longer comes in pieces
 
     struct Line {
-        Arrival arrival;          ///< of its first byte
+        Moment arrival;           ///< of its first byte
         std::uint64_t offset = 0; ///< of its first byte in the stream
         std::string_view bytes;   ///< without its end; until the next feed()
         bool cut = false;         ///< more of the same line follows
     };
     using Sink = std::function<void(const Line &)>;
 
-    void feed(std::string_view bytes, const Arrival &arrival, const Sink &sink);
+    void feed(std::string_view bytes, const Moment &arrival, const Sink &sink);
     /// Gives what has no end yet as a line.
     void finish(const Sink &sink);
     /// Bytes are missing here: what was begun is given as a line that is cut.
@@ -32,7 +32,7 @@ private:
     void emitLine(bool cut, const Sink &sink);
 
     std::string line_;
-    Arrival arrival_;
+    Moment arrival_;
     std::uint64_t begin_ = 0, offset_ = 0;
 };
 

@@ -20,8 +20,8 @@ public:
     quint64 bytes() const { return raw_.size(); }
     quint64 chunks() const;
     /// Of the first chunk.
-    const std::optional<Arrival> &first() const { return first_; }
-    const std::optional<Arrival> &last() const { return last_; }
+    const std::optional<Moment> &first() const { return first_; }
+    const std::optional<Moment> &last() const { return last_; }
     const QString &path() const { return raw_.path(); }
     /// What failed, and the path of the file that did.
     const QString &error() const { return error_; }
@@ -32,7 +32,7 @@ private:
 
     AppendFile raw_, index_;
     std::vector<unsigned char> records_; ///< of the batch being written
-    std::optional<Arrival> first_, last_;
+    std::optional<Moment> first_, last_;
     QString error_, failedPath_;
 };
 

@@ -63,7 +63,7 @@ void PortThread::run() {
 }
 
 void PortThread::received(const QByteArray &bytes) {
-    const Arrival now = Arrival::now();
+    const Moment now = Moment::now();
     const auto size = std::size_t(bytes.size());
     recording_.push(bytes.constData(), size, now);
     if (view_.push(bytes.constData(), size, now))

@@ -22,7 +22,7 @@ public:
         InterfaceCounters counters;
         QMap<QString, quint64> systemErrors; ///< since the start, over all openings
         Interface::Strangers strangers;
-        std::optional<Arrival> last; ///< bytes
+        std::optional<Moment> last; ///< bytes
     };
     /// What happened to the port, in its thread: "opened", "closed" {reason}, "errors" {kind: count}.
     using Note = std::function<void(const QString &event, const QJsonObject &details)>;

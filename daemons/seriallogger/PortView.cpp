@@ -28,7 +28,7 @@ std::optional<int> PortView::settle(const Sinks &sinks) {
     const std::optional<std::int64_t> until_ns = fixes_.waitUntilMono_ns();
     if (!until_ns)
         return std::nullopt;
-    const std::int64_t left_ns = *until_ns - Arrival::now().mono_ns;
+    const std::int64_t left_ns = *until_ns - Moment::now().mono_ns;
     if (left_ns > 0)
         return int(left_ns / 1000000) + 1;
     fixes_.pause(fixSink(sinks));

@@ -24,7 +24,7 @@ QByteArray seconds(std::int64_t ns) {
            QByteArray::number(size % 1000000000).rightJustified(9, '0');
 }
 
-QByteArray times(const Arrival &arrival) {
+QByteArray times(const Moment &arrival) {
     return seconds(arrival.stamp_ns) + ',' + seconds(arrival.mono_ns);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/Arrival.h"
+#include "common/Time.h"
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ constexpr std::array<unsigned char, headerSize> header = {'H', 'E', 'R', 'M', 'E
 /// Little endian on the disk, each 8 bytes: offset of the first byte, stamp_ns, mono_ns.
 struct Record {
     std::uint64_t offset = 0;
-    Arrival arrival;
+    Moment arrival;
 };
 constexpr std::size_t recordSize = 24;
 

@@ -14,7 +14,7 @@ class SerialLogReader {
 public:
     struct Piece {
         quint64 offset = 0; ///< of its first byte
-        Arrival arrival;
+        Moment arrival;
         QByteArray bytes;
     };
     static constexpr qint64 mostBytes = 1 << 16; ///< of a piece; longer chunks come in several

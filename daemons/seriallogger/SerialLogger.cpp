@@ -102,7 +102,7 @@ Error SerialLogger::noSuchPort(const QString &name) const {
 }
 
 Result<QJsonValue> SerialLogger::mark(const Call &call) {
-    const Arrival now = Arrival::now();
+    const Moment now = Moment::now();
     if (!recorder_.note("mark", {{"text", call.text("text")}}, now))
         return Error(ErrorCode::NotReady, "nothing is being recorded, or the disk does not keep up; "
                                           "record.start begins");

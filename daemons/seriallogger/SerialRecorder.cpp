@@ -68,11 +68,11 @@ void SerialRecorder::end() {
     eventFile_.close();
 }
 
-bool SerialRecorder::note(const QString &event, const QJsonObject &details, const Arrival &when) {
+bool SerialRecorder::note(const QString &event, const QJsonObject &details, const Moment &when) {
     return addEvent(event, details, when, false);
 }
 
-bool SerialRecorder::addEvent(const QString &event, QJsonObject line, const Arrival &when, bool atEnd) {
+bool SerialRecorder::addEvent(const QString &event, QJsonObject line, const Moment &when, bool atEnd) {
     line.insert("event", event);
     line.insert("stamp", when.stamp());
     line.insert("mono", when.mono());
@@ -130,7 +130,7 @@ bool SerialRecorder::writePorts() {
 }
 
 void SerialRecorder::noteLosses(const Entry &entry, quint64 begin) {
-    const auto tell = [&](quint64 offset, quint64 bytes, const Arrival &when) {
+    const auto tell = [&](quint64 offset, quint64 bytes, const Moment &when) {
         addEvent("lost", {{"port", entry.port.name}, {"offset", double(offset)}, {"bytes", double(bytes)}},
                  when, true);
     };
@@ -141,7 +141,7 @@ void SerialRecorder::noteLosses(const Entry &entry, quint64 begin) {
         offset += chunk.size;
     }
     if (entry.batch.lostAtEnd > 0)
-        tell(offset, entry.batch.lostAtEnd, Arrival::now());
+        tell(offset, entry.batch.lostAtEnd, Moment::now());
 }
 
 bool SerialRecorder::writeEvents() {

@@ -29,7 +29,7 @@ public:
     Result<void> repair(const RecordingPlan &plan, QJsonObject &sidecar) override;
 
     /// Adds {stamp, mono, event, ...details} to the events; false when nothing is being recorded. Any thread.
-    bool note(const QString &event, const QJsonObject &details, const Arrival &when = Arrival::now());
+    bool note(const QString &event, const QJsonObject &details, const Moment &when = Moment::now());
 
 private:
     struct Entry {
@@ -38,14 +38,14 @@ private:
         ChunkBatch batch;
         // Copies for state(), guarded by the mutex:
         quint64 bytes = 0, chunks = 0;
-        std::optional<Arrival> first, last;
+        std::optional<Moment> first, last;
     };
 
     std::optional<Error> openFiles(const RecordingPlan &plan);
     void run();
     bool writePorts();
     bool writeEvents();
-    bool addEvent(const QString &event, QJsonObject line, const Arrival &when, bool atEnd);
+    bool addEvent(const QString &event, QJsonObject line, const Moment &when, bool atEnd);
     void noteLosses(const Entry &entry, quint64 begin);
     void publish();
     bool fail(const QString &message, const QString &path);

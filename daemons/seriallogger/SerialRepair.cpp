@@ -18,7 +18,7 @@ namespace {
 /// What a repaired port holds.
 struct Contents {
     double bytes = 0, chunks = 0;
-    std::optional<Arrival> first, last;
+    std::optional<Moment> first, last;
 };
 
 Error failed(const QFile &file) {

@@ -81,8 +81,9 @@ void TriggerEngine::fire(Trigger &trigger, const Occasion &occasion, const Ended
     QString &cause = firing->occasion.cause.kind;
     if (cause.isEmpty()) // trigger.fire has one of its own
         cause = kind;
-    firing->stamp = stampNow();
-    firing->mono = monotonicNow();
+    const Moment now = Moment::now();
+    firing->stamp = now.stamp();
+    firing->mono = now.mono();
     firing->ended = ended;
     firing->results.resize(trigger.definition.actions.size());
     trigger.missed += occasion.missed;

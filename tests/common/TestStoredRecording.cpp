@@ -1,3 +1,4 @@
+#include "common/Time.h"
 #include "common/recording/Sidecar.h"
 #include "common/recording/StoredRecording.h"
 
@@ -43,6 +44,15 @@ private Q_SLOTS:
         QCOMPARE(*found->files(),
                  QStringList({folder_.filePath("run/logger-0001.pcap"), folder_.filePath("run/b")}));
         QVERIFY(find(with("files", QJsonArray()))->files()->isEmpty());
+    }
+
+    void aMomentIsTheSameByBothClocks() {
+        const double stamp = stampNow(), mono = monotonicNow();
+        const Moment hourAgo = Moment::ofMono(mono - 3600), now = Moment::now();
+        const double meanwhile_s = monotonicNow() - mono;
+        QCOMPARE(hourAgo.mono_ns, std::int64_t((mono - 3600) * 1e9));
+        QVERIFY(std::abs(hourAgo.stamp() + 3600 - stamp) <= meanwhile_s + 1e-3);
+        QVERIFY(std::abs((now.stamp() - stamp) - (now.mono() - mono)) <= meanwhile_s + 1e-3);
     }
 
     void lengths_data() {

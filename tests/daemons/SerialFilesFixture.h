@@ -13,15 +13,15 @@ namespace hermes {
 
 using namespace seriallogger;
 
-inline const Arrival first{1700000000000000000, 5000000000};
+inline const Moment first{1700000000000000000, 5000000000};
 
 /// So many seconds after the first arrival; the stamp's clock may step on its own.
-inline Arrival after(double seconds, double step_s = 0) {
+inline Moment after(double seconds, double step_s = 0) {
     return {first.stamp_ns + std::int64_t((seconds + step_s) * 1e9),
             first.mono_ns + std::int64_t(seconds * 1e9)};
 }
 
-inline void push(ChunkQueue &queue, const QByteArray &bytes, const Arrival &arrival) {
+inline void push(ChunkQueue &queue, const QByteArray &bytes, const Moment &arrival) {
     queue.push(bytes.constData(), std::size_t(bytes.size()), arrival);
 }
 

@@ -150,7 +150,7 @@ private:
         if (isLidar_)
             lidar_.push(sensorDatagram(sensor_.packet(number), sensor_.stamp(number)), false);
         else
-            queue_.push("0123456789", 10, Arrival::now());
+            queue_.push("0123456789", 10, Moment::now());
     }
     /// Which file the n-th is in, and how long the file is with it.
     std::pair<QString, std::int64_t> placeOf(std::size_t n) const {

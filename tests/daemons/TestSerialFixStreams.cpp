@@ -8,8 +8,8 @@ namespace {
 constexpr double day_s = 1893456000; // 2030-01-01
 constexpr double knot = 1852.0 / 3600;
 
-/// A moment as it was, and what of it reached the logger.
-struct Moment {
+/// What was true at a moment, and what of it reached the logger.
+struct Truth {
     double time = 0;
     bool hasFix = true;
     int latitude = 0, longitude = 0; // 0.0001 minutes
@@ -41,7 +41,7 @@ public:
             drawMoment(i);
     }
 
-    QList<Moment> moments;
+    QList<Truth> moments;
     QList<Part> parts;
     bool isLossless() const { return loss_ == 0; }
     int damaged = 0, wrong = 0, whole = 0;
@@ -160,9 +160,9 @@ private:
         if (chance(0.03))
             steps = pick({2, 17, rate_hz_ * 3600});
         else if (number > 5 && pauses_ && chance(0.03))
-            // Its clock is set right. Where no pause is seen, a time told again soon would pass for a
-            // repetition.
-            steps = rate_hz_ > 10 ? -7 * rate_hz_ : !isLossless() ? -7 : pick({-1, -7});
+            // Its clock is set right. Where no pause is seen, or all between was lost, a time told again soon
+            // would pass for a repetition.
+            steps = rate_hz_ > 10 || !isLossless() ? -7 * rate_hz_ : pick({-1, -7});
         moment_.time = std::round((moment_.time + double(steps) / rate_hz_) * 1000) / 1000;
         moment_.hasFix = moment_.hasFix ? !chance(0.05) : chance(0.3);
         moment_.latitude += number % 2 ? -1234 : 1233;
@@ -193,7 +193,7 @@ private:
     double loss_ = 0; ///< share of the sentences
     int decimals_ = 0;
     QByteArrayList order_;
-    Moment moment_;
+    Truth moment_;
 };
 
 NmeaStream played(const DrawnStream &drawn, bool live) {
@@ -238,7 +238,7 @@ private:
         quint64 lacking = 0;
         int next = 0;
         bool dateKnown = false;
-        for (const Moment &moment : drawn.moments) {
+        for (const Truth &moment : drawn.moments) {
             if (moment.told) {
                 QVERIFY(next < stream.fixes.size());
                 const QJsonObject &fix = stream.fixes[next++];

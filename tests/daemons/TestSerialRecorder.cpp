@@ -18,7 +18,7 @@ private Q_SLOTS:
         QVERIFY(recorder.begin(plan()).ok());
         std::mt19937 random(1);
         QByteArray sent;
-        QList<Arrival> arrivals;
+        QList<Moment> arrivals;
         for (int i = 0; i < 3000; ++i) {
             QByteArray bytes(int(1 + random() % 200), 0);
             for (char &byte : bytes)

@@ -24,7 +24,7 @@ class TestSerialViews : public QObject {
         }
     };
 
-    static Arrival at(int ms) { return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000}; }
+    static Moment at(int ms) { return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000}; }
 
     static std::string_view viewOf(const QByteArray &bytes) {
         return {bytes.constData(), std::size_t(bytes.size())};

@@ -197,6 +197,8 @@ class BadFiles(RobotCase):
         for name, words in {"velodynelogger": ("recording", "run"), "seriallogger": ("recording", "run"),
                             "motorcontrol": ("audit", "audit of commands cannot be written")}.items():
             self.tells(name, *words, disk, "[Ss]pace|full", since=since)
+            if words[0] == "recording":
+                wait_for("its end", lambda: not robot.call(name, "record.status")["recording"])
             self.fill(disk)  # recordings that ended have given back what they had reserved
         for method, params in {"setup.apply": {"settings": {"seriallogger": {"limits": {"clients": 30}}, "simulator": {}}},
                                "setup.undo": {}}.items():

@@ -24,6 +24,8 @@ static double distance(const Transformation2D &a, const Transformation2D &b) {
     return (a.translation() - b.translation()).norm() + std::abs((a.inverse() * b).alpha());
 }
 
+Q_DECLARE_METATYPE(vectorlib::Pose2D)
+
 class TestOdometry : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -36,6 +38,39 @@ private Q_SLOTS:
             const OdometrySample real = onArc(t);
             QVERIFY(distance(track->at(real.stamp), Transformation2D(real.pose)) < 1e-6);
             QVERIFY((*track->covarianceAt(real.stamp) - *real.covariance).norm() < 1e-9);
+        }
+    }
+
+    void contradictionsAreSeenInTwoPiecesOfTheWay_data() {
+        // What the scans show of each step of 0.05 m and 0.01 rad that the wheels tell of.
+        const Rows<Pose2D, bool> row("scans", "isContradicted");
+        row("the same", {0.05, 0, 0.01}, false);
+        row("a third is slip", {0.033, 0.003, 0.012}, false);
+        row("wheels turn on the spot", {0, 0, 0}, true);
+        row("backward", {-0.05, 0, 0.01}, true);
+        row("sideways", {0, 0.05, 0.01}, true);
+        row("they turn", {0.05, 0, 0.05}, true);
+    }
+    void contradictionsAreSeenInTwoPiecesOfTheWay() {
+        FETCH(Pose2D, scans, bool, isContradicted);
+        OdometryCheck check;
+        Pose2D byWheels{3, -2, 3.1}, byScans{-7, 1, 0.3};
+        int steps = 0;
+        for (; steps < 40 && !check.add(0.1 * steps, byWheels, byScans); ++steps) {
+            byWheels = byWheels * Pose2D{0.05, 0, 0.01};
+            byScans = byScans * scans;
+        }
+        QCOMPARE(check.contradiction().has_value(), isContradicted);
+        if (isContradicted)
+            QVERIFY2(steps <= 14 && check.contradiction()->odometry.x > 0.59,
+                     qPrintable(QString::number(steps)));
+    }
+
+    void oneWrongPoseContradictsNothing() {
+        for (int wrong = 0; wrong < 20; ++wrong) {
+            OdometryCheck check;
+            for (int i = 0; i < 40; ++i)
+                QVERIFY(!check.add(0.1 * i, {0.05 * i, 0, 0}, {0.05 * i + (i == wrong ? 5 : 0), 0, 0}));
         }
     }
 

@@ -125,8 +125,17 @@ private Q_SLOTS:
         QTest::qWait(1500);
         QVERIFY(somebody.callAndWait("record.stop").ok());
 
-        QTest::keyPress(&open.window, Qt::Key_W);
-        QTRY_VERIFY(speed() > 0.1);
+        // A machine that stands still for a moment ends a drive.
+        const auto drives = [&] {
+            for (int tries = 0; tries < 4; ++tries) {
+                QTest::keyPress(&open.window, Qt::Key_W);
+                if (QTest::qWaitFor([&] { return speed() > 0.1; }, 3000))
+                    return true;
+                QTest::keyRelease(&open.window, Qt::Key_W);
+            }
+            return false;
+        };
+        QVERIFY2(drives(), qPrintable(open.drive.problem()));
         QVERIFY(somebody.callAndWait("source.open", QJsonObject{{"recording", "once"}, {"loop", true}}).ok());
         QTRY_VERIFY_WITH_TIMEOUT(label("replayBanner")->isVisible(), 1000);
         QTRY_VERIFY2(label("replayBanner")->text().contains("velodynelogger replays"),
@@ -141,8 +150,7 @@ private Q_SLOTS:
         QTest::keyRelease(&open.window, Qt::Key_W);
         OpenWindow::click(&open.window, "driveBlindly");
         QTRY_VERIFY(!open.drive.mustLetGo());
-        QTest::keyPress(&open.window, Qt::Key_W);
-        QTRY_VERIFY2(speed() > 0.1, qPrintable(open.drive.problem()));
+        QVERIFY2(drives(), qPrintable(open.drive.problem()));
         QTest::keyRelease(&open.window, Qt::Key_W);
         DaemonLink *const matcher = open.fleet.robot()->withName("scanmatcher");
         const auto isKept = [matcher] {

@@ -28,15 +28,25 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     motion_.update(report.pose, scan.stamp);
     if (scan.odometry)
         odometry_.update(report.pose, *scan.odometry, scan.stamp);
+    if (scan.odometry && report.outcome == ScanReport::Outcome::Matched)
+        check(*scan.odometry, scan.stamp);
     lastStamp_ = scan.stamp;
     count(report);
     return report;
+}
+
+VECTORLIB_BODY void ScanTracker::check(const OdometryTrack &track, double stamp) {
+    if (std::exchange(epoch_, track.epoch()) != track.epoch())
+        check_.restart();
+    counts_.contradicted +=
+        check_.add(stamp, track.at(stamp).pose(), builder.report().pose * settings_.sensorOnRobot.inverse());
 }
 
 VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose) {
     isPlaced_ = true;
     motion_.reset(pose);
     odometry_.reset();
+    check_.restart();
     builder.forgetPrevious();
     lastStamp_.reset();
 }
@@ -64,6 +74,7 @@ VECTORLIB_BODY void ScanTracker::correct(VectorMap &map, const Transformation2D 
     search_.index().clear();
     motion_.move(moved);
     odometry_.move(moved);
+    check_.restart();
 }
 
 VECTORLIB_BODY void ScanTracker::clear() {

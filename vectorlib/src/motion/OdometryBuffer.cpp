@@ -125,4 +125,30 @@ VECTORLIB_BODY Eigen::Matrix3d OdometryModel::growth(const Transformation2D &fro
     return after - product(f, before, f);
 }
 
+VECTORLIB_BODY bool OdometryCheck::Ways::differ() const {
+    const double apart = std::hypot(scans.x - odometry.x, scans.y - odometry.y);
+    const double turned = std::abs(wrapAngle(scans.theta - odometry.theta));
+    return apart > std::max(least_m, share * std::hypot(odometry.x, odometry.y)) ||
+           turned > std::max(least_rad, share * std::abs(odometry.theta));
+}
+
+VECTORLIB_BODY bool OdometryCheck::add(double stamp, const Pose2D &odometry, const Pose2D &scans) {
+    const Point end{stamp, odometry, scans};
+    if (!begin_ || stamp <= begin_->stamp) {
+        restart();
+        begin_ = end;
+        return false;
+    }
+    const Ways piece = begin_->to(end);
+    if (std::hypot(piece.odometry.x, piece.odometry.y) < piece_m &&
+        std::abs(piece.odometry.theta) < piece_rad)
+        return false;
+    contradiction_.reset();
+    if (piece.differ() && before_ && before_->to(end).differ()) // not a single pose that was wrong
+        contradiction_ = before_->to(end);
+    before_ = piece.differ() ? begin_ : std::nullopt;
+    begin_ = end;
+    return contradiction_.has_value();
+}
+
 } // namespace vectorlib

@@ -44,6 +44,9 @@ struct ScanTrackerCounts {
     /// there.
     std::uint64_t doubted = 0, restarts = 0;
     std::uint64_t byOdometry = 0; ///< scans whose expected pose came from the odometry
+    /// Pieces of the way that contradict the odometry, as the one before did: wheels turn on the spot, or the
+    /// poses are wrong.
+    std::uint64_t contradicted = 0;
     double segmentMs = 0, vectorizeMs = 0, matchMs = 0, mapMs = 0;
     double totalMs() const { return segmentMs + vectorizeMs + matchMs + mapMs; }
 };
@@ -98,6 +101,8 @@ public:
     std::optional<PoseTrust::Features> trustFeatures() const;
     /// The frame of the odometry in that of the map, by the last scan that had any.
     std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
+    /// The way by the scans that were matched and by the odometry, while the two contradict each other.
+    const std::optional<OdometryCheck::Ways> &contradiction() const { return check_.contradiction(); }
     /// Whether the last scan is straight; else it is in doubt and stays out of the map.
     bool isStraight() const { return straight_; }
     const MotionModel &motion() const { return motion_; }
@@ -135,6 +140,7 @@ private:
         return settings_.compensateMotion && !scan.seconds.empty();
     }
     TwistCorrection::Result twistError(const TimedScan &scan);
+    void check(const OdometryTrack &track, double stamp);
     // The two guesses differ by more than the speed of a robot changes between two scans.
     static bool leaps(const Guess &a, const Guess &b, double seconds);
     void tellHowSure(const Guess &guess);
@@ -155,6 +161,8 @@ private:
     std::vector<LineSegment2D<double>> known_;
     MotionModel motion_;
     OdometryModel odometry_;
+    OdometryCheck check_;
+    std::uint64_t epoch_ = 0; // of the odometry that is checked
     ScanTrackerCounts counts_;
     PlaceSearch search_;
     std::vector<Vector2D<float>> points_; // of the last scan, at one moment

@@ -144,6 +144,44 @@ private:
     std::optional<Last> last_;
 };
 
+/// Watches whether the scans find the way that the odometry tells. Wheels that turn on the spot and scans
+/// that are not the robot's make the two differ by more than any slip.
+class OdometryCheck {
+public:
+    /// The robot's way in its own frame by each of them.
+    struct Ways {
+        Pose2D odometry, scans;
+        double seconds = 0;
+
+        /// By more than slip and noise explain.
+        bool differ() const;
+    };
+    /// As soon as the odometry tells of so much way, it is compared; metres, radians.
+    static constexpr double piece_m = 0.3, piece_rad = 0.3;
+    /// By how much the ways may differ: a share of the odometry's, or that; metres, radians.
+    static constexpr double share = 0.5, least_m = 0.15, least_rad = 0.15;
+
+    /// The robot at one time (seconds) in the frame of the odometry, and in that of the map. True when this
+    /// ends another piece that is contradicted, as the one before was.
+    bool add(double stamp, const Pose2D &odometry, const Pose2D &scans);
+    /// What comes next does not follow from what was.
+    void restart() { *this = OdometryCheck(); }
+    /// The last two pieces of the way, when the scans contradict both of them.
+    const std::optional<Ways> &contradiction() const { return contradiction_; }
+
+private:
+    struct Point {
+        double stamp;
+        Pose2D odometry, scans;
+
+        Ways to(const Point &end) const {
+            return {odometry.inverse() * end.odometry, scans.inverse() * end.scans, end.stamp - stamp};
+        }
+    };
+    std::optional<Point> begin_, before_; ///< of this piece, and of the one before when it was contradicted
+    std::optional<Ways> contradiction_;
+};
+
 } // namespace vectorlib
 
 #include VECTORLIB_BODIES("vectorlib/src/motion/OdometryBuffer.cpp")
