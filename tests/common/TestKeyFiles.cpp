@@ -7,8 +7,6 @@
 
 #include <QDir>
 #include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
 #include <climits>
 
 using namespace hermes;

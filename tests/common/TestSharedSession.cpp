@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <future>
-#include <thread>
 
 using namespace hermes;
 

@@ -2,7 +2,6 @@
 #include "RingDrive.h"
 #include "tests/support/PatientClient.h"
 
-#include <QProcess>
 #include <QRegularExpression>
 
 using namespace hermes;

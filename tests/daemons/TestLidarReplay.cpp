@@ -2,7 +2,6 @@
 #include "tests/support/RealData.h"
 
 #include <QFile>
-#include <QProcess>
 
 using namespace hermes;
 using namespace hermes::velodynelogger;

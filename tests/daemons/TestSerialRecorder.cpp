@@ -1,7 +1,6 @@
 #include "SerialFilesFixture.h"
 
 #include <limits>
-#include <random>
 
 using namespace hermes;
 using namespace hermes::seriallogger;

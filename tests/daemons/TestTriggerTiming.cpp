@@ -8,12 +8,10 @@
 #include "tests/support/PatientClient.h"
 
 #include <QRegularExpression>
-#include <QtTest>
 
 #include <atomic>
 #include <csignal>
 #include <numeric>
-#include <thread>
 
 using namespace hermes;
 

@@ -2,8 +2,6 @@
 
 #include <QDir>
 #include <QSet>
-#include <QTemporaryDir>
-#include <QtTest>
 
 // hermes-vector experiment: those of the overview paper.
 class TestOverview : public QObject {

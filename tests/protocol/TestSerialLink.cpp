@@ -5,9 +5,7 @@
 #include "tests/support/LinkPair.h"
 
 #include <QtEndian>
-#include <QtTest>
 
-#include <random>
 #include <set>
 
 using namespace hermes;

@@ -2,11 +2,7 @@
 
 #include <vectorlib/io/LatexExport.h>
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <limits>
-#include <sstream>
 
 using namespace vectorlib;
 

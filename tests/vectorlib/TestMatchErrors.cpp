@@ -1,9 +1,6 @@
 #include "vectorlib/relations/MatchErrors.h"
 
-#include <QtTest>
-
 #include <limits>
-#include <random>
 
 using namespace vectorlib;
 

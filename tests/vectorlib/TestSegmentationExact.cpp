@@ -1,9 +1,6 @@
 #include <vectorlib/segmentation/EarSegmenter.h>
 
-#include <QtTest>
-
 #include <limits>
-#include <random>
 #include <type_traits>
 
 using namespace vectorlib;

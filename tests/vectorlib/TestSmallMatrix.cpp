@@ -1,9 +1,6 @@
 #include "vectorlib/geometry/SmallMatrix.h"
 
-#include <Eigen/Dense>
-#include <QtTest>
 #include <limits>
-#include <random>
 
 using namespace vectorlib;
 

@@ -7,8 +7,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QCheckBox>
-#include <QJsonDocument>
-#include <QProcess>
 #include <csignal>
 #include <sys/stat.h>
 

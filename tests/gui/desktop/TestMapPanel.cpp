@@ -5,9 +5,7 @@
 #include <QDialog>
 #include <QFileInfo>
 #include <QImage>
-#include <QListWidget>
 #include <QMenu>
-#include <QPlainTextEdit>
 #include <QRegularExpression>
 #include <QToolButton>
 #include <QXmlStreamReader>

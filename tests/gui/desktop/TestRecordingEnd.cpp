@@ -6,7 +6,6 @@
 
 #include <QRegularExpression>
 #include <QScrollArea>
-#include <QTreeWidget>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -5,12 +5,9 @@
 #include "tests/support/PatientClient.h"
 
 #include <QCheckBox>
-#include <QComboBox>
-#include <QLabel>
 #include <QRegularExpression>
 #include <QTabBar>
 #include <QToolTip>
-#include <cmath>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -4,11 +4,7 @@
 #include "tests/support/PatientClient.h"
 
 #include <QCheckBox>
-#include <QComboBox>
 #include <QDir>
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QLabel>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -4,7 +4,6 @@
 
 #include <QMenuBar>
 #include <QToolButton>
-#include <algorithm>
 #include <sys/resource.h>
 
 using namespace hermes;
