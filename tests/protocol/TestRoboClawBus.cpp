@@ -47,6 +47,13 @@ class TestRoboClawBus : public QObject {
         }
         std::string last() const { return ended.empty() ? "nothing" : ended.back(); }
     };
+    /// One that has been asked for the battery's voltage.
+    struct AskedLine : Line {
+        AskedLine() {
+            submit(Command::ReadMainBattery);
+            [this] { QVERIFY(poll()); }();
+        }
+    };
 
 private Q_SLOTS:
     void sendsOneAfterTheOther() {
@@ -89,9 +96,7 @@ private Q_SLOTS:
     }
 
     void repeatsWhatIsDamaged() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5");
         QVERIFY(line.ended.empty());
         QVERIFY(line.pollLater());
@@ -108,9 +113,7 @@ private Q_SLOTS:
     }
 
     void waitsForSilenceAfterAFailure() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5"); // damaged at 0
         line.now = 0.0105;
         QVERIFY(!line.poll());
@@ -123,9 +126,7 @@ private Q_SLOTS:
     }
 
     void chatterDoesNotBlockForEver() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5");
         for (int i = 0; line.sent.size() == 1 && i < 100; ++i) {
             line.now += 0.001;
@@ -136,9 +137,7 @@ private Q_SLOTS:
     }
 
     void chatterDoesNotHoldUpWhatIsUrgent() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5"); // it fails
         line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First);
         line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First, 0x81);
@@ -153,9 +152,7 @@ private Q_SLOTS:
     }
 
     void urgentRequestsGoFirst() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.submit(Command::ReadTemperature);
         line.submit(Command::Speed, {0, 0}, Bus::Urgency::First);
         line.feed("00F1D8E5"); // the one on its way fails: even its repetition waits
@@ -171,9 +168,7 @@ private Q_SLOTS:
     }
 
     void cancelEndsWhatWaits() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.submit(Command::ReadTemperature);
         line.bus.cancel();
         QCOMPARE(line.last(), std::string("82 cancelled 0"));
@@ -187,9 +182,7 @@ private Q_SLOTS:
     }
 
     void closedLineEndsAll() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.submit(Command::ReadTemperature);
         line.bus.setOpen(false);
         QCOMPARE(line.ended, (std::vector<std::string>{"24 line closed 1", "82 line closed 0"}));
