@@ -4,8 +4,6 @@
 #include "protocol/velodyne/TurnAssembler.h"
 #include "tests/support/RealData.h"
 
-#include <QFile>
-#include <QStandardPaths>
 #include <QtEndian>
 
 using namespace hermes;

@@ -1,8 +1,6 @@
 // The records of capture files, beside libpcap: files of all kinds, made at random.
 #include "tests/common/CaptureFiles.h"
 
-#include <QFile>
-
 #include <pcap/pcap.h>
 
 using namespace hermes;

@@ -8,7 +8,6 @@
 
 #include <QNetworkDatagram>
 #include <QTcpServer>
-#include <QUdpSocket>
 
 #include <malloc.h>
 #include <sys/socket.h>

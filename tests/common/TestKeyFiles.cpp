@@ -5,8 +5,6 @@
 #include "common/tls/KeyFolder.h"
 #include "tests/support/FileSizeLimit.h"
 
-#include <QDir>
-#include <QFile>
 #include <climits>
 
 using namespace hermes;

@@ -2,10 +2,6 @@
 #include "common/capture/Frame.h"
 #include "common/capture/PcapReader.h"
 
-#include <QFile>
-#include <QRegularExpression>
-#include <QStandardPaths>
-
 using namespace hermes;
 
 class TestLinkTypes : public QObject {

@@ -1,6 +1,5 @@
 #include "common/recording/Playback.h"
 
-#include <atomic>
 #include <utility>
 
 using namespace hermes;

@@ -6,8 +6,6 @@
 #include "tests/support/NoisyLine.h"
 #include "tests/support/PatientClient.h"
 
-#include <set>
-
 using namespace hermes;
 
 namespace {

@@ -1,7 +1,6 @@
 // Several loggers that record at the same time, together or in each other's way.
 #include "LoggerFixture.h"
 
-#include <atomic>
 #include <future>
 
 using namespace hermes;

@@ -1,7 +1,6 @@
 // Waiting for sockets while signals come.
 #include "common/platform/Sockets.h"
 
-#include <QElapsedTimer>
 #include <csignal>
 #include <sys/socket.h>
 #include <sys/time.h>

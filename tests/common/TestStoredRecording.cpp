@@ -2,8 +2,6 @@
 #include "common/recording/Sidecar.h"
 #include "common/recording/StoredRecording.h"
 
-#include <QDir>
-
 #include <sys/stat.h>
 
 using namespace hermes;

@@ -1,9 +1,5 @@
 #include "common/world/World.h"
 
-#include <QFile>
-
-#include <limits>
-
 using namespace hermes;
 using vectorlib::Pose2D;
 

@@ -3,8 +3,6 @@
 #include "daemons/simulator/Drivetrain.h"
 #include "protocol/wire/Fields.h"
 
-#include <limits>
-
 using namespace hermes;
 using namespace hermes::motorcontrol;
 

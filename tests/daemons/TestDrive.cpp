@@ -3,8 +3,6 @@
 #include "daemons/motorcontrol/EncoderMonitor.h"
 #include "daemons/motorcontrol/Threshold.h"
 
-#include <limits>
-
 Q_DECLARE_METATYPE(std::function<void(hermes::motorcontrol::Drive &)>)
 Q_DECLARE_METATYPE(std::function<double(double)>)
 Q_DECLARE_METATYPE(std::function<double(double, double)>)

@@ -5,7 +5,6 @@
 #include "tests/vectorlib/RingBuilding.h"
 
 #include <malloc.h>
-#include <set>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;

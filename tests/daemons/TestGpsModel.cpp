@@ -2,10 +2,6 @@
 #include "daemons/simulator/PacketPump.h"
 #include "vectorlib/geometry/Angle.h"
 
-#include <QUdpSocket>
-
-#include <atomic>
-
 using namespace hermes;
 using namespace hermes::simulator;
 

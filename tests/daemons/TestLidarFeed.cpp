@@ -3,10 +3,6 @@
 #include "protocol/nmea/Sentence.h"
 #include "tests/support/RealData.h"
 
-#include <QUdpSocket>
-
-#include <set>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 using velodyne::Turn;

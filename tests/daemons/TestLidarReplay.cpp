@@ -1,8 +1,6 @@
 #include "LidarListener.h"
 #include "tests/support/RealData.h"
 
-#include <QFile>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 using velodyne::Turn;

@@ -5,8 +5,6 @@
 #include "tests/support/LoopWatch.h"
 #include "vectorlib/io/MapCsv.h"
 
-#include <QRegularExpression>
-#include <atomic>
 #include <fstream>
 #include <sys/syscall.h>
 #include <unistd.h>

@@ -4,7 +4,6 @@
 #include "tests/support/ReleaseStop.h"
 
 #include <QUrl>
-#include <atomic>
 #include <ctime>
 
 using namespace hermes;

@@ -4,8 +4,6 @@
 #include "tests/support/FileSizeLimit.h"
 #include "tests/support/Sensor.h"
 
-#include <QStandardPaths>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 

@@ -1,7 +1,5 @@
 #include "SerialFilesFixture.h"
 
-#include <limits>
-
 using namespace hermes;
 using namespace hermes::seriallogger;
 

@@ -4,7 +4,6 @@
 #include "tests/support/FreePort.h"
 
 #include <QTcpServer>
-#include <QUdpSocket>
 
 using namespace hermes;
 using namespace hermes::seriallogger;

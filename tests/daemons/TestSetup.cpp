@@ -5,8 +5,6 @@
 #include "protocol/velodyne/SensorModel.h"
 #include "tests/support/FreePort.h"
 
-#include <QElapsedTimer>
-#include <QUdpSocket>
 #include <future>
 #include <sys/stat.h>
 

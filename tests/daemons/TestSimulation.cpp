@@ -2,9 +2,6 @@
 #include "daemons/simulator/PacketPump.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <QElapsedTimer>
-#include <QUdpSocket>
-
 #include <ctime>
 
 using namespace hermes;

@@ -7,9 +7,6 @@
 #include "tests/support/ChildProcess.h"
 #include "tests/support/PatientClient.h"
 
-#include <QRegularExpression>
-
-#include <atomic>
 #include <csignal>
 #include <numeric>
 

@@ -1,6 +1,5 @@
 #include "tests/experiments/ExperimentFiles.h"
 
-#include <QDir>
 #include <QSet>
 
 // hermes-vector experiment: those of the overview paper.

@@ -6,8 +6,6 @@
 #include "gui/session/SessionPlayer.h"
 #include "gui/session/SessionRecorder.h"
 
-#include <QRegularExpression>
-
 using namespace hermes;
 using namespace hermes::ctl;
 

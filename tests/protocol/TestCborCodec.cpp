@@ -6,8 +6,6 @@
 
 #include <QCborValue>
 
-#include <limits>
-
 using namespace hermes;
 
 class TestCborCodec : public QObject {

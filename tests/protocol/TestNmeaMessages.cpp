@@ -4,8 +4,6 @@
 #include "protocol/nmea/SentenceParser.h"
 #include "tests/support/AllocationCounter.h"
 
-#include <limits>
-
 using namespace hermes::nmea;
 
 /// The worked sentences are those of the published field lists; the first RMC comes from a real receiver.

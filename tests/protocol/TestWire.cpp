@@ -7,8 +7,6 @@
 #include "protocol/wire/JsonWriters.h"
 #include "protocol/wire/Outgoing.h"
 
-#include <limits>
-
 using namespace hermes;
 
 namespace {

@@ -1,7 +1,5 @@
 #include <vectorlib/edges/EdgeExtractor.h>
 
-#include <limits>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
 

@@ -2,8 +2,6 @@
 
 #include <vectorlib/io/LatexExport.h>
 
-#include <limits>
-
 using namespace vectorlib;
 
 namespace {

@@ -5,8 +5,6 @@
 #include "tests/vectorlib/RevisitError.h"
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <limits>
-
 using namespace vectorlib;
 
 namespace {

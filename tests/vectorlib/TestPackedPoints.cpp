@@ -1,7 +1,5 @@
 #include <vectorlib/geometry/PackedPoints.h>
 
-#include <limits>
-
 using namespace vectorlib;
 
 /// Points kept in half the memory.

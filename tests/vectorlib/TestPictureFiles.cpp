@@ -5,8 +5,6 @@
 
 #include <QXmlStreamReader>
 
-#include <limits>
-
 using namespace vectorlib;
 
 static std::vector<MapEdge> corner() {

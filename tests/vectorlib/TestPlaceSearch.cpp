@@ -8,10 +8,6 @@
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 
-#include <QElapsedTimer>
-
-#include <set>
-
 using namespace vectorlib;
 using Outcome = Relocalized::Outcome;
 

@@ -3,9 +3,6 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/PublishedSearch.h"
 
-#include <limits>
-#include <set>
-
 using namespace vectorlib;
 
 /// The search of thesis 7.4 to the letter.

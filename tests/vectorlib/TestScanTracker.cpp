@@ -2,8 +2,6 @@
 #include <vectorlib/mapping/ScanTracker.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 
-#include <limits>
-
 using namespace vectorlib;
 
 class TestScanTracker : public QObject {

@@ -1,6 +1,5 @@
 #include <vectorlib/segmentation/EarSegmenter.h>
 
-#include <limits>
 #include <type_traits>
 
 using namespace vectorlib;

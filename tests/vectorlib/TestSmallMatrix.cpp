@@ -1,7 +1,5 @@
 #include "vectorlib/geometry/SmallMatrix.h"
 
-#include <limits>
-
 using namespace vectorlib;
 
 // The plain loops give what Eigen's expressions give.

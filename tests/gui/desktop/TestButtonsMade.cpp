@@ -1,6 +1,5 @@
 #include "tests/gui/desktop/ButtonsWindow.h"
 
-#include <QMenu>
 #include <QToolBar>
 
 using namespace hermes;

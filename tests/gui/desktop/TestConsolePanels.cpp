@@ -4,8 +4,6 @@
 #include "gui/desktop/view/PlotPane.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QFile>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

@@ -5,9 +5,7 @@
 #include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QMenu>
 #include <QSlider>
-#include <QToolButton>
 
 using namespace hermes;
 using namespace hermes::desktop;

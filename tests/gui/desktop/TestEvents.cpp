@@ -5,7 +5,6 @@
 #include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QCheckBox>
 #include <QSignalSpy>
 #include <QTreeView>
 

@@ -4,8 +4,6 @@
 #include "tests/support/LoopWatch.h"
 
 #include <QCborValue>
-#include <QFile>
-#include <QMenu>
 #include <QPainter>
 
 using namespace hermes;

@@ -6,7 +6,6 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QCheckBox>
 #include <csignal>
 #include <sys/stat.h>
 

@@ -4,7 +4,6 @@
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAction>
-#include <QCheckBox>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QToolTip>

@@ -5,9 +5,6 @@
 #include <QDialog>
 #include <QFileInfo>
 #include <QImage>
-#include <QMenu>
-#include <QRegularExpression>
-#include <QToolButton>
 #include <QXmlStreamReader>
 
 using namespace hermes;

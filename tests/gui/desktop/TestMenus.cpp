@@ -4,8 +4,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QAccessible>
-#include <QFile>
-#include <QMenu>
 #include <QTextBlock>
 #include <QTextBrowser>
 

@@ -4,7 +4,6 @@
 
 #include <QImage>
 #include <QWheelEvent>
-#include <limits>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -8,7 +8,6 @@
 #include <QHeaderView>
 #include <QHelpEvent>
 #include <QLayout>
-#include <QRegularExpression>
 #include <QScrollArea>
 #include <QStyleOptionComboBox>
 #include <QTabBar>

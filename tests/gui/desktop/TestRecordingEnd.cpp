@@ -4,7 +4,6 @@
 #include "tests/gui/desktop/TcpLink.h"
 #include "tests/support/PatientClient.h"
 
-#include <QRegularExpression>
 #include <QScrollArea>
 
 using namespace hermes;

@@ -4,8 +4,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/PatientClient.h"
 
-#include <QCheckBox>
-#include <QRegularExpression>
 #include <QTabBar>
 #include <QToolTip>
 

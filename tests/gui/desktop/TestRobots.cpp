@@ -5,7 +5,6 @@
 #include "tests/support/FakeRobot.h"
 
 #include <QAbstractItemView>
-#include <QMenu>
 
 using namespace hermes;
 using namespace hermes::desktop;

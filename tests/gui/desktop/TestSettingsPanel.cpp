@@ -3,7 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/PatientClient.h"
 
-#include <QFile>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QSlider>

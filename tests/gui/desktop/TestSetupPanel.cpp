@@ -3,9 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/PatientClient.h"
 
-#include <QCheckBox>
-#include <QDir>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

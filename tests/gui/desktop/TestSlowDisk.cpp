@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 
 #include <QFileDialog>
-#include <atomic>
 
 using namespace hermes;
 using namespace hermes::desktop;

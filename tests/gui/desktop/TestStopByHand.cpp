@@ -5,11 +5,9 @@
 
 #include <QDialog>
 #include <QFileDialog>
-#include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QSignalSpy>
-#include <QToolButton>
 #include <QToolTip>
 
 using namespace hermes;

@@ -3,7 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QMenuBar>
-#include <QToolButton>
 #include <sys/resource.h>
 
 using namespace hermes;

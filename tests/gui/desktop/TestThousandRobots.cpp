@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
 
-#include <QMenu>
 #include <QMenuBar>
 
 using namespace hermes;
