@@ -4,63 +4,52 @@
 #include "protocol/velodyne/TurnAssembler.h"
 #include "tests/support/RealData.h"
 
-#include <QFile>
-#include <QProcess>
-#include <QStandardPaths>
-#include <QTemporaryDir>
 #include <QtEndian>
-#include <QtTest>
-
-#include <random>
 
 using namespace hermes;
 
-namespace {
-
-constexpr std::uint32_t sensorAddress = 0xC0A801C8; // 192.168.1.200
-
-Datagram datagram(const QByteArray &payload, std::int64_t stamp_ns = 1700000000123456789) {
-    Datagram d;
-    d.stamp_ns = stamp_ns;
-    d.source = sensorAddress;
-    d.destination = 0xFFFFFFFF;
-    d.sourcePort = d.destinationPort = 2368;
-    d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
-    d.size = std::size_t(payload.size());
-    return d;
-}
-
-QByteArray frameOf(const Datagram &d) {
-    const auto header = makeFrameHeader(d);
-    return QByteArray(reinterpret_cast<const char *>(header.data()), int(header.size())) +
-           QByteArray(reinterpret_cast<const char *>(d.payload), int(d.size));
-}
-
-FrameFault parse(const QByteArray &frame, Datagram &d, LinkType link = LinkType::Ethernet) {
-    // A copy of its exact size, so that a sanitizer sees a read beyond it.
-    const std::vector<std::uint8_t> bytes(frame.begin(), frame.end());
-    const FrameFault fault = parseFrame(link, bytes.data(), bytes.size(), d);
-    d.payload = nullptr;
-    return fault;
-}
-
-/// A capture of count datagrams of 100 bytes, the first byte counting; its path.
-std::string makeCapture(const QTemporaryDir &folder, int count) {
-    const std::string path = folder.filePath(QStringLiteral("c.pcap")).toStdString();
-    PcapWriter writer;
-    if (const auto done = writer.open(path, true); !done)
-        qFatal("%s", done.error().c_str());
-    for (int i = 0; i < count; ++i)
-        writer.write(datagram(QByteArray(100, char(i)), 1700000000123456789 + i));
-    if (const auto done = writer.close(); !done)
-        qFatal("%s", done.error().c_str());
-    return path;
-}
-
-} // namespace
-
 class TestCapture : public QObject {
     Q_OBJECT
+
+    static constexpr std::uint32_t sensorAddress = 0xC0A801C8; // 192.168.1.200
+
+    static Datagram datagram(const QByteArray &payload, std::int64_t stamp_ns = 1700000000123456789) {
+        Datagram d;
+        d.stamp_ns = stamp_ns;
+        d.source = sensorAddress;
+        d.destination = 0xFFFFFFFF;
+        d.sourcePort = d.destinationPort = 2368;
+        d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
+        d.size = std::size_t(payload.size());
+        return d;
+    }
+
+    static QByteArray frameOf(const Datagram &d) {
+        const auto header = makeFrameHeader(d);
+        return QByteArray(reinterpret_cast<const char *>(header.data()), int(header.size())) +
+               QByteArray(reinterpret_cast<const char *>(d.payload), int(d.size));
+    }
+
+    static FrameFault parse(const QByteArray &frame, Datagram &d, LinkType link = LinkType::Ethernet) {
+        // A copy of its exact size, so that a sanitizer sees a read beyond it.
+        const std::vector<std::uint8_t> bytes(frame.begin(), frame.end());
+        const FrameFault fault = parseFrame(link, bytes.data(), bytes.size(), d);
+        d.payload = nullptr;
+        return fault;
+    }
+
+    /// A capture of count datagrams of 100 bytes, the first byte counting; its path.
+    static std::string makeCapture(const QTemporaryDir &folder, int count) {
+        const std::string path = folder.filePath(QStringLiteral("c.pcap")).toStdString();
+        PcapWriter writer;
+        if (const auto done = writer.open(path, true); !done)
+            qFatal("%s", done.error().c_str());
+        for (int i = 0; i < count; ++i)
+            writer.write(datagram(QByteArray(100, char(i)), 1700000000123456789 + i));
+        if (const auto done = writer.close(); !done)
+            qFatal("%s", done.error().c_str());
+        return path;
+    }
 
 private Q_SLOTS:
     void checksumIsThatOfARealSensor() {

@@ -1,18 +1,12 @@
 // The records of capture files, beside libpcap: files of all kinds, made at random.
 #include "tests/common/CaptureFiles.h"
 
-#include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <pcap/pcap.h>
 
 using namespace hermes;
 using namespace hermes::captures;
 
-namespace {
-
-Reading theirs(const QByteArray &content, const QString &path) {
+static Reading theirs(const QByteArray &content, const QString &path) {
     const bool isPcapng = content.startsWith(QByteArray::fromHex("0a0d0d0a"));
     put(path, content);
     char why[PCAP_ERRBUF_SIZE] = "";
@@ -34,8 +28,6 @@ Reading theirs(const QByteArray &content, const QString &path) {
     pcap_close(pcap);
     return reading;
 }
-
-} // namespace
 
 class TestCaptureRecords : public QObject {
     Q_OBJECT

@@ -8,35 +8,31 @@
 
 #include <QNetworkDatagram>
 #include <QTcpServer>
-#include <QUdpSocket>
 
 #include <malloc.h>
 #include <sys/socket.h>
 
 using namespace hermes;
 
-namespace {
-
-/// With FOLDER, KEYS and PORT.
-struct Carrier {
-    const char *name;
-    const char *listen;
-    const char *connect;
-    int mostBytes; ///< of a frame; a pseudo-terminal holds 4096
-};
-
-const Carrier carriers[] = {
-    {"tcp", "tcp://127.0.0.1:0", "tcp://127.0.0.1:PORT", 500000},
-    {"tls", "tls://127.0.0.1:0?keys=KEYS/issued-for/robot", "tls://127.0.0.1:PORT?keys=KEYS", 500000},
-    {"local", "local://FOLDER/socket", "local://FOLDER/socket", 500000},
-    {"udp", "udp://127.0.0.1:0", "udp://127.0.0.1:0?peer=127.0.0.1:PORT", 20000},
-    {"serial line", "pty://FOLDER/line", "serial://FOLDER/line?baud=115200", 3000},
-};
-
-} // namespace
-
 class TestChannels : public QObject, DaemonFixture {
     Q_OBJECT
+
+    /// With FOLDER, KEYS and PORT.
+    struct Carrier {
+        const char *name;
+        const char *listen;
+        const char *connect;
+        int mostBytes; ///< of a frame; a pseudo-terminal holds 4096
+    };
+
+    static inline const Carrier carriers[] = {
+        {"tcp", "tcp://127.0.0.1:0", "tcp://127.0.0.1:PORT", 500000},
+        {"tls", "tls://127.0.0.1:0?keys=KEYS/issued-for/robot", "tls://127.0.0.1:PORT?keys=KEYS", 500000},
+        {"local", "local://FOLDER/socket", "local://FOLDER/socket", 500000},
+        {"udp", "udp://127.0.0.1:0", "udp://127.0.0.1:0?peer=127.0.0.1:PORT", 20000},
+        {"serial line", "pty://FOLDER/line", "serial://FOLDER/line?baud=115200", 3000},
+    };
+
 private Q_SLOTS:
     void initTestCase() {
         Log::instance().setStderr(false);

@@ -6,7 +6,6 @@
 #include "tests/support/PatientClient.h"
 
 #include <QTcpServer>
-#include <QtTest>
 
 using namespace hermes;
 

@@ -1,7 +1,6 @@
 #include "DaemonFixture.h"
 
 #include <QNetworkDatagram>
-#include <QUdpSocket>
 
 using namespace hermes;
 

@@ -2,57 +2,50 @@
 #include "common/capture/PcapReader.h"
 #include "tests/common/CaptureFiles.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::captures;
 
-namespace {
-
-QByteArray classic(quint32 limit, quint32 frame, quint16 part = 4) {
-    Writer file(false);
-    file.word(0xA1B2C3D4).half(2).half(part).word(0).word(0).word(limit).word(1);
-    file.word(1700000000).word(0).word(frame).word(frame);
-    return file.content + QByteArray(int(frame), 'x');
-}
-
-/// The headers of a section and of one interface for each link type; options are those of each.
-QByteArray pcapng(const QList<quint16> &links, quint32 limit = 0, const QByteArray &options = {}) {
-    Writer file(false);
-    file.block(0x0A0D0D0A, Writer(false).word(0x1A2B3C4D).half(1).half(0).number(~0ULL, 8).content);
-    for (const quint16 link : links)
-        file.block(1, Writer(false).half(link).half(0).word(limit).content + options);
-    return file.content;
-}
-
-QByteArray block(quint32 type, const QByteArray &body) {
-    Writer file(false);
-    file.block(type, body);
-    return file.content;
-}
-
-QByteArray packet(quint32 interface, const QByteArray &frame, quint64 ticks = 0) {
-    Writer body(false);
-    body.word(interface).word(quint32(ticks >> 32)).word(quint32(ticks));
-    body.word(quint32(frame.size())).word(quint32(frame.size()));
-    return block(6, body.content + frame);
-}
-
-QByteArray resolution(quint8 value) {
-    return Writer(false).half(9).half(1).word(value).content;
-}
-
-/// UDP in IPv4 in Ethernet.
-const QByteArray datagramFrame = QByteArray::fromHex("ffffffffffff607688000000"
-                                                     "0800"
-                                                     "450000230000400040117859c0a801c9ffffffff"
-                                                     "09400941000f0000"
-                                                     "7061796c6f6164");
-
-} // namespace
-
 class TestDamagedCaptures : public QObject {
     Q_OBJECT
+
+    static QByteArray classic(quint32 limit, quint32 frame, quint16 part = 4) {
+        Writer file(false);
+        file.word(0xA1B2C3D4).half(2).half(part).word(0).word(0).word(limit).word(1);
+        file.word(1700000000).word(0).word(frame).word(frame);
+        return file.content + QByteArray(int(frame), 'x');
+    }
+
+    /// The headers of a section and of one interface for each link type; options are those of each.
+    static QByteArray pcapng(const QList<quint16> &links, quint32 limit = 0, const QByteArray &options = {}) {
+        Writer file(false);
+        file.block(0x0A0D0D0A, Writer(false).word(0x1A2B3C4D).half(1).half(0).number(~0ULL, 8).content);
+        for (const quint16 link : links)
+            file.block(1, Writer(false).half(link).half(0).word(limit).content + options);
+        return file.content;
+    }
+
+    static QByteArray block(quint32 type, const QByteArray &body) {
+        Writer file(false);
+        file.block(type, body);
+        return file.content;
+    }
+
+    static QByteArray packet(quint32 interface, const QByteArray &frame, quint64 ticks = 0) {
+        Writer body(false);
+        body.word(interface).word(quint32(ticks >> 32)).word(quint32(ticks));
+        body.word(quint32(frame.size())).word(quint32(frame.size()));
+        return block(6, body.content + frame);
+    }
+
+    static QByteArray resolution(quint8 value) { return Writer(false).half(9).half(1).word(value).content; }
+
+    /// UDP in IPv4 in Ethernet.
+    static inline const QByteArray datagramFrame =
+        QByteArray::fromHex("ffffffffffff607688000000"
+                            "0800"
+                            "450000230000400040117859c0a801c9ffffffff"
+                            "09400941000f0000"
+                            "7061796c6f6164");
 
 private Q_SLOTS:
     /// Cut or with other bytes in it: records before the damage are those of the whole file.

@@ -2,40 +2,34 @@
 #include "common/daemon/Daemon.h"
 #include "protocol/jsonrpc/JsonRpc.h"
 #include "protocol/wire/JsonText.h"
-#include "tests/support/Patience.h"
-
-#include <QTcpSocket>
 
 using namespace hermes;
 
-namespace {
-
-class BusyDaemon : public Daemon {
-public:
-    BusyDaemon()
-        : Daemon({"busy", "Busy daemon", "For tests", 1}) {
-        addCommand(Command("count", "Counts").returnsNull().handler([this](const Call &) {
-            ++counted;
-            return QJsonValue();
-        }));
-        addCommand(
-            Command("later", "Answers when told to").asyncHandler([this](const Call &, const Reply &r) {
-                replies.push_back(r);
-            }));
-    }
-
-    int counted = 0;
-    std::vector<Reply> replies;
-};
-
-QByteArray request(const QJsonValue &id, const QString &method) {
-    return compactJson(makeRequest(id, method, QJsonObject())) + '\n';
-}
-
-} // namespace
-
 class TestFairness : public QObject {
     Q_OBJECT
+
+    class BusyDaemon : public Daemon {
+    public:
+        BusyDaemon()
+            : Daemon({"busy", "Busy daemon", "For tests", 1}) {
+            addCommand(Command("count", "Counts").returnsNull().handler([this](const Call &) {
+                ++counted;
+                return QJsonValue();
+            }));
+            addCommand(
+                Command("later", "Answers when told to").asyncHandler([this](const Call &, const Reply &r) {
+                    replies.push_back(r);
+                }));
+        }
+
+        int counted = 0;
+        std::vector<Reply> replies;
+    };
+
+    static QByteArray request(const QJsonValue &id, const QString &method) {
+        return compactJson(makeRequest(id, method, QJsonObject())) + '\n';
+    }
+
 private Q_SLOTS:
     void init() {
         daemon = std::make_unique<BusyDaemon>();

@@ -8,13 +8,8 @@
 #include "common/interface/UdpInterface.h"
 #include "tests/support/FaultyInterface.h"
 #include "tests/support/LoopbackInterface.h"
-#include "tests/support/Patience.h"
 
-#include <QProcess>
 #include <QTcpServer>
-#include <QTcpSocket>
-#include <QTemporaryDir>
-#include <QtTest>
 
 #include <sched.h>
 #include <sys/stat.h>

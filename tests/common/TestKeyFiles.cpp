@@ -5,10 +5,6 @@
 #include "common/tls/KeyFolder.h"
 #include "tests/support/FileSizeLimit.h"
 
-#include <QDir>
-#include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
 #include <climits>
 
 using namespace hermes;

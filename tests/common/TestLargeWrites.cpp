@@ -2,13 +2,8 @@
 #include "common/interface/InterfaceRegistry.h"
 #include "common/interface/Listener.h"
 #include "common/tls/Authority.h"
-#include "tests/support/Patience.h"
-
-#include <QTemporaryDir>
 
 #include <malloc.h>
-#include <random>
-#include <vector>
 
 using namespace hermes;
 

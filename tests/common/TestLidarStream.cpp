@@ -2,31 +2,24 @@
 #include "common/capture/LidarStream.h"
 #include "tests/support/Sensor.h"
 
-#include <QtTest>
-
-#include <vector>
-
 using namespace hermes;
 using velodyne::TurnAssembler;
 
-namespace {
-
-Datagram from(Datagram datagram, std::uint32_t source) {
-    datagram.source = source;
-    return datagram;
-}
-
-Datagram to(Datagram datagram, std::uint16_t port) {
-    datagram.destinationPort = port;
-    return datagram;
-}
-
-const std::vector<std::uint8_t> noise(velodyne::packetSize, 'x');
-
-} // namespace
-
 class TestLidarStream : public QObject {
     Q_OBJECT
+
+    static Datagram from(Datagram datagram, std::uint32_t source) {
+        datagram.source = source;
+        return datagram;
+    }
+
+    static Datagram to(Datagram datagram, std::uint16_t port) {
+        datagram.destinationPort = port;
+        return datagram;
+    }
+
+    static inline const std::vector<std::uint8_t> noise =
+        std::vector<std::uint8_t>(velodyne::packetSize, 'x');
 
 private Q_SLOTS:
     void feedsAllAssemblersAlike() {

@@ -2,67 +2,56 @@
 #include "common/capture/Frame.h"
 #include "common/capture/PcapReader.h"
 
-#include <QFile>
-#include <QProcess>
-#include <QRegularExpression>
-#include <QStandardPaths>
-#include <QTemporaryDir>
-#include <QtTest>
-
 using namespace hermes;
-
-namespace {
-
-// IPv4 from 192.168.1.201, UDP from port 2368 to 2369, "payload".
-const QByteArray ipFrame = QByteArray::fromHex("450000230000400040117859c0a801c9ffffffff"
-                                               "09400941000f0000"
-                                               "7061796c6f6164");
-
-/// What stands before the IPv4 header, by the number of the link type in the file.
-const QMap<int, QByteArray> linkHeaders = {
-    {0, QByteArray::fromHex("02000000")}, // the family, of a little-endian host
-    {1, QByteArray::fromHex("ffffffffffff607688000000") + "\x08" + '\0'}, // addresses, EtherType
-    {12, {}},
-    {14, {}},
-    {101, {}},
-    {108, QByteArray::fromHex("00000002")},                         // the family, big-endian
-    {113, QByteArray::fromHex("00000001000660768800000000000800")}, // Linux cooked: EtherType last
-    {228, {}},
-    {276, QByteArray::fromHex("0800000000000002000100066076880000000000")}, // and first
-};
-
-QByteArray words(std::initializer_list<quint32> values) {
-    QByteArray bytes;
-    for (const quint32 value : values) {
-        for (int shift = 0; shift < 32; shift += 8)
-            bytes += char(value >> shift);
-    }
-    return bytes;
-}
-
-QByteArray pcapFile(int link, const QByteArray &frame) {
-    const quint32 size = quint32(frame.size());
-    return words({0xA1B2C3D4, 0x00040002, 0, 0, 65535, quint32(link)}) +
-           words({1700000000, 123456, size, size}) + frame;
-}
-
-QByteArray pcapngFile(int link, const QByteArray &frame) {
-    const quint32 size = quint32(frame.size()), padded = (size + 3) / 4 * 4;
-    return words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}) +
-           words({1, 20, quint32(link), 65535, 20}) +
-           words({6, 32 + padded, 0, 0x00060A24, 0x181E5240, size, size}) + frame +
-           QByteArray(int(padded - size), '\0') + words({32 + padded});
-}
-
-std::string write(const QTemporaryDir &folder, const QByteArray &content) {
-    put(folder.filePath("c.pcap"), content);
-    return folder.filePath("c.pcap").toStdString();
-}
-
-} // namespace
 
 class TestLinkTypes : public QObject {
     Q_OBJECT
+
+    // IPv4 from 192.168.1.201, UDP from port 2368 to 2369, "payload".
+    static inline const QByteArray ipFrame = QByteArray::fromHex("450000230000400040117859c0a801c9ffffffff"
+                                                                 "09400941000f0000"
+                                                                 "7061796c6f6164");
+
+    /// What stands before the IPv4 header, by the number of the link type in the file.
+    static inline const QMap<int, QByteArray> linkHeaders = {
+        {0, QByteArray::fromHex("02000000")}, // the family, of a little-endian host
+        {1, QByteArray::fromHex("ffffffffffff607688000000") + "\x08" + '\0'}, // addresses, EtherType
+        {12, {}},
+        {14, {}},
+        {101, {}},
+        {108, QByteArray::fromHex("00000002")},                         // the family, big-endian
+        {113, QByteArray::fromHex("00000001000660768800000000000800")}, // Linux cooked: EtherType last
+        {228, {}},
+        {276, QByteArray::fromHex("0800000000000002000100066076880000000000")}, // and first
+    };
+
+    static QByteArray words(std::initializer_list<quint32> values) {
+        QByteArray bytes;
+        for (const quint32 value : values) {
+            for (int shift = 0; shift < 32; shift += 8)
+                bytes += char(value >> shift);
+        }
+        return bytes;
+    }
+
+    static QByteArray pcapFile(int link, const QByteArray &frame) {
+        const quint32 size = quint32(frame.size());
+        return words({0xA1B2C3D4, 0x00040002, 0, 0, 65535, quint32(link)}) +
+               words({1700000000, 123456, size, size}) + frame;
+    }
+
+    static QByteArray pcapngFile(int link, const QByteArray &frame) {
+        const quint32 size = quint32(frame.size()), padded = (size + 3) / 4 * 4;
+        return words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}) +
+               words({1, 20, quint32(link), 65535, 20}) +
+               words({6, 32 + padded, 0, 0x00060A24, 0x181E5240, size, size}) + frame +
+               QByteArray(int(padded - size), '\0') + words({32 + padded});
+    }
+
+    static std::string write(const QTemporaryDir &folder, const QByteArray &content) {
+        put(folder.filePath("c.pcap"), content);
+        return folder.filePath("c.pcap").toStdString();
+    }
 
 private Q_SLOTS:
     void datagramsAreRead_data() {

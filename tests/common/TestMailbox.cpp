@@ -1,21 +1,13 @@
 #include "common/Mailbox.h"
 
-#include <QtTest>
-
-#include <memory>
 #include <poll.h>
-#include <thread>
 
 using namespace hermes;
 
-namespace {
-
-bool isReadable(int descriptor, int milliseconds = 0) {
+static bool isReadable(int descriptor, int milliseconds = 0) {
     pollfd waited{descriptor, POLLIN, 0};
     return ::poll(&waited, 1, milliseconds) == 1;
 }
-
-} // namespace
 
 class TestMailbox : public QObject {
     Q_OBJECT

@@ -1,9 +1,5 @@
 #include "common/files/NamedFile.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <random>
 #include <sys/stat.h>
 #include <unistd.h>
 

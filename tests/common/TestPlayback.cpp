@@ -1,8 +1,5 @@
 #include "common/recording/Playback.h"
 
-#include <QtTest>
-
-#include <atomic>
 #include <utility>
 
 using namespace hermes;

@@ -3,18 +3,14 @@
 
 using namespace hermes;
 
-namespace {
-
 /// What a process leaves that is killed while it records.
-QString copyUnfinished(const QString &folder, const QString &root) {
+static QString copyUnfinished(const QString &folder, const QString &root) {
     const QString copy = root + "/cut";
     QDir(root).mkpath("cut");
     for (const QString &name : QDir(folder).entryList(QDir::Files | QDir::Hidden))
         QFile::copy(folder + '/' + name, copy + '/' + name);
     return copy;
 }
-
-} // namespace
 
 class TestRecordingEnds : public QObject {
     Q_OBJECT

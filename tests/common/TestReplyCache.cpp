@@ -7,58 +7,55 @@
 
 using namespace hermes;
 
-namespace {
-
-/// Speaks the framing serial, frame by frame.
-class FrameClient {
-public:
-    explicit FrameClient(const QString &address) {
-        const QUrl url(address);
-        socket.connectToHost(url.host(), quint16(url.port()));
-    }
-    void send(const QJsonValue &message) {
-        SerialLink *const link = codec.link();
-        link->send(codec.encode(message).bytes, SerialLink::Rank::Usual);
-        for (QByteArray frame = link->next(); !frame.isEmpty(); frame = link->next())
-            socket.write(frame);
-    }
-    /// What has come, when there are so many.
-    std::vector<QJsonValue> replies(std::size_t count) {
-        QElapsedTimer limit;
-        limit.start();
-        while (got.size() < count && limit.elapsed() < 5000 * slowness) {
-            QTest::qWait(1);
-            for (const CodecItem &item : codec.feed(socket.readAll()))
-                got.push_back(item.message);
-            for (QByteArray frame = codec.link()->next(); !frame.isEmpty(); frame = codec.link()->next())
-                socket.write(frame); // reports
-        }
-        return std::exchange(got, {});
-    }
-    QJsonValue ask(const QJsonValue &message) {
-        send(message);
-        const auto all = replies(1);
-        return all.size() == 1 ? all[0] : QJsonValue();
-    }
-
-    QTcpSocket socket;
-    SerialCodec codec;
-    std::vector<QJsonValue> got;
-};
-
-class HaltingDaemon : public TestedDaemon {
-public:
-    HaltingDaemon() {
-        addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return ++halts; }));
-        addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
-    }
-    int halts = 0;
-};
-
-} // namespace
-
 class TestReplyCache : public QObject {
     Q_OBJECT
+
+    /// Speaks the framing serial, frame by frame.
+    class FrameClient {
+    public:
+        explicit FrameClient(const QString &address) {
+            const QUrl url(address);
+            socket.connectToHost(url.host(), quint16(url.port()));
+        }
+        void send(const QJsonValue &message) {
+            SerialLink *const link = codec.link();
+            link->send(codec.encode(message).bytes, SerialLink::Rank::Usual);
+            for (QByteArray frame = link->next(); !frame.isEmpty(); frame = link->next())
+                socket.write(frame);
+        }
+        /// What has come, when there are so many.
+        std::vector<QJsonValue> replies(std::size_t count) {
+            QElapsedTimer limit;
+            limit.start();
+            while (got.size() < count && limit.elapsed() < 5000 * slowness) {
+                QTest::qWait(1);
+                for (const CodecItem &item : codec.feed(socket.readAll()))
+                    got.push_back(item.message);
+                for (QByteArray frame = codec.link()->next(); !frame.isEmpty(); frame = codec.link()->next())
+                    socket.write(frame); // reports
+            }
+            return std::exchange(got, {});
+        }
+        QJsonValue ask(const QJsonValue &message) {
+            send(message);
+            const auto all = replies(1);
+            return all.size() == 1 ? all[0] : QJsonValue();
+        }
+
+        QTcpSocket socket;
+        SerialCodec codec;
+        std::vector<QJsonValue> got;
+    };
+
+    class HaltingDaemon : public TestedDaemon {
+    public:
+        HaltingDaemon() {
+            addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return ++halts; }));
+            addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
+        }
+        int halts = 0;
+    };
+
 private Q_SLOTS:
     void init() {
         Log::instance().setStderr(false);

@@ -2,9 +2,6 @@
 #include "common/schema/CheckableSchema.h"
 #include "common/schema/SchemaValidator.h"
 
-#include <QJsonDocument>
-#include <QtTest>
-
 using namespace hermes;
 
 /// Schemas that come from elsewhere.

@@ -1,35 +1,29 @@
 // Of several sensors one is taken.
 #include "common/capture/LidarStream.h"
 
-#include <QtTest>
-
 using namespace hermes;
-
-namespace {
-
-constexpr std::uint32_t first = 0xC0A801C9, second = 0xC0A801CA;
-constexpr std::int64_t second_ns = 1000000000;
-
-Datagram packet(std::uint32_t address, std::int64_t stamp_ns = 0, std::uint16_t port = 2368,
-                std::uint16_t from = 443) {
-    Datagram datagram;
-    datagram.source = address;
-    datagram.destinationPort = port;
-    datagram.sourcePort = from;
-    datagram.stamp_ns = stamp_ns;
-    return datagram;
-}
-
-SensorChoice patient() {
-    SensorChoice::Options options;
-    options.patience_ns = second_ns;
-    return SensorChoice(options);
-}
-
-} // namespace
 
 class TestSensorChoice : public QObject {
     Q_OBJECT
+
+    static constexpr std::uint32_t first = 0xC0A801C9, second = 0xC0A801CA;
+    static constexpr std::int64_t second_ns = 1000000000;
+
+    static Datagram packet(std::uint32_t address, std::int64_t stamp_ns = 0, std::uint16_t port = 2368,
+                           std::uint16_t from = 443) {
+        Datagram datagram;
+        datagram.source = address;
+        datagram.destinationPort = port;
+        datagram.sourcePort = from;
+        datagram.stamp_ns = stamp_ns;
+        return datagram;
+    }
+
+    static SensorChoice patient() {
+        SensorChoice::Options options;
+        options.patience_ns = second_ns;
+        return SensorChoice(options);
+    }
 
 private Q_SLOTS:
     void theFirstIsTaken() {

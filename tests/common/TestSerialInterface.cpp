@@ -3,22 +3,11 @@
 #include "common/interface/PtyInterface.h"
 #include "common/interface/SerialInterface.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <fcntl.h>
 #include <termios.h>
 #include <unistd.h>
 
 using namespace hermes;
-
-namespace {
-
-InterfaceUrl urlOf(const QString &text) {
-    return *InterfaceUrl::parse(text);
-}
-
-} // namespace
 
 // A folder as sysfs has it, and a device that is a link to its port.
 static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseconds) {
@@ -33,6 +22,9 @@ static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseco
 /// Serial lines on real pseudo-terminals.
 class TestSerialInterface : public QObject {
     Q_OBJECT
+
+    static InterfaceUrl urlOf(const QString &text) { return *InterfaceUrl::parse(text); }
+
 private Q_SLOTS:
     void latencyOfAnAdapterIsLowered() {
         const QTemporaryDir system;

@@ -4,10 +4,7 @@
 #include "common/Time.h"
 #include "common/client/Client.h"
 #include "tests/support/NoisyLine.h"
-#include "tests/support/Patience.h"
 #include "tests/support/PatientClient.h"
-
-#include <set>
 
 using namespace hermes;
 

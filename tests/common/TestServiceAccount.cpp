@@ -1,6 +1,5 @@
 #include "common/ServiceAccount.h"
 
-#include <QtTest>
 #include <grp.h>
 #include <pwd.h>
 

@@ -1,7 +1,6 @@
 #include "common/settings/DottedPath.h"
 #include "common/settings/Settings.h"
 
-#include <QtTest>
 #include <cerrno>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>

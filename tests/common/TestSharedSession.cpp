@@ -1,9 +1,7 @@
 // Several loggers that record at the same time, together or in each other's way.
 #include "LoggerFixture.h"
 
-#include <atomic>
 #include <future>
-#include <thread>
 
 using namespace hermes;
 

@@ -1,7 +1,6 @@
 #include "common/daemon/SignalWatcher.h"
 
 #include <QSignalSpy>
-#include <QtTest>
 #include <csignal>
 #include <sys/wait.h>
 #include <unistd.h>

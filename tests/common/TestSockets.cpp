@@ -1,8 +1,6 @@
 // Waiting for sockets while signals come.
 #include "common/platform/Sockets.h"
 
-#include <QElapsedTimer>
-#include <QtTest>
 #include <csignal>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -10,39 +8,35 @@
 
 using namespace hermes;
 
-namespace {
-
-volatile std::sig_atomic_t writeTo = -1;
-volatile std::sig_atomic_t signalsLeft = 0; // before the handler writes
-
-void handle(int) {
-    signalsLeft = signalsLeft - 1;
-    if (signalsLeft == 0 && ::write(writeTo, "x", 1) < 0)
-        ::abort();
-}
-
-/// A signal every 20 ms.
-class Signals {
-public:
-    Signals() {
-        struct sigaction action {};
-        action.sa_handler = handle; // without SA_RESTART
-        ::sigaction(SIGALRM, &action, nullptr);
-        set(20000);
-    }
-    ~Signals() { set(0); }
-
-private:
-    static void set(suseconds_t period_us) {
-        const itimerval timer{{0, period_us}, {0, period_us}};
-        ::setitimer(ITIMER_REAL, &timer, nullptr);
-    }
-};
-
-} // namespace
-
 class TestSockets : public QObject {
     Q_OBJECT
+
+    static inline volatile std::sig_atomic_t writeTo = -1;
+    static inline volatile std::sig_atomic_t signalsLeft = 0; // before the handler writes
+
+    static void handle(int) {
+        signalsLeft = signalsLeft - 1;
+        if (signalsLeft == 0 && ::write(writeTo, "x", 1) < 0)
+            ::abort();
+    }
+
+    /// A signal every 20 ms.
+    class Signals {
+    public:
+        Signals() {
+            struct sigaction action {};
+            action.sa_handler = handle; // without SA_RESTART
+            ::sigaction(SIGALRM, &action, nullptr);
+            set(20000);
+        }
+        ~Signals() { set(0); }
+
+    private:
+        static void set(suseconds_t period_us) {
+            const itimerval timer{{0, period_us}, {0, period_us}};
+            ::setitimer(ITIMER_REAL, &timer, nullptr);
+        }
+    };
 
 private Q_SLOTS:
     void init() {

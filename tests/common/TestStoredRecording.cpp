@@ -1,19 +1,12 @@
 #include "common/Time.h"
 #include "common/recording/Sidecar.h"
 #include "common/recording/StoredRecording.h"
-#include "tests/support/Files.h"
-
-#include <QDir>
-#include <QTemporaryDir>
-#include <QtTest>
 
 #include <sys/stat.h>
 
 using namespace hermes;
 
-namespace {
-
-QJsonObject usual() {
+static QJsonObject usual() {
     return {{"format", Sidecar::format},
             {"start", 1000.5},
             {"end", 1003},
@@ -23,13 +16,11 @@ QJsonObject usual() {
             {"files", QJsonArray{QJsonObject{{"name", "logger-0001.pcap"}}, QJsonObject{{"name", "b"}}}}};
 }
 
-QJsonObject with(const char *member, const QJsonValue &value) {
+static QJsonObject with(const char *member, const QJsonValue &value) {
     QJsonObject content = usual();
     content.insert(member, value);
     return content;
 }
-
-} // namespace
 
 /// Recordings that are found to be replayed, and sidecars that somebody has edited.
 class TestStoredRecording : public QObject {

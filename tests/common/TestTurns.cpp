@@ -3,23 +3,14 @@
 
 #include <QEventLoop>
 #include <QTest>
-#include <QTimer>
-#include <algorithm>
 #include <list>
-#include <memory>
-#include <random>
-#include <vector>
 
 namespace hermes {
-namespace {
-
-void spend(double duration_s) {
+static void spend(double duration_s) {
     const double end = monotonicNow() + duration_s;
     while (monotonicNow() < end) {
     }
 }
-
-} // namespace
 
 class TestTurns : public QObject {
     Q_OBJECT

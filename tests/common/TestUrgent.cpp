@@ -4,45 +4,42 @@
 
 using namespace hermes;
 
-namespace {
-
-class StoppableDaemon : public TestedDaemon {
-public:
-    StoppableDaemon() {
-        addCommand(Command("work", "Takes a millisecond").returnsNull().handler([this](const Call &) {
-            const double end = monotonicNow() + 0.001;
-            while (monotonicNow() < end) {
-            }
-            ++worked;
-            return QJsonValue();
-        }));
-        addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return worked; }));
-        addCommand(Command("freeze", "Stops, too")
-                       .param(Field::number("wait_s", "").range(0, 10).byDefault(1))
-                       .param(Field::text("client", "").with("maxLength", 5).byDefault("nobody"))
-                       .urgent()
-                       .handler([this](const Call &call) -> Result<QJsonValue> {
-                           taken = call.params;
-                           return QJsonValue(worked);
-                       }));
-        addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
-    }
-    int worked = 0;
-    QJsonObject taken; // by freeze
-};
-
-QByteArray batchOf(int count, const QString &method, bool notifications = false) {
-    QJsonArray batch;
-    for (int i = 0; i < count; ++i)
-        batch.append(notifications ? makeNotification(method, QJsonObject())
-                                   : makeRequest(i, method, QJsonObject()));
-    return compactJson(batch);
-}
-
-} // namespace
-
 class TestUrgent : public QObject {
     Q_OBJECT
+
+    class StoppableDaemon : public TestedDaemon {
+    public:
+        StoppableDaemon() {
+            addCommand(Command("work", "Takes a millisecond").returnsNull().handler([this](const Call &) {
+                const double end = monotonicNow() + 0.001;
+                while (monotonicNow() < end) {
+                }
+                ++worked;
+                return QJsonValue();
+            }));
+            addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return worked; }));
+            addCommand(Command("freeze", "Stops, too")
+                           .param(Field::number("wait_s", "").range(0, 10).byDefault(1))
+                           .param(Field::text("client", "").with("maxLength", 5).byDefault("nobody"))
+                           .urgent()
+                           .handler([this](const Call &call) -> Result<QJsonValue> {
+                               taken = call.params;
+                               return QJsonValue(worked);
+                           }));
+            addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
+        }
+        int worked = 0;
+        QJsonObject taken; // by freeze
+    };
+
+    static QByteArray batchOf(int count, const QString &method, bool notifications = false) {
+        QJsonArray batch;
+        for (int i = 0; i < count; ++i)
+            batch.append(notifications ? makeNotification(method, QJsonObject())
+                                       : makeRequest(i, method, QJsonObject()));
+        return compactJson(batch);
+    }
+
 private Q_SLOTS:
     void init() {
         Log::instance().setStderr(false);

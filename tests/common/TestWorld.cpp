@@ -1,21 +1,11 @@
 #include "common/world/World.h"
 
-#include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 using namespace hermes;
 using vectorlib::Pose2D;
 
-namespace {
+static const char *square = "{\"edges\": [[0,0,1,0],\n[1,0,1,1],\n[1,1,0,0]], \"poses\": [\n[0.5,0.5,0]]}";
 
-const char *square = "{\"edges\": [[0,0,1,0],\n[1,0,1,1],\n[1,1,0,0]], \"poses\": [\n[0.5,0.5,0]]}";
-
-double distance(const World::Edge &e, double x, double y) {
+static double distance(const World::Edge &e, double x, double y) {
     const double dx = e.x2 - e.x1, dy = e.y2 - e.y1;
     const double t = ((x - e.x1) * dx + (y - e.y1) * dy) / (dx * dx + dy * dy);
     const double along = std::min(1.0, std::max(0.0, t));
@@ -23,15 +13,13 @@ double distance(const World::Edge &e, double x, double y) {
 }
 
 /// A world of deploy/worlds.
-Outcome<World> shipped(const QString &name) {
+static Outcome<World> shipped(const QString &name) {
     const QString path = qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/" + name + ".json";
     const auto world = readWorld(path.toStdString());
     if (!world)
         qWarning("%s", world.error().c_str());
     return world;
 }
-
-} // namespace
 
 class TestWorld : public QObject {
     Q_OBJECT

@@ -37,9 +37,7 @@ public:
     bool live = false; ///< a clock runs; else only the bytes tell the time, as in a recording
 
 private:
-    static hermes::Moment at(int ms) {
-        return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000};
-    }
+    static hermes::Moment at(int ms) { return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000}; }
     hermes::seriallogger::FixTracker::Sink sink() {
         return [this](const hermes::seriallogger::Fix &fix) {
             fixes << hermes::asJson(valuesOf(fix)).toObject();

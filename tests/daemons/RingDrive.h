@@ -18,6 +18,8 @@ inline double distance(const Pose2D &a, const Pose2D &b) {
 /// A robot on slipping wheels goes twice around a building whose rooms are alike; its scanner sees 5 m far.
 class RingDrive : protected MatcherFixture {
 protected:
+    /// With a matcher that takes the odometry, too.
+    void begin();
     void prepare();
     /// To what the matcher tells.
     void listen();
@@ -43,6 +45,16 @@ protected:
     int graphs = 0;
     std::size_t told = 0; // of the odometry
 };
+
+inline void RingDrive::begin() {
+    setUp();
+    call("settings.set",
+         {{"values",
+           QJsonObject{{"odometry", QJsonObject{{"address", QString("127.0.0.1:%1").arg(sourcePort)}}}}}});
+    QTRY_VERIFY(source->hasSubscribers("odometry"));
+    prepare();
+    listen();
+}
 
 inline void RingDrive::prepare() {
     random.seed(11);

@@ -3,11 +3,6 @@
 #include "daemons/simulator/Drivetrain.h"
 #include "protocol/wire/Fields.h"
 
-#include <QtTest>
-#include <cmath>
-#include <limits>
-#include <random>
-
 using namespace hermes;
 using namespace hermes::motorcontrol;
 

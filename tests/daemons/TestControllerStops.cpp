@@ -4,9 +4,6 @@
 #include "daemons/motorcontrol/StandstillWatch.h"
 #include "protocol/roboclaw/Packet.h"
 
-#include <QtTest>
-#include <random>
-
 using namespace hermes;
 using namespace hermes::simulator;
 using namespace hermes::motorcontrol;

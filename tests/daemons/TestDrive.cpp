@@ -3,30 +3,17 @@
 #include "daemons/motorcontrol/EncoderMonitor.h"
 #include "daemons/motorcontrol/Threshold.h"
 
-#include <QJsonArray>
-#include <QtTest>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
-
 Q_DECLARE_METATYPE(std::function<void(hermes::motorcontrol::Drive &)>)
 Q_DECLARE_METATYPE(std::function<double(double)>)
 Q_DECLARE_METATYPE(std::function<double(double, double)>)
 
 using namespace hermes;
 using namespace hermes::motorcontrol;
-
-namespace {
-
-constexpr quint64 anna = 1, bert = 2, carl = 3;
-const WheelValues still{};
-const double notANumber = std::numeric_limits<double>::quiet_NaN();
-
 using Mismatch = EncoderMonitor::Mismatch;
 
-} // namespace
+static constexpr quint64 anna = 1, bert = 2, carl = 3;
+static const WheelValues still{};
+static const double notANumber = std::numeric_limits<double>::quiet_NaN();
 
 // When a fault is found in so many seconds, told and measured by their time.
 template <typename At>

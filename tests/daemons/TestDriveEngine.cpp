@@ -4,8 +4,6 @@
 #include "VirtualDrive.h"
 #include "tests/support/HeapGrowth.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::motorcontrol;
 using namespace hermes::simulator;

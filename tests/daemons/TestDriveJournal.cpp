@@ -4,11 +4,7 @@
 #include "tests/support/FileSizeLimit.h"
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <malloc.h>
-#include <set>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;
@@ -18,9 +14,7 @@ using vectorlib::Pose2D;
 using vectorlib::TrackedBy;
 using vectorlib::Transformation2D;
 
-namespace {
-
-QString difference(const MappedDrive &a, const MappedDrive &b) {
+static QString difference(const MappedDrive &a, const MappedDrive &b) {
     const vectorlib::LoopCloser &x = a.loops, &y = b.loops;
     if (x.scans() != y.scans() || x.keys().size() != y.keys().size() ||
         x.graph().constraints.size() != y.graph().constraints.size())
@@ -53,8 +47,6 @@ QString difference(const MappedDrive &a, const MappedDrive &b) {
     }
     return apart < 1e-9 ? QString() : QString("%1 apart").arg(apart);
 }
-
-} // namespace
 
 class TestDriveJournal : public QObject {
     Q_OBJECT

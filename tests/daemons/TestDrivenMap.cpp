@@ -12,12 +12,10 @@ using namespace hermes;
 using namespace hermes::simulator;
 using namespace vectorlib;
 
-namespace {
+static constexpr std::int64_t start_ns = 1700000000000000000;
+static constexpr double most = 0.001; // metres
 
-constexpr std::int64_t start_ns = 1700000000000000000;
-constexpr double most = 0.001; // metres
-
-TimedScan scanOf(const velodyne::Turn &turn) {
+static TimedScan scanOf(const velodyne::Turn &turn) {
     TimedScan scan;
     scan.stamp = double(turn.begin_ns) * 1e-9;
     scan.rays = turn.firings;
@@ -27,8 +25,6 @@ TimedScan scanOf(const velodyne::Turn &turn) {
     }
     return scan;
 }
-
-} // namespace
 
 class TestDrivenMap : public QObject {
     Q_OBJECT

@@ -2,81 +2,73 @@
 #include "daemons/simulator/PacketPump.h"
 #include "vectorlib/geometry/Angle.h"
 
-#include <QUdpSocket>
-#include <QtTest>
-
-#include <atomic>
-
 using namespace hermes;
 using namespace hermes::simulator;
 
-namespace {
-
-constexpr std::int64_t start_ns = 1700000000300000000; // 2023-11-14 22:13:20.3 UTC
-constexpr double degree = vectorlib::pi / 180;
-
-/// What a sentence holds, read by its published form alone; empty when its checksum is wrong.
-QList<QByteArray> fieldsOf(const QByteArray &sentence) {
-    const int star = sentence.lastIndexOf('*');
-    if (!sentence.startsWith('$') || star != sentence.size() - 3)
-        return {};
-    char sum = 0;
-    for (const char byte : sentence.mid(1, star - 1))
-        sum = char(sum ^ byte);
-    if (sentence.mid(star + 1) != QByteArray(1, sum).toHex().toUpper())
-        return {};
-    return sentence.mid(1, star - 1).split(',');
-}
-
-/// Degrees of ddmm.mmmm and its letter.
-double angleOf(const QByteArray &text, const QByteArray &letter) {
-    const int point = text.indexOf('.');
-    const double degrees = text.left(point - 2).toDouble() + text.mid(point - 2).toDouble() / 60;
-    return letter == "S" || letter == "W" ? -degrees : degrees;
-}
-
-struct Metres {
-    double x, y, z;
-};
-/// Of the WGS 84 ellipsoid, from the centre of the Earth.
-Metres earthFixed(double latitude_deg, double longitude_deg, double height) {
-    const double phi = latitude_deg * degree, lambda = longitude_deg * degree, e2 = 0.00669437999014;
-    const double n = 6378137 / std::sqrt(1 - e2 * std::sin(phi) * std::sin(phi));
-    return {(n + height) * std::cos(phi) * std::cos(lambda), (n + height) * std::cos(phi) * std::sin(lambda),
-            (n * (1 - e2) + height) * std::sin(phi)};
-}
-
-struct Told {
-    double after_s; ///< the start
-    QList<QByteArray> fields;
-};
-
-/// Lets the robot drive for so long and gives all sentences.
-QList<Told> listen(Simulation &simulation, double seconds) {
-    QList<Told> told;
-    const std::int64_t end_ns = simulation.now_ns() + std::int64_t(seconds * 1e9);
-    while (simulation.now_ns() < end_ns) {
-        const std::string_view text = simulation.sentences();
-        for (const QByteArray &line : QByteArray(text.data(), int(text.size())).split('\n')) {
-            if (!line.isEmpty())
-                told.append({double(simulation.now_ns() - start_ns) * 1e-9, fieldsOf(line.trimmed())});
-        }
-        simulation.skip(1);
-    }
-    return told;
-}
-
-World field() {
-    World world;
-    world.edges = {{-90, -90, 90, -90}};
-    world.poses = {{3, 4, 0}, {3, 60, 0}};
-    return world;
-}
-
-} // namespace
-
 class TestGpsModel : public QObject {
     Q_OBJECT
+
+    static constexpr std::int64_t start_ns = 1700000000300000000; // 2023-11-14 22:13:20.3 UTC
+    static constexpr double degree = vectorlib::pi / 180;
+
+    /// What a sentence holds, read by its published form alone; empty when its checksum is wrong.
+    static QList<QByteArray> fieldsOf(const QByteArray &sentence) {
+        const int star = sentence.lastIndexOf('*');
+        if (!sentence.startsWith('$') || star != sentence.size() - 3)
+            return {};
+        char sum = 0;
+        for (const char byte : sentence.mid(1, star - 1))
+            sum = char(sum ^ byte);
+        if (sentence.mid(star + 1) != QByteArray(1, sum).toHex().toUpper())
+            return {};
+        return sentence.mid(1, star - 1).split(',');
+    }
+
+    /// Degrees of ddmm.mmmm and its letter.
+    static double angleOf(const QByteArray &text, const QByteArray &letter) {
+        const int point = text.indexOf('.');
+        const double degrees = text.left(point - 2).toDouble() + text.mid(point - 2).toDouble() / 60;
+        return letter == "S" || letter == "W" ? -degrees : degrees;
+    }
+
+    struct Metres {
+        double x, y, z;
+    };
+    /// Of the WGS 84 ellipsoid, from the centre of the Earth.
+    static Metres earthFixed(double latitude_deg, double longitude_deg, double height) {
+        const double phi = latitude_deg * degree, lambda = longitude_deg * degree, e2 = 0.00669437999014;
+        const double n = 6378137 / std::sqrt(1 - e2 * std::sin(phi) * std::sin(phi));
+        return {(n + height) * std::cos(phi) * std::cos(lambda),
+                (n + height) * std::cos(phi) * std::sin(lambda), (n * (1 - e2) + height) * std::sin(phi)};
+    }
+
+    struct Told {
+        double after_s; ///< the start
+        QList<QByteArray> fields;
+    };
+
+    /// Lets the robot drive for so long and gives all sentences.
+    static QList<Told> listen(Simulation &simulation, double seconds) {
+        QList<Told> told;
+        const std::int64_t end_ns = simulation.now_ns() + std::int64_t(seconds * 1e9);
+        while (simulation.now_ns() < end_ns) {
+            const std::string_view text = simulation.sentences();
+            for (const QByteArray &line : QByteArray(text.data(), int(text.size())).split('\n')) {
+                if (!line.isEmpty())
+                    told.append({double(simulation.now_ns() - start_ns) * 1e-9, fieldsOf(line.trimmed())});
+            }
+            simulation.skip(1);
+        }
+        return told;
+    }
+
+    static World field() {
+        World world;
+        world.edges = {{-90, -90, 90, -90}};
+        world.poses = {{3, 4, 0}, {3, 60, 0}};
+        return world;
+    }
+
 private Q_SLOTS:
     void fixesKeepTheirGrid_data() {
         QTest::addColumn<int>("rate");

@@ -2,11 +2,6 @@
 #include "JournalBytes.h"
 #include "daemons/scanmatcher/DriveJournal.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <functional>
-
 using namespace hermes;
 using namespace hermes::scanmatcher;
 using journal::item;

@@ -2,9 +2,6 @@
 #include "RingDrive.h"
 #include "tests/support/PatientClient.h"
 
-#include <QProcess>
-#include <QRegularExpression>
-
 using namespace hermes;
 using namespace hermes::scanmatcher;
 

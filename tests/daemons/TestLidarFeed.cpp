@@ -3,18 +3,12 @@
 #include "protocol/nmea/Sentence.h"
 #include "tests/support/RealData.h"
 
-#include <QUdpSocket>
-
-#include <set>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
-namespace {
-
 /// A position packet of a sensor that is locked to a GPS; the sentence without checksum.
-std::vector<std::uint8_t> positionPacket(std::int64_t stamp_ns, const std::string &sentence) {
+static std::vector<std::uint8_t> positionPacket(std::int64_t stamp_ns, const std::string &sentence) {
     std::vector<std::uint8_t> bytes(velodyne::positionPacketSize);
     const auto stamp_us = std::uint32_t(stamp_ns / 1000 % velodyne::stampPeriod_us);
     for (int i = 0; i < 4; ++i)
@@ -28,7 +22,7 @@ std::vector<std::uint8_t> positionPacket(std::int64_t stamp_ns, const std::strin
 }
 
 /// A packet of a sensor like Sensor that sees a wall 6 m away.
-std::array<std::uint8_t, velodyne::packetSize> farPacket(int number) {
+static std::array<std::uint8_t, velodyne::packetSize> farPacket(int number) {
     auto bytes = Sensor().packet(number);
     for (std::size_t block = 0; block < velodyne::blocksPerPacket; ++block) {
         for (std::size_t slot = 0; slot < velodyne::slotsPerBlock; ++slot) {
@@ -41,7 +35,7 @@ std::array<std::uint8_t, velodyne::packetSize> farPacket(int number) {
 }
 
 /// The ranges of all points, each once.
-std::set<double> rangesOf(const std::vector<Turn> &turns) {
+static std::set<double> rangesOf(const std::vector<Turn> &turns) {
     std::set<double> ranges;
     for (const Turn &turn : turns) {
         for (const velodyne::Point &point : turn.points)
@@ -51,7 +45,7 @@ std::set<double> rangesOf(const std::vector<Turn> &turns) {
 }
 
 /// Sends every datagram of a capture to a local port, at the pace at which they were received.
-void sendCapture(const QString &path, quint16 port) {
+static void sendCapture(const QString &path, quint16 port) {
     QUdpSocket socket;
     PcapReader reader;
     Datagram datagram;
@@ -68,8 +62,6 @@ void sendCapture(const QString &path, quint16 port) {
                              QHostAddress::LocalHost, port);
     }
 }
-
-} // namespace
 
 class TestLidarFeed : public QObject {
     Q_OBJECT

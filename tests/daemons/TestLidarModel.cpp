@@ -10,26 +10,22 @@ using namespace hermes::simulator;
 using vectorlib::Transformation2D;
 using Point = vectorlib::Vector2D<double>;
 
-namespace {
-
-constexpr std::int64_t start_ns = 1700000000000000000;
+static constexpr std::int64_t start_ns = 1700000000000000000;
 
 /// The robot looks at it from the origin.
-World wallAhead(double x) {
+static World wallAhead(double x) {
     World world;
     world.edges = {{x, -9, x, 9}};
     world.poses = {{0, 0, 0}};
     return world;
 }
 
-Simulation::Options exactAndStill() {
+static Simulation::Options exactAndStill() {
     Simulation::Options options;
     options.lidar.sigma = 0;
     options.rpm = 1e-3; // as good as standing still, looking straight ahead
     return options;
 }
-
-} // namespace
 
 class TestLidarModel : public QObject {
     Q_OBJECT

@@ -1,8 +1,6 @@
 // Replays of several files, with pauses and steps of the clock between and in them.
 #include "LidarListener.h"
 
-#include <QFile>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 

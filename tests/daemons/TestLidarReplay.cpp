@@ -1,9 +1,6 @@
 #include "LidarListener.h"
 #include "tests/support/RealData.h"
 
-#include <QFile>
-#include <QProcess>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 using velodyne::Turn;

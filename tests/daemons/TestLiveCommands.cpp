@@ -9,13 +9,7 @@ class TestLiveCommands : public QObject, RingDrive {
     Q_OBJECT
 private Q_SLOTS:
     void init() {
-        setUp();
-        call("settings.set",
-             {{"values", QJsonObject{{"odometry",
-                                      QJsonObject{{"address", QString("127.0.0.1:%1").arg(sourcePort)}}}}}});
-        QTRY_VERIFY(source->hasSubscribers("odometry"));
-        prepare();
-        listen();
+        begin();
         listenToMap();
         asked = answered = graphGaps = mapGaps = 0;
     }

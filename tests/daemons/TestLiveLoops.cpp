@@ -8,13 +8,7 @@ class TestLiveLoops : public QObject, RingDrive {
     Q_OBJECT
 private Q_SLOTS:
     void init() {
-        setUp();
-        call("settings.set",
-             {{"values", QJsonObject{{"odometry",
-                                      QJsonObject{{"address", QString("127.0.0.1:%1").arg(sourcePort)}}}}}});
-        QTRY_VERIFY(source->hasSubscribers("odometry"));
-        prepare();
-        listen();
+        begin();
         const Pose2D start = way.front();
         call("pose.set", {{"x", start.x}, {"y", start.y}, {"theta", start.theta}});
     }

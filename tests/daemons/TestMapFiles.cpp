@@ -2,26 +2,19 @@
 #include "MatcherFixture.h"
 #include "tests/support/PatientClient.h"
 
-#include "tests/support/Files.h"
 #include "tests/support/LoopWatch.h"
 #include "vectorlib/io/MapCsv.h"
 
-#include <QProcess>
-#include <QRegularExpression>
-#include <atomic>
 #include <fstream>
 #include <sys/syscall.h>
-#include <thread>
 #include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;
 
-namespace {
+static std::atomic<bool> diskHolds{false}; // what is in slow.csv
 
-std::atomic<bool> diskHolds{false}; // what is in slow.csv
-
-void writeMap(const QString &path, int edges) {
+static void writeMap(const QString &path, int edges) {
     std::vector<vectorlib::MapEdge> map;
     for (int i = 0; i < edges; ++i) {
         const double x = 2.5 * (i % 500) + 1e-9 * i, y = 2.5 * (i / 500) + 0.123456789;
@@ -37,8 +30,6 @@ void writeMap(const QString &path, int edges) {
     vectorlib::writeMapCsv(out, map);
     QVERIFY(out.flush().good());
 }
-
-} // namespace
 
 /// In place of that of the system, for all of this process.
 extern "C" ssize_t read(int file, void *to, size_t size) {

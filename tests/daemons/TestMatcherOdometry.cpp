@@ -8,17 +8,13 @@ using vectorlib::Pose2D;
 using vectorlib::Transformation2D;
 using vectorlib::Twist2D;
 
-namespace {
-
-constexpr double scanPeriod = 0.1, period = 0.02;
-constexpr int perScan = 5;
+static constexpr double scanPeriod = 0.1, period = 0.02;
+static constexpr int perScan = 5;
 
 // To and fro, 1.6 m and 1.2 rad a scan: nobody who goes by the motion so far expects that.
-Pose2D zigzag(int i) {
+static Pose2D zigzag(int i) {
     return i % 2 ? Pose2D{0.6 + 0.01 * i, 0.2, 1.2} : Pose2D{-1.0 + 0.01 * i, 0.1, 0};
 }
-
-} // namespace
 
 class TestMatcherOdometry : public QObject, MatcherFixture {
     Q_OBJECT

@@ -2,36 +2,26 @@
 #include "daemons/motorcontrol/MotionLimits.h"
 #include "daemons/motorcontrol/Odometry.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <random>
-
 Q_DECLARE_METATYPE(vectorlib::Twist2D)
 Q_DECLARE_METATYPE(vectorlib::Pose2D)
 Q_DECLARE_METATYPE(hermes::motorcontrol::WheelValues)
 
 using namespace hermes;
 using namespace hermes::motorcontrol;
-
-namespace {
-
-const WheelGeometry geometry{0.1, 0.25, 0.2};
 using vectorlib::pi;
-
-double distance(const Pose2D &a, const Pose2D &b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
-
-Twist2D randomTwist(std::mt19937 &random) {
-    std::uniform_real_distribution<double> value(-2, 2);
-    return {value(random), value(random), value(random)};
-}
-
-} // namespace
 
 class TestMotion : public QObject {
     Q_OBJECT
+
+    static inline const WheelGeometry geometry{0.1, 0.25, 0.2};
+
+    static double distance(const Pose2D &a, const Pose2D &b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+    static Twist2D randomTwist(std::mt19937 &random) {
+        std::uniform_real_distribution<double> value(-2, 2);
+        return {value(random), value(random), value(random)};
+    }
+
 private Q_SLOTS:
     void wheelsTurnAsNamed_data() {
         const Rows<Twist2D, WheelValues> row("twist", "expected"); // expected: radius 0.1, lever 0.45

@@ -2,7 +2,6 @@
 #include "MachineStalls.h"
 #include "MotorFixture.h"
 
-#include <QTcpSocket>
 #include <QUrl>
 
 using namespace hermes;

@@ -3,22 +3,15 @@
 #include "common/settings/DottedPath.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QTcpSocket>
 #include <QUrl>
-#include <atomic>
 #include <ctime>
 
 using namespace hermes;
 using namespace hermes::motorcontrol;
 using namespace hermes::simulator;
-
-namespace {
-
 using vectorlib::pi;
 
-std::atomic<double> asleep_s{0}; // so long the machine has slept
-
-} // namespace
+static std::atomic<double> asleep_s{0}; // so long the machine has slept
 
 // Instead of that of the library: the machine can sleep.
 double hermes::bootNow() {

@@ -8,10 +8,8 @@
 using namespace hermes;
 using namespace hermes::simulator;
 
-namespace {
-
 // Commands at 20 Hz; "pause" and "go" on its input are answered when obeyed.
-const char *const blind = R"(
+static const char *const blind = R"(
 import json, select, socket, sys, time
 line = socket.create_connection((sys.argv[1], int(sys.argv[2])), 5)
 line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -26,8 +24,6 @@ while True:
         goes = sys.stdin.readline().strip() == "go"
         print("done", flush=True)
 )";
-
-} // namespace
 
 class TestMotorGaps : public QObject, StopTrials {
     Q_OBJECT

@@ -4,11 +4,7 @@
 #include "daemons/simulator/Simulation.h"
 #include "protocol/roboclaw/Bus.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 #include <cerrno>
-#include <cmath>
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>

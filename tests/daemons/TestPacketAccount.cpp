@@ -2,35 +2,27 @@
 #include "daemons/velodynelogger/PacketAccount.h"
 #include "tests/support/Sensor.h"
 
-#include <QtTest>
-
-#include <random>
-#include <thread>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 
-namespace {
-
-/// Counts of the packets with these numbers, in this order.
-PacketAccount::Counts countsOf(const Sensor &sensor, const std::vector<int> &numbers) {
-    PacketAccount account;
-    for (const int number : numbers)
-        account.add(sensorDatagram(sensor.packet(number), sensor.stamp(number)));
-    return account.counts();
-}
-
-template <typename Bytes>
-PacketAccount::Counts countsOfPayload(const Bytes &payload) {
-    PacketAccount account;
-    account.add(sensorDatagram(payload, 1));
-    return account.counts();
-}
-
-} // namespace
-
 class TestPacketAccount : public QObject {
     Q_OBJECT
+
+    /// Counts of the packets with these numbers, in this order.
+    static PacketAccount::Counts countsOf(const Sensor &sensor, const std::vector<int> &numbers) {
+        PacketAccount account;
+        for (const int number : numbers)
+            account.add(sensorDatagram(sensor.packet(number), sensor.stamp(number)));
+        return account.counts();
+    }
+
+    template <typename Bytes>
+    static PacketAccount::Counts countsOfPayload(const Bytes &payload) {
+        PacketAccount account;
+        account.add(sensorDatagram(payload, 1));
+        return account.counts();
+    }
+
 private Q_SLOTS:
     void missingPacketsAreCounted_data() {
         const Rows<std::vector<int>, int, int> row("numbers", "missing", "late");

@@ -1,25 +1,17 @@
 #include "daemons/simulator/RobotBody.h"
 
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::simulator;
 using Point = vectorlib::Vector2D<double>;
 
-namespace {
+static constexpr double step = 0.001; // seconds
+static constexpr double robotRadius = 0.3;
+static const Point farAway(100, 100);
 
-constexpr double step = 0.001; // seconds
-constexpr double robotRadius = 0.3;
-const Point farAway(100, 100);
-
-void pass(People &people, double seconds, Point robot) {
+static void pass(People &people, double seconds, Point robot) {
     for (int i = 0; i < std::lround(seconds / step); ++i)
         people.advance(step, robot);
 }
-
-} // namespace
 
 class TestPeople : public QObject {
     Q_OBJECT

@@ -1,39 +1,30 @@
 // What the scan matcher reads of other daemons' messages.
 #include "daemons/scanmatcher/MatcherMessages.h"
 
-#include <QJsonArray>
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::scanmatcher;
 
-namespace {
+static constexpr double start = 1.7e9;
 
-constexpr double start = 1.7e9;
-
-QJsonObject message() {
+static QJsonObject message() {
     return {{"pose", QJsonObject{{"x", 1}, {"y", 2}, {"theta", 3}}},
             {"twist", QJsonObject{{"vx", 0.1}, {"vy", 0.2}, {"omega", 0.3}}},
             {"covariance", QJsonArray{1, 0, 0, 0, 2, 0, 0, 0, 3}}};
 }
 
-Result<vectorlib::OdometrySample> odometryOf(const QJsonObject &data, double stamp) {
+static Result<vectorlib::OdometrySample> odometryOf(const QJsonObject &data, double stamp) {
     quint64 unknown = 0;
     return readOdometry(WireValue(data), stamp, unknown);
 }
 
-Result<Scan> scanOf(const QJsonObject &data) {
+static Result<Scan> scanOf(const QJsonObject &data) {
     quint64 unknown = 0;
     return readScan(WireValue(data), unknown);
 }
 
-QJsonObject scanMessage() {
+static QJsonObject scanMessage() {
     return {{"stamp", start}, {"turn", 7}, {"x", QJsonArray{1, 2}}, {"y", QJsonArray{3, 4}}};
 }
-
-} // namespace
 
 class TestReadMessages : public QObject {
     Q_OBJECT

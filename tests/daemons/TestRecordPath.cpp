@@ -4,9 +4,6 @@
 #include "tests/support/AllocationCounter.h"
 #include "tests/support/Sensor.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 

@@ -4,21 +4,14 @@
 #include "tests/support/FileSizeLimit.h"
 #include "tests/support/Sensor.h"
 
-#include <QProcess>
-#include <QStandardPaths>
-#include <QTemporaryDir>
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::velodynelogger;
 
-namespace {
-
-RecordingPlan planIn(const QTemporaryDir &folder) {
+static RecordingPlan planIn(const QTemporaryDir &folder) {
     return {folder.path(), "velodynelogger", 1e9, 3600};
 }
 
-std::vector<std::int64_t> stampsOf(const QString &path) {
+static std::vector<std::int64_t> stampsOf(const QString &path) {
     std::vector<std::int64_t> stamps;
     PcapReader reader;
     Datagram datagram;
@@ -32,25 +25,23 @@ std::vector<std::int64_t> stampsOf(const QString &path) {
     return stamps;
 }
 
-QStringList captures(const QTemporaryDir &folder) {
+static QStringList captures(const QTemporaryDir &folder) {
     return QDir(folder.path()).entryList({"*.pcap"}, QDir::Files, QDir::Name);
 }
 
-void push(Recorder &recorder, const Sensor &sensor, int first, int end) {
+static void push(Recorder &recorder, const Sensor &sensor, int first, int end) {
     for (int i = first; i < end; ++i)
         recorder.push(sensorDatagram(sensor.packet(i), sensor.stamp(i)), true);
 }
 
 /// What a process leaves that is killed: the sidecar as it was a moment before, the files as they are.
-QJsonObject sidecarOf(const RecordingState &state) {
+static QJsonObject sidecarOf(const RecordingState &state) {
     return {{"files", state.files},
             {"counts", asJson(state.counts)},
             {"losses", asJson(state.losses)},
             {"start", 1.0},
             {"end", 1.0}};
 }
-
-} // namespace
 
 class TestRecorder : public QObject {
     Q_OBJECT

@@ -3,10 +3,7 @@
 #include "daemons/seriallogger/SerialRecorder.h"
 #include "daemons/velodynelogger/Recorder.h"
 #include "tests/daemons/MachineStalls.h"
-#include "tests/support/Patience.h"
 #include "tests/support/Sensor.h"
-
-#include <QTemporaryDir>
 
 #include <sys/stat.h>
 #include <sys/syscall.h>

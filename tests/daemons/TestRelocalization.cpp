@@ -4,7 +4,6 @@
 #include "vectorlib/observation/SimulatedScanner.h"
 
 #include <fstream>
-#include <random>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;
@@ -12,9 +11,7 @@ using vectorlib::Pose2D;
 using Segments = std::vector<vectorlib::LineSegment2D<double>>;
 using Point = vectorlib::Vector2D<double>;
 
-namespace {
-
-Segments pillars() {
+static Segments pillars() {
     const auto world =
         readWorld(qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/deploy/worlds/pillars.json");
     Segments walls;
@@ -26,12 +23,12 @@ Segments pillars() {
     return walls;
 }
 
-Segments square() {
+static Segments square() {
     return {{{-3, -3}, {3, -3}}, {{3, -3}, {3, 3}}, {{3, 3}, {-3, 3}}, {{-3, 3}, {-3, -3}}};
 }
 
 // Halls side by side, each with some of the pillars, and these a little elsewhere.
-Segments building() {
+static Segments building() {
     const Segments hall = pillars();
     Segments walls;
     std::mt19937 random(5);
@@ -48,7 +45,7 @@ Segments building() {
 }
 
 // As if every wall had a point every 2 cm.
-vectorlib::EdgeRaw2D edgeOf(const vectorlib::LineSegment2D<double> &wall) {
+static vectorlib::EdgeRaw2D edgeOf(const vectorlib::LineSegment2D<double> &wall) {
     std::vector<Point> points;
     for (double t = 0; t <= wall.length(); t += 0.02)
         points.push_back(wall.begin() + wall.direction() * t);
@@ -56,16 +53,14 @@ vectorlib::EdgeRaw2D edgeOf(const vectorlib::LineSegment2D<double> &wall) {
     return {sums, wall, 0.01};
 }
 
-bool isNear(const Pose2D &a, const Pose2D &b) {
+static bool isNear(const Pose2D &a, const Pose2D &b) {
     return std::hypot(a.x - b.x, a.y - b.y) < 0.03 &&
            std::abs(vectorlib::wrapAngle(a.theta - b.theta)) < 0.02;
 }
 
-Pose2D poseOf(const QJsonObject &pose) {
+static Pose2D poseOf(const QJsonObject &pose) {
     return {pose["x"].toDouble(), pose["y"].toDouble(), pose["theta"].toDouble()};
 }
-
-} // namespace
 
 Q_DECLARE_METATYPE(vectorlib::Pose2D)
 

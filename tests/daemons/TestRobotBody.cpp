@@ -1,9 +1,5 @@
 #include "daemons/simulator/RobotBody.h"
 
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::simulator;
 

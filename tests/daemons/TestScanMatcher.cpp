@@ -2,7 +2,6 @@
 #include "tests/support/FileSizeLimit.h"
 
 #include <future>
-#include <limits>
 #include <sys/stat.h>
 
 using namespace hermes;

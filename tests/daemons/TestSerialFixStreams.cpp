@@ -1,9 +1,5 @@
 #include "tests/daemons/NmeaStream.h"
 
-#include <QtTest>
-#include <cmath>
-#include <random>
-
 using namespace hermes;
 using namespace hermes::seriallogger;
 

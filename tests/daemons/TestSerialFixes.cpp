@@ -1,8 +1,5 @@
 #include "tests/daemons/NmeaStream.h"
 
-#include <QtTest>
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::seriallogger;
 

@@ -1,8 +1,5 @@
 #include "SerialFilesFixture.h"
 
-#include <limits>
-#include <random>
-
 using namespace hermes;
 using namespace hermes::seriallogger;
 

@@ -1,12 +1,9 @@
 // The recordings of the serial logger: made, exported, replayed.
 #include "SerialLoggerFixture.h"
 #include "common/recording/Sidecar.h"
-#include "tests/support/Files.h"
 #include "tests/support/FreePort.h"
 
 #include <QTcpServer>
-#include <QTcpSocket>
-#include <QUdpSocket>
 
 using namespace hermes;
 using namespace hermes::seriallogger;

@@ -2,7 +2,6 @@
 #include "SerialFilesFixture.h"
 #include "common/recording/Sidecar.h"
 
-#include <limits>
 #include <unistd.h>
 
 using namespace hermes;

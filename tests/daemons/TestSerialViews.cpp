@@ -3,57 +3,50 @@
 #include "daemons/seriallogger/SerialMessages.h"
 #include "protocol/wire/Fields.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::seriallogger;
 
-namespace {
-
-struct Sentence {
-    static QByteArray of(const QByteArray &body) {
-        const auto sum = nmea::checksum({body.constData(), std::size_t(body.size())});
-        return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0') + "\r\n";
-    }
-    static QByteArray rmc(int second, const char *talker = "GP") {
-        return of(talker + QByteArray("RMC,1200") + QByteArray::number(second).rightJustified(2, '0') +
-                  ",A,4807.038,N,01131.000,E,010.0,084.4,230326");
-    }
-    static QByteArray gga(int second) {
-        return of("GPGGA,1200" + QByteArray::number(second).rightJustified(2, '0') +
-                  ",4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,");
-    }
-};
-
-Moment at(int ms) {
-    return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000};
-}
-
-std::string_view viewOf(const QByteArray &bytes) {
-    return {bytes.constData(), std::size_t(bytes.size())};
-}
-
-/// Each line as "OFFSET@MS text", with " ..." when it is cut.
-QStringList split(const QList<QByteArray> &chunks) {
-    LineSplitter splitter;
-    QStringList lines;
-    const auto sink = [&](const LineSplitter::Line &line) {
-        lines << QString("%1@%2 %3%4")
-                     .arg(line.offset)
-                     .arg(line.arrival.mono_ns / 1000000)
-                     .arg(QString::fromStdString(escaped(line.bytes)), line.cut ? " ..." : "");
-    };
-    int ms = 0;
-    for (const QByteArray &chunk : chunks)
-        splitter.feed(viewOf(chunk), at(ms++), sink);
-    splitter.finish(sink);
-    return lines;
-}
-
-} // namespace
-
 class TestSerialViews : public QObject {
     Q_OBJECT
+
+    struct Sentence {
+        static QByteArray of(const QByteArray &body) {
+            const auto sum = nmea::checksum({body.constData(), std::size_t(body.size())});
+            return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0') + "\r\n";
+        }
+        static QByteArray rmc(int second, const char *talker = "GP") {
+            return of(talker + QByteArray("RMC,1200") + QByteArray::number(second).rightJustified(2, '0') +
+                      ",A,4807.038,N,01131.000,E,010.0,084.4,230326");
+        }
+        static QByteArray gga(int second) {
+            return of("GPGGA,1200" + QByteArray::number(second).rightJustified(2, '0') +
+                      ",4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,");
+        }
+    };
+
+    static Moment at(int ms) { return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000}; }
+
+    static std::string_view viewOf(const QByteArray &bytes) {
+        return {bytes.constData(), std::size_t(bytes.size())};
+    }
+
+    /// Each line as "OFFSET@MS text", with " ..." when it is cut.
+    static QStringList split(const QList<QByteArray> &chunks) {
+        LineSplitter splitter;
+        QStringList lines;
+        const auto sink = [&](const LineSplitter::Line &line) {
+            lines << QString("%1@%2 %3%4")
+                         .arg(line.offset)
+                         .arg(line.arrival.mono_ns / 1000000)
+                         .arg(QString::fromStdString(escaped(line.bytes)), line.cut ? " ..." : "");
+        };
+        int ms = 0;
+        for (const QByteArray &chunk : chunks)
+            splitter.feed(viewOf(chunk), at(ms++), sink);
+        splitter.finish(sink);
+        return lines;
+    }
+
 private Q_SLOTS:
     void linesAreSplit_data() {
         const Rows<QList<QByteArray>, QStringList> row("chunks", "lines");

@@ -5,24 +5,18 @@
 #include "protocol/velodyne/SensorModel.h"
 #include "tests/support/FreePort.h"
 
-#include <QElapsedTimer>
-#include <QJsonArray>
-#include <QTemporaryDir>
-#include <QUdpSocket>
 #include <future>
 #include <sys/stat.h>
 
 using namespace hermes;
 using namespace hermes::supervisor;
 
-namespace {
-
-FoundSerial controllers(const QString &path, std::vector<int> addresses, bool anyAddress = false) {
+static FoundSerial controllers(const QString &path, std::vector<int> addresses, bool anyAddress = false) {
     return {path, path, {}, "roboclaw", "RoboClaw", 115200, std::move(addresses), anyAddress, false};
 }
 
 /// "PATH ADDRESS" of both controllers in settings.
-QStringList numbered(const QJsonObject &settings) {
+static QStringList numbered(const QJsonObject &settings) {
     QStringList both;
     for (const char *number : {"1", "2"}) {
         const QJsonValue one = settings["motorcontrol"]["controllers"][QLatin1String(number)];
@@ -32,11 +26,9 @@ QStringList numbered(const QJsonObject &settings) {
     return both;
 }
 
-QJsonObject json(const char *text) {
+static QJsonObject json(const char *text) {
     return QJsonDocument::fromJson(text).object();
 }
-
-} // namespace
 
 Q_DECLARE_METATYPE(std::vector<hermes::FoundSerial>)
 

@@ -2,25 +2,18 @@
 #include "daemons/simulator/PacketPump.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <QElapsedTimer>
-#include <QUdpSocket>
-
 #include <ctime>
 
 using namespace hermes;
 using namespace hermes::simulator;
 
-namespace {
+static constexpr std::int64_t start_ns = 1700000000000000000;
 
-constexpr std::int64_t start_ns = 1700000000000000000;
-
-double processorSeconds() {
+static double processorSeconds() {
     timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return double(now.tv_sec) + now.tv_nsec * 1e-9;
 }
-
-} // namespace
 
 class TestSimulation : public QObject {
     Q_OBJECT

@@ -1,7 +1,5 @@
 #include "TriggerFixture.h"
 
-#include <cmath>
-
 using namespace hermes;
 using namespace hermes::softwaretrigger;
 

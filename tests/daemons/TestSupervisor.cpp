@@ -2,7 +2,6 @@
 #include "daemons/supervisor/Supervisor.h"
 #include "tests/support/PatientClient.h"
 
-#include <QTemporaryDir>
 #include <csignal>
 
 using namespace hermes;

@@ -4,30 +4,22 @@
 #include "daemons/softwaretrigger/Schedule.h"
 #include "daemons/softwaretrigger/Watch.h"
 
-#include <QTemporaryDir>
 #include <QTimeZone>
-#include <QtTest>
-#include <cmath>
-#include <thread>
 
 using namespace hermes;
 using namespace hermes::softwaretrigger;
 
-namespace {
-
 using vectorlib::pi;
 
-WireValue odometry(double x, double y, double theta, double mono, double vx = 1, double omega = 1) {
+static WireValue odometry(double x, double y, double theta, double mono, double vx = 1, double omega = 1) {
     return QJsonValue(QJsonObject{{"pose", QJsonObject{{"x", x}, {"y", y}, {"theta", theta}}},
                                   {"twist", QJsonObject{{"vx", vx}, {"vy", 0}, {"omega", omega}}},
                                   {"mono", mono}});
 }
 
-double utc(const QString &text) {
+static double utc(const QString &text) {
     return double(QDateTime::fromString(text, Qt::ISODate).toMSecsSinceEpoch()) / 1000;
 }
-
-} // namespace
 
 class TestTriggerParts : public QObject {
     Q_OBJECT

@@ -2,8 +2,6 @@
 #include "TriggerFixture.h"
 #include "daemons/softwaretrigger/GpioLines.h"
 
-#include <limits>
-
 using namespace hermes;
 using namespace hermes::softwaretrigger;
 

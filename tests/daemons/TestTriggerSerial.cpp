@@ -3,7 +3,6 @@
 // does.
 #include "TriggerFixture.h"
 
-#include <cmath>
 #include <cstdarg>
 #include <fcntl.h>
 #include <pty.h>

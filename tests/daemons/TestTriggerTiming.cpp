@@ -7,13 +7,8 @@
 #include "tests/support/ChildProcess.h"
 #include "tests/support/PatientClient.h"
 
-#include <QRegularExpression>
-#include <QtTest>
-
-#include <atomic>
 #include <csignal>
 #include <numeric>
-#include <thread>
 
 using namespace hermes;
 

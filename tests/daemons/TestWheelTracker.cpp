@@ -1,7 +1,5 @@
 #include "daemons/motorcontrol/WheelTracker.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::motorcontrol;
 

@@ -46,6 +46,14 @@ class MakeRoom(unittest.TestCase):
     def run_program(self, *options):
         return subprocess.run([PROGRAM, self.root, *options], capture_output=True, text=True, stdin=subprocess.DEVNULL)
 
+    def only_an_old_one_goes(self):
+        """What is told where no disk is large enough."""
+        before = self.names()
+        self.recording("old", DAY_S)
+        told = self.run_program("--free", "900T")
+        self.assertEqual(self.names(), before)
+        return told
+
     def test_the_oldest_go_until_enough_is_free(self):
         for name, days in (("b", 3), ("a", 2), ("c", 1)):
             self.recording(name, days * DAY_S)
@@ -73,10 +81,7 @@ class MakeRoom(unittest.TestCase):
         (self.root / "no-recording").mkdir()
         (self.root / "file").touch()
         (self.root / "link").symlink_to(self.root / "marked")
-        before = self.names()
-        self.recording("old", DAY_S)
-        told = self.run_program("--free", "900T")
-        self.assertEqual(self.names(), before)
+        told = self.only_an_old_one_goes()
         self.assertEqual(told.returncode, 1)
         self.assertIn("old: removed", told.stdout)
         self.assertIn("damaged: kept", told.stderr)
@@ -89,10 +94,7 @@ class MakeRoom(unittest.TestCase):
             self.recording(f"end-{number}", DAY_S, end=end)
         (self.recording("pipe", DAY_S) / "pipe.json").unlink(missing_ok=True)
         os.mkfifo(self.root / "pipe" / "pipe.json")
-        before = self.names()
-        self.recording("old", DAY_S)
-        told = self.run_program("--free", "900T")
-        self.assertEqual(self.names(), before)
+        told = self.only_an_old_one_goes()
         self.assertIn("old: removed", told.stdout)
 
     def test_the_age_is_known_before_the_clock_is_set(self):
@@ -101,10 +103,7 @@ class MakeRoom(unittest.TestCase):
         self.recording("young", long_ago, **young)
         self.recording("young-by-a-clock-of-last-year", 400 * DAY_S, **young)
         self.recording("of-another-run", long_ago, boot="another", end_mono=5)
-        before = self.names()
-        self.recording("old", DAY_S)
-        told = self.run_program("--free", "900T")
-        self.assertEqual(self.names(), before)
+        told = self.only_an_old_one_goes()
         self.assertIn("of-another-run: kept", told.stderr)
         with mock.patch.object(make_room, "YOUNG_S", 200):
             ends = [make_room.end_of(self.root / name, time.time()) for name in ("young", "young-by-a-clock-of-last-year")]
@@ -120,10 +119,7 @@ class MakeRoom(unittest.TestCase):
         (self.recording("folder-with-the-name-of-a-file", DAY_S, files=[{"name": "a.pcap"}]) / "a.pcap").mkdir()
         (self.recording("link", DAY_S, files=[{"name": "a.pcap"}]) / "a.pcap").symlink_to(elsewhere)
         self.recording("no-list-of-files", DAY_S, files=None)
-        before = self.names()
-        self.recording("old", DAY_S)
-        told = self.run_program("--free", "900T")
-        self.assertEqual(self.names(), before)
+        told = self.only_an_old_one_goes()
         self.assertIn("file-0: kept", told.stderr)
         self.assertIn("notes.txt", told.stderr)
 

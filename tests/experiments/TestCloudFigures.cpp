@@ -5,14 +5,10 @@
 #include "vectorlib/experiments/MeanBand.h"
 #include "vectorlib/vectorization/FtlsVectorizer.h"
 
-#include <random>
-
 using namespace hermes::experiments;
 using Points = std::vector<vectorlib::Vector2D<double>>;
 
-namespace {
-
-std::size_t fewestByTrying(const Points &points, std::size_t first, double sigma) {
+static std::size_t fewestByTrying(const Points &points, std::size_t first, double sigma) {
     std::size_t fewest = points.size() - first;
     for (std::size_t end = first + 1; end <= points.size(); ++end) {
         const auto sums = vectorlib::TlsSums::of(points.begin() + long(first), points.begin() + long(end));
@@ -22,7 +18,7 @@ std::size_t fewestByTrying(const Points &points, std::size_t first, double sigma
     return fewest;
 }
 
-Points randomWalk(std::uint64_t seed, int count) {
+static Points randomWalk(std::uint64_t seed, int count) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> u(-0.1, 0.1);
     Points points;
@@ -33,8 +29,6 @@ Points randomWalk(std::uint64_t seed, int count) {
     }
     return points;
 }
-
-} // namespace
 
 /// hermes-vector experiment: figures 5.3 to 5.5, 6.1 to 6.3 and 6.7 to 6.13 of the thesis, and the options of
 /// segmentation and vectorization that go with them.

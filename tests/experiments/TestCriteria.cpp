@@ -1,11 +1,6 @@
 #include "tests/experiments/ExperimentFiles.h"
 #include "vectorlib/experiments/CriterionExperiment.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <random>
-
 using namespace hermes::experiments;
 
 // hermes-vector experiment criterion, criterion-time and hausdorff-criteria.

@@ -11,8 +11,6 @@
 #include <vectorlib/observation/FloorPlan.h>
 
 #include <iostream>
-#include <memory>
-#include <sstream>
 
 using namespace hermes::experiments;
 using namespace hermes::vector;

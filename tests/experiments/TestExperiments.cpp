@@ -2,9 +2,6 @@
 #include "vectorlib/experiments/RelationScans.h"
 #include "vectorlib/experiments/Scene.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::experiments;
 

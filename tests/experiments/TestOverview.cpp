@@ -1,9 +1,6 @@
 #include "tests/experiments/ExperimentFiles.h"
 
-#include <QDir>
 #include <QSet>
-#include <QTemporaryDir>
-#include <QtTest>
 
 // hermes-vector experiment: those of the overview paper.
 class TestOverview : public QObject {

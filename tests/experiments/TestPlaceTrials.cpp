@@ -3,10 +3,6 @@
 
 #include "common/world/World.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace hermes;
 using namespace hermes::experiments;
 

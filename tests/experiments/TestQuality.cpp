@@ -2,11 +2,6 @@
 #include "vectorlib/experiments/QualityExperiment.h"
 #include "vectorlib/io/CarmenLog.h"
 
-#include <QProcess>
-#include <QtTest>
-
-#include <sstream>
-
 using namespace hermes;
 using namespace hermes::experiments;
 

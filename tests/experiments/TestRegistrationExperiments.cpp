@@ -3,19 +3,15 @@
 #include "vectorlib/experiments/RangeFit.h"
 #include "vectorlib/experiments/ScanPairs.h"
 
-#include <QStandardPaths>
-
 using namespace hermes;
 using namespace hermes::experiments;
-
-namespace {
 
 using Point = vectorlib::Vector2D<double>;
 using Segment = vectorlib::LineSegment2D<double>;
 using Row = QMap<QByteArray, QByteArray>;
 
 /// A room of 6 m x 4 m with a step in one corner; free space inside.
-World room() {
+static World room() {
     World world;
     const Point corners[] = {{0, 0}, {6, 0}, {6, 3}, {4.5, 3}, {4.5, 4}, {0, 4}};
     for (std::size_t i = 0; i < std::size(corners); ++i) {
@@ -24,8 +20,6 @@ World room() {
     }
     return world;
 }
-
-} // namespace
 
 /// The experiments of the registration paper, figures 2 to 9.
 class TestRegistrationExperiments : public QObject {

@@ -1,12 +1,5 @@
 #include "tests/support/RealData.h"
 
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QJsonObject>
-#include <QProcess>
-#include <QTemporaryDir>
-#include <QtTest>
-
 // hermes-vector experiment pairs on real logs: how often the motion between two scans is found.
 class TestScanPairs : public QObject {
     Q_OBJECT

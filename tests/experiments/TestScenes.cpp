@@ -1,7 +1,5 @@
 #include "vectorlib/experiments/VectorizationExperiment.h"
 
-#include <QtTest>
-
 using namespace hermes;
 using namespace hermes::experiments;
 

@@ -3,9 +3,6 @@
 #include "tests/support/RealData.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
-#include <QXmlStreamReader>
-#include <random>
-
 using vectorlib::Pose2D;
 using vectorlib::Transformation2D;
 
@@ -123,10 +120,7 @@ private Q_SLOTS:
         QVERIFY(next["median_m"].toDouble() < 1e-6);
         QVERIFY(std::abs(next["mean_m"].toDouble() - 0.3 / 159) < 1e-6);
         const QByteArray svg = contentOf(path("a.svg"));
-        QXmlStreamReader xml(svg);
-        while (!xml.atEnd())
-            xml.readNext();
-        QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+        isWellFormed(svg);
         QVERIFY(svg.contains("by 10 to 50 cm") && svg.contains("a.tum beside the reference of a.log"));
     }
 

@@ -1,7 +1,5 @@
 #include "tests/gui/VectorProgram.h"
 
-#include <QJsonArray>
-
 /// How hermes-vector match ends, in the same keys and words whatever the method.
 class TestMatchOutcomes : public QObject, protected TestFolder {
     Q_OBJECT

@@ -5,11 +5,6 @@
 #include "gui/session/SessionMarks.h"
 #include "gui/session/SessionPlayer.h"
 #include "gui/session/SessionRecorder.h"
-#include "tests/support/Patience.h"
-
-#include <QRegularExpression>
-
-#include <cmath>
 
 using namespace hermes;
 using namespace hermes::ctl;

@@ -4,39 +4,35 @@
 
 using hermes::velodyne::Model;
 
-namespace {
-
-/// The ranges that ring printed, each once.
-QSet<double> rangesOf(const QByteArray &csv) {
-    QSet<double> ranges;
-    for (const QByteArray &line : csv.trimmed().split('\n').mid(1))
-        ranges.insert(line.split(',').at(3).toDouble());
-    return ranges;
-}
-
-/// A datagram of other programs, of the size of a data packet.
-void appendForeign(const QString &path, quint16 port) {
-    using namespace hermes;
-    PcapWriter writer;
-    const QString copy = path + ".copy";
-    const QByteArray payload(int(velodyne::packetSize), 'x');
-    Datagram d;
-    d.stamp_ns = 2000000000;
-    d.source = 0xC0A80105;
-    d.sourcePort = d.destinationPort = port;
-    d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
-    d.size = std::size_t(payload.size());
-    if (!writer.open(copy.toStdString()) || !writer.write(d) || !writer.close())
-        qFatal("%s cannot be written", qPrintable(copy));
-    const QByteArray record = contentOf(copy).mid(int(PcapWriter::fileHeaderBytes));
-    QFile::remove(copy);
-    put(path, contentOf(path) + record);
-}
-
-} // namespace
-
 class TestVectorCaptures : public QObject, protected TestFolder {
     Q_OBJECT
+
+    /// The ranges that ring printed, each once.
+    static QSet<double> rangesOf(const QByteArray &csv) {
+        QSet<double> ranges;
+        for (const QByteArray &line : csv.trimmed().split('\n').mid(1))
+            ranges.insert(line.split(',').at(3).toDouble());
+        return ranges;
+    }
+
+    /// A datagram of other programs, of the size of a data packet.
+    static void appendForeign(const QString &path, quint16 port) {
+        using namespace hermes;
+        PcapWriter writer;
+        const QString copy = path + ".copy";
+        const QByteArray payload(int(velodyne::packetSize), 'x');
+        Datagram d;
+        d.stamp_ns = 2000000000;
+        d.source = 0xC0A80105;
+        d.sourcePort = d.destinationPort = port;
+        d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
+        d.size = std::size_t(payload.size());
+        if (!writer.open(copy.toStdString()) || !writer.write(d) || !writer.close())
+            qFatal("%s cannot be written", qPrintable(copy));
+        const QByteArray record = contentOf(copy).mid(int(PcapWriter::fileHeaderBytes));
+        QFile::remove(copy);
+        put(path, contentOf(path) + record);
+    }
 
 private Q_SLOTS:
     void init() { empty(); }

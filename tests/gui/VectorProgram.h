@@ -10,6 +10,7 @@
 #include <QJsonObject>
 #include <QProcess>
 #include <QTemporaryDir>
+#include <QXmlStreamReader>
 #include <QtTest>
 
 struct Result {
@@ -50,6 +51,15 @@ inline void refused(const Result &r, int status, const QByteArray &words, const 
 /// A file of tests/data/vector.
 inline QString data(const char *name) {
     return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
+}
+
+/// A picture can be read, and knows where all of it lies.
+inline void isWellFormed(const QByteArray &svg) {
+    QXmlStreamReader xml(svg);
+    while (!xml.atEnd())
+        xml.readNext();
+    QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+    QVERIFY(!svg.contains("nan"));
 }
 
 inline QJsonObject json(const QByteArray &text) {

@@ -5,43 +5,34 @@
 #include "protocol/wire/Fields.h"
 
 #include <QCborValue>
-#include <QtTest>
-
-#include <cmath>
-#include <limits>
 
 using namespace hermes;
 
-namespace {
-
-QByteArray framed(const QByteArray &item) {
-    QByteArray bytes(4, '\0');
-    qToBigEndian(quint32(item.size()), bytes.data());
-    return bytes + item;
-}
-
-QByteArray hex(const char *digits) {
-    return QByteArray::fromHex(digits);
-}
-
-ScanMessage scan(int points) {
-    ScanMessage message;
-    message.header.stamp = 1.7e9;
-    message.header.frame = "sensor";
-    message.t.emplace();
-    for (int i = 0; i < points; ++i) {
-        message.x.push_back(float(i) * 0.1f);
-        message.y.push_back(-1 / float(i + 1));
-        message.t->push_back(1e-30f * float(i));
-        message.intensity.push_back(quint8(i));
-    }
-    return message;
-}
-
-} // namespace
-
 class TestCborCodec : public QObject {
     Q_OBJECT
+
+    static QByteArray framed(const QByteArray &item) {
+        QByteArray bytes(4, '\0');
+        qToBigEndian(quint32(item.size()), bytes.data());
+        return bytes + item;
+    }
+
+    static QByteArray hex(const char *digits) { return QByteArray::fromHex(digits); }
+
+    static ScanMessage scan(int points) {
+        ScanMessage message;
+        message.header.stamp = 1.7e9;
+        message.header.frame = "sensor";
+        message.t.emplace();
+        for (int i = 0; i < points; ++i) {
+            message.x.push_back(float(i) * 0.1f);
+            message.y.push_back(-1 / float(i + 1));
+            message.t->push_back(1e-30f * float(i));
+            message.intensity.push_back(quint8(i));
+        }
+        return message;
+    }
+
 private Q_SLOTS:
     void reads_data() {
         QTest::addColumn<QByteArray>("item");

@@ -1,9 +1,6 @@
 #include "protocol/jsonrpc/JsonCodec.h"
 #include "protocol/wire/JsonText.h"
 
-#include <QtTest>
-#include <cmath>
-
 using namespace hermes;
 
 Q_DECLARE_METATYPE(hermes::Greeting::Speaker)

@@ -1,8 +1,6 @@
 #include "protocol/jsonrpc/JsonRpc.h"
 #include "protocol/wire/JsonText.h"
 
-#include <QtTest>
-
 using namespace hermes;
 
 // The rules of JSON-RPC 2.0 for single messages and batches.

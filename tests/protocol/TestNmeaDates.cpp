@@ -1,7 +1,5 @@
 #include "protocol/nmea/Rmc.h"
 
-#include <QtTest>
-
 using namespace hermes::nmea;
 
 class TestNmeaDates : public QObject {

@@ -4,41 +4,34 @@
 #include "protocol/nmea/SentenceParser.h"
 #include "tests/support/AllocationCounter.h"
 
-#include <QtTest>
-#include <cmath>
-#include <limits>
-
 using namespace hermes::nmea;
-
-namespace {
-
-/// The sentence with its checksum put right.
-QByteArray summed(const QByteArray &body) {
-    const auto sum = checksum({body.constData(), std::size_t(body.size())});
-    return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0') + "\r\n";
-}
-
-template <typename Message>
-FieldFault decodeText(const QByteArray &text, Message &message) {
-    SentenceParser parser;
-    for (const char byte : text) {
-        if (parser.feed(byte) == SentenceParser::Result::Done)
-            return decode(parser.sentence(), message);
-    }
-    return {-1, "a sentence"};
-}
-
-template <typename Message>
-QByteArray encoded(const Message &message, const Decimals &decimals = {}) {
-    const auto text = encode(message, "GP", decimals);
-    return text ? toBytes(text->view()) : QByteArray();
-}
-
-} // namespace
 
 /// The worked sentences are those of the published field lists; the first RMC comes from a real receiver.
 class TestNmeaMessages : public QObject {
     Q_OBJECT
+
+    /// The sentence with its checksum put right.
+    static QByteArray summed(const QByteArray &body) {
+        const auto sum = checksum({body.constData(), std::size_t(body.size())});
+        return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0') + "\r\n";
+    }
+
+    template <typename Message>
+    static FieldFault decodeText(const QByteArray &text, Message &message) {
+        SentenceParser parser;
+        for (const char byte : text) {
+            if (parser.feed(byte) == SentenceParser::Result::Done)
+                return decode(parser.sentence(), message);
+        }
+        return {-1, "a sentence"};
+    }
+
+    template <typename Message>
+    static QByteArray encoded(const Message &message, const Decimals &decimals = {}) {
+        const auto text = encode(message, "GP", decimals);
+        return text ? toBytes(text->view()) : QByteArray();
+    }
+
 private Q_SLOTS:
     void workedRmcIsReadAndWritten_data() {
         const Rows<QByteArray, int, double, double, double, double, double, double> row(

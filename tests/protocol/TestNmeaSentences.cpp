@@ -3,32 +3,26 @@
 #include "protocol/nmea/Vtg.h"
 #include "protocol/nmea/Zda.h"
 
-#include <QtTest>
-#include <cmath>
-
 using namespace hermes::nmea;
-
-namespace {
-
-template <typename Message>
-Message read(const char *body, FieldFault &fault) {
-    Message message;
-    fault = decode(Sentence(body), message);
-    return message;
-}
-
-template <typename Message>
-int wrongField(const QByteArray &body) {
-    Message message;
-    const FieldFault fault = decode(Sentence({body.constData(), std::size_t(body.size())}), message);
-    return fault ? fault.field : -1;
-}
-
-} // namespace
 
 /// Of the sentences that are read and never written. The samples were made by hand after the descriptions.
 class TestNmeaSentences : public QObject {
     Q_OBJECT
+
+    template <typename Message>
+    static Message read(const char *body, FieldFault &fault) {
+        Message message;
+        fault = decode(Sentence(body), message);
+        return message;
+    }
+
+    template <typename Message>
+    static int wrongField(const QByteArray &body) {
+        Message message;
+        const FieldFault fault = decode(Sentence({body.constData(), std::size_t(body.size())}), message);
+        return fault ? fault.field : -1;
+    }
+
 private Q_SLOTS:
     void gllIsRead() {
         FieldFault fault;

@@ -2,10 +2,6 @@
 #include "protocol/velodyne/TurnAssembler.h"
 #include "tests/support/Sensor.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <random>
 #include <stdexcept>
 
 using namespace hermes::velodyne;

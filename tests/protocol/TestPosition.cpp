@@ -2,47 +2,40 @@
 #include "protocol/velodyne/PositionPacket.h"
 #include "tests/support/RealData.h"
 
-#include <QtTest>
-
-#include <cmath>
 #include <cstring>
-#include <random>
 
 using namespace hermes;
 using namespace hermes::velodyne;
 
-namespace {
-
-using Bytes = std::array<std::uint8_t, positionPacketSize>;
-constexpr std::int64_t second_ns = 1000000000;
-const char *const valid = "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*05";
-constexpr std::int64_t rmcTime_s = 1437687666; // 2015-07-23 21:41:06 UTC
-
-QByteArray summed(const QByteArray &body) {
-    const auto sum = nmea::checksum({body.constData(), std::size_t(body.size())});
-    return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0');
-}
-
-Bytes packet(std::uint32_t stamp_us, std::uint8_t pps, const char *text) {
-    Bytes bytes{};
-    for (int i = 0; i < 4; ++i)
-        bytes[std::size_t(0xC6 + i)] = std::uint8_t(stamp_us >> 8 * i);
-    bytes[0xCA] = pps;
-    std::copy(text, text + std::strlen(text), bytes.begin() + 0xCE);
-    return bytes;
-}
-
-GpsReader read(const Bytes &bytes) {
-    GpsReader gps;
-    if (gps.feed(bytes.data(), bytes.size()) != PositionFault::None)
-        qFatal("a sound packet was refused");
-    return gps;
-}
-
-} // namespace
-
 class TestPosition : public QObject {
     Q_OBJECT
+
+    using Bytes = std::array<std::uint8_t, positionPacketSize>;
+    static constexpr std::int64_t second_ns = 1000000000;
+    static inline const char *const valid =
+        "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*05";
+    static constexpr std::int64_t rmcTime_s = 1437687666; // 2015-07-23 21:41:06 UTC
+
+    static QByteArray summed(const QByteArray &body) {
+        const auto sum = nmea::checksum({body.constData(), std::size_t(body.size())});
+        return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0');
+    }
+
+    static Bytes packet(std::uint32_t stamp_us, std::uint8_t pps, const char *text) {
+        Bytes bytes{};
+        for (int i = 0; i < 4; ++i)
+            bytes[std::size_t(0xC6 + i)] = std::uint8_t(stamp_us >> 8 * i);
+        bytes[0xCA] = pps;
+        std::copy(text, text + std::strlen(text), bytes.begin() + 0xCE);
+        return bytes;
+    }
+
+    static GpsReader read(const Bytes &bytes) {
+        GpsReader gps;
+        if (gps.feed(bytes.data(), bytes.size()) != PositionFault::None)
+            qFatal("a sound packet was refused");
+        return gps;
+    }
 
 private Q_SLOTS:
     /// The worked examples of the manual.
@@ -84,10 +77,10 @@ private Q_SLOTS:
 
     void theHourIsTrusted_data() {
         const Rows<int, QByteArray, bool, bool> row("pps", "text", "valid", "trusted");
-        row("locked, valid", 2, QByteArray(::valid), true, true);
-        row("no pulse", 0, QByteArray(::valid), true, false);
-        row("synchronizing", 1, QByteArray(::valid), true, false);
-        row("error", 3, QByteArray(::valid), true, false);
+        row("locked, valid", 2, QByteArray(valid), true, true);
+        row("no pulse", 0, QByteArray(valid), true, false);
+        row("synchronizing", 1, QByteArray(valid), true, false);
+        row("error", 3, QByteArray(valid), true, false);
         row("warning", 2, "$GPRMC,214106,V,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*12", false,
             false);
         row("no variation", 2, summed("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,999.9,,D"),

@@ -3,8 +3,6 @@
 #include "protocol/roboclaw/Packet.h"
 #include "protocol/roboclaw/Status.h"
 
-#include <QtTest>
-
 using namespace hermes::roboclaw;
 
 Q_DECLARE_METATYPE(hermes::roboclaw::Values)

@@ -1,60 +1,60 @@
 #include "protocol/roboclaw/Bus.h"
 #include "protocol/roboclaw/Packet.h"
 
-#include <QtTest>
-
-#include <cmath>
-
 using namespace hermes::roboclaw;
-
-namespace {
-
-/// A bus and what it did, on a clock of the test's own.
-struct Line {
-    explicit Line(const Bus::Options &options = {})
-        : bus(options) {}
-
-    Bus bus;
-    double now = 0;
-    std::vector<std::string> ended; ///< "COMMAND result attempts"
-    std::vector<int> sent;          ///< commands
-
-    bool submit(Command command, const Values &values = {}, Bus::Urgency urgency = Bus::Urgency::Normal,
-                std::uint8_t address = 0x80) {
-        const auto handler = [this](const Request &request, const Bus::Outcome &outcome) {
-            static const char *const results[] = {"done",       "timed out", "bad CRC",
-                                                  "unexpected", "cancelled", "line closed"};
-            ended.push_back(std::to_string(int(request.command)) + ' ' + results[int(outcome.result)] + ' ' +
-                            std::to_string(outcome.attempts));
-        };
-        return bus.submit(*Request::make(address, command, values), handler, urgency);
-    }
-    bool poll() {
-        const Bytes *bytes = bus.poll(now);
-        if (bytes)
-            sent.push_back((*bytes)[1]);
-        return bytes;
-    }
-    /// Lets time pass without an answer until something is sent again, or nothing is left to do.
-    bool pollLater() {
-        while (std::isfinite(bus.deadline())) {
-            now = std::max(now, bus.deadline()) + 1e-9;
-            if (poll())
-                return true;
-        }
-        return false;
-    }
-    void feed(const QByteArray &hex) {
-        const QByteArray bytes = QByteArray::fromHex(hex);
-        bus.feed(reinterpret_cast<const std::uint8_t *>(bytes.data()), std::size_t(bytes.size()), now);
-    }
-    std::string last() const { return ended.empty() ? "nothing" : ended.back(); }
-};
-
-} // namespace
 
 class TestRoboClawBus : public QObject {
     Q_OBJECT
+
+    /// A bus and what it did, on a clock of the test's own.
+    struct Line {
+        explicit Line(const Bus::Options &options = {})
+            : bus(options) {}
+
+        Bus bus;
+        double now = 0;
+        std::vector<std::string> ended; ///< "COMMAND result attempts"
+        std::vector<int> sent;          ///< commands
+
+        bool submit(Command command, const Values &values = {}, Bus::Urgency urgency = Bus::Urgency::Normal,
+                    std::uint8_t address = 0x80) {
+            const auto handler = [this](const Request &request, const Bus::Outcome &outcome) {
+                static const char *const results[] = {"done",       "timed out", "bad CRC",
+                                                      "unexpected", "cancelled", "line closed"};
+                ended.push_back(std::to_string(int(request.command)) + ' ' + results[int(outcome.result)] +
+                                ' ' + std::to_string(outcome.attempts));
+            };
+            return bus.submit(*Request::make(address, command, values), handler, urgency);
+        }
+        bool poll() {
+            const Bytes *bytes = bus.poll(now);
+            if (bytes)
+                sent.push_back((*bytes)[1]);
+            return bytes;
+        }
+        /// Lets time pass without an answer until something is sent again, or nothing is left to do.
+        bool pollLater() {
+            while (std::isfinite(bus.deadline())) {
+                now = std::max(now, bus.deadline()) + 1e-9;
+                if (poll())
+                    return true;
+            }
+            return false;
+        }
+        void feed(const QByteArray &hex) {
+            const QByteArray bytes = QByteArray::fromHex(hex);
+            bus.feed(reinterpret_cast<const std::uint8_t *>(bytes.data()), std::size_t(bytes.size()), now);
+        }
+        std::string last() const { return ended.empty() ? "nothing" : ended.back(); }
+    };
+    /// One that has been asked for the battery's voltage.
+    struct AskedLine : Line {
+        AskedLine() {
+            submit(Command::ReadMainBattery);
+            [this] { QVERIFY(poll()); }();
+        }
+    };
+
 private Q_SLOTS:
     void sendsOneAfterTheOther() {
         Line line;
@@ -96,9 +96,7 @@ private Q_SLOTS:
     }
 
     void repeatsWhatIsDamaged() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5");
         QVERIFY(line.ended.empty());
         QVERIFY(line.pollLater());
@@ -115,9 +113,7 @@ private Q_SLOTS:
     }
 
     void waitsForSilenceAfterAFailure() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5"); // damaged at 0
         line.now = 0.0105;
         QVERIFY(!line.poll());
@@ -130,9 +126,7 @@ private Q_SLOTS:
     }
 
     void chatterDoesNotBlockForEver() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5");
         for (int i = 0; line.sent.size() == 1 && i < 100; ++i) {
             line.now += 0.001;
@@ -143,9 +137,7 @@ private Q_SLOTS:
     }
 
     void chatterDoesNotHoldUpWhatIsUrgent() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.feed("00F1D8E5"); // it fails
         line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First);
         line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First, 0x81);
@@ -160,9 +152,7 @@ private Q_SLOTS:
     }
 
     void urgentRequestsGoFirst() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.submit(Command::ReadTemperature);
         line.submit(Command::Speed, {0, 0}, Bus::Urgency::First);
         line.feed("00F1D8E5"); // the one on its way fails: even its repetition waits
@@ -178,9 +168,7 @@ private Q_SLOTS:
     }
 
     void cancelEndsWhatWaits() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.submit(Command::ReadTemperature);
         line.bus.cancel();
         QCOMPARE(line.last(), std::string("82 cancelled 0"));
@@ -194,9 +182,7 @@ private Q_SLOTS:
     }
 
     void closedLineEndsAll() {
-        Line line;
-        line.submit(Command::ReadMainBattery);
-        QVERIFY(line.poll());
+        AskedLine line;
         line.submit(Command::ReadTemperature);
         line.bus.setOpen(false);
         QCOMPARE(line.ended, (std::vector<std::string>{"24 line closed 1", "82 line closed 0"}));

@@ -3,15 +3,9 @@
 #include "protocol/roboclaw/Packet.h"
 #include "protocol/roboclaw/Status.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace hermes::roboclaw;
 
-namespace {
-
-std::vector<std::uint8_t> everyCommand() {
+static std::vector<std::uint8_t> everyCommand() {
     std::vector<std::uint8_t> commands;
     for (int command = 0; command < 256; ++command) {
         if (layoutOf(std::uint8_t(command)))
@@ -20,7 +14,7 @@ std::vector<std::uint8_t> everyCommand() {
     return commands;
 }
 
-std::int64_t anyValue(char field, std::mt19937 &random) {
+static std::int64_t anyValue(char field, std::mt19937 &random) {
     const std::uint32_t raw = random() >> (random() % 3 * 8);
     return field == 'B'   ? raw & 0xFF
            : field == 'H' ? raw & 0xFFFF
@@ -29,14 +23,12 @@ std::int64_t anyValue(char field, std::mt19937 &random) {
                           : std::int64_t(raw);
 }
 
-Values anyValues(std::string_view fields, std::mt19937 &random) {
+static Values anyValues(std::string_view fields, std::mt19937 &random) {
     Values values;
     for (const char field : fields)
         values.push(anyValue(field, random));
     return values;
 }
-
-} // namespace
 
 class TestRoboClawParsers : public QObject {
     Q_OBJECT

@@ -1,16 +1,10 @@
 // The sensor tells the time within the hour; the hour comes from elsewhere.
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <QtTest>
-
 using namespace hermes::velodyne;
 
-namespace {
-
-constexpr std::int64_t second_ns = 1000000000;
-constexpr std::int64_t hour_ns = 3600 * second_ns;
-
-} // namespace
+static constexpr std::int64_t second_ns = 1000000000;
+static constexpr std::int64_t hour_ns = 3600 * second_ns;
 
 class TestSensorClock : public QObject {
     Q_OBJECT

@@ -1,14 +1,10 @@
 #include "NmeaText.h"
 #include "protocol/nmea/SentenceParser.h"
 
-#include <QtTest>
-
 using namespace hermes::nmea;
 
-namespace {
-
 /// The bodies of the sentences in the bytes.
-QList<QByteArray> sentencesOf(SentenceParser &parser, const QByteArray &bytes) {
+static QList<QByteArray> sentencesOf(SentenceParser &parser, const QByteArray &bytes) {
     QList<QByteArray> bodies;
     for (const char byte : bytes) {
         if (parser.feed(byte) == SentenceParser::Result::Done)
@@ -16,8 +12,6 @@ QList<QByteArray> sentencesOf(SentenceParser &parser, const QByteArray &bytes) {
     }
     return bodies;
 }
-
-} // namespace
 
 class TestSentenceParser : public QObject {
     Q_OBJECT

@@ -3,33 +3,24 @@
 #include "protocol/serial/Crc32c.h"
 #include "protocol/serial/Piece.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace hermes;
-
-namespace {
-
-QByteArray hex(const char *digits) {
-    return QByteArray::fromHex(digits);
-}
-
-QByteArray counting(int from, int to) {
-    QByteArray bytes;
-    for (int i = from; i <= to; ++i)
-        bytes.append(char(i));
-    return bytes;
-}
-
-std::optional<QByteArray> decoded(const QByteArray &bytes) {
-    return cobsDecoded(bytes.constData(), bytes.size());
-}
-
-} // namespace
 
 class TestSerialFrames : public QObject {
     Q_OBJECT
+
+    static QByteArray hex(const char *digits) { return QByteArray::fromHex(digits); }
+
+    static QByteArray counting(int from, int to) {
+        QByteArray bytes;
+        for (int i = from; i <= to; ++i)
+            bytes.append(char(i));
+        return bytes;
+    }
+
+    static std::optional<QByteArray> decoded(const QByteArray &bytes) {
+        return cobsDecoded(bytes.constData(), bytes.size());
+    }
+
 private Q_SLOTS:
     void checksums_data() {
         const Rows<QByteArray, quint32> row("bytes", "crc");

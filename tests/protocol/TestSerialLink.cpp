@@ -5,19 +5,13 @@
 #include "tests/support/LinkPair.h"
 
 #include <QtEndian>
-#include <QtTest>
-
-#include <random>
-#include <set>
 
 using namespace hermes;
-
-namespace {
 
 using Rank = SerialLink::Rank;
 
 /// A message, by its number, of so many bytes.
-QByteArray message(int number, int size) {
+static QByteArray message(int number, int size) {
     QByteArray bytes(1, char(0xbf));
     bytes += QByteArray::number(number) + ' ';
     while (bytes.size() < size)
@@ -25,32 +19,30 @@ QByteArray message(int number, int size) {
     return bytes;
 }
 
-QByteArray framed(QByteArray content) {
+static QByteArray framed(QByteArray content) {
     QByteArray crc(4, 0);
     qToLittleEndian(crc32c(content.constData(), size_t(content.size())), crc.data());
     return cobsEncoded(content + crc) + '\0';
 }
 
-QByteArray piece(quint16 number, int index, const QByteArray &content, bool toReport = false) {
+static QByteArray piece(quint16 number, int index, const QByteArray &content, bool toReport = false) {
     return framed(Piece{toReport, number, quint16(index), quint32(content.size()),
                         content.mid(index * pieceBytes, pieceBytes)}
                       .toFrame());
 }
 
-QByteArray sealed(const QByteArray &item) {
+static QByteArray sealed(const QByteArray &item) {
     QByteArray crc(4, 0);
     qToLittleEndian(crc32c(item.constData(), size_t(item.size())), crc.data());
     return item + crc;
 }
 
-std::vector<QByteArray> messagesOf(const std::vector<SerialLink::Arrival> &arrivals) {
+static std::vector<QByteArray> messagesOf(const std::vector<SerialLink::Arrival> &arrivals) {
     std::vector<QByteArray> all;
     for (const auto &one : arrivals)
         all.push_back(one.message);
     return all;
 }
-
-} // namespace
 
 class TestSerialLink : public QObject {
     Q_OBJECT

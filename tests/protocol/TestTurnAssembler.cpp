@@ -1,10 +1,5 @@
 #include "TurnFeed.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <random>
-
 using namespace hermes::velodyne;
 
 class TestTurnAssembler : public QObject {

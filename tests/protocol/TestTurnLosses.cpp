@@ -1,8 +1,6 @@
 // Turns of packets that are missing, late, or of another time.
 #include "TurnFeed.h"
 
-#include <QtTest>
-
 using namespace hermes::velodyne;
 
 class TestTurnLosses : public QObject {

@@ -7,12 +7,6 @@
 #include "protocol/wire/JsonWriters.h"
 #include "protocol/wire/Outgoing.h"
 
-#include <QtTest>
-
-#include <cmath>
-#include <limits>
-#include <random>
-
 using namespace hermes;
 
 namespace {
@@ -71,9 +65,7 @@ const Fields<Sample> &fieldsOf(Of<Sample>) {
 
 } // namespace hermes
 
-namespace {
-
-QJsonObject sampleJson() {
+static QJsonObject sampleJson() {
     return {{"name", "a\"\n\u00e4"},
             {"on", true},
             {"inner", QJsonObject{{"length", 1.5}, {"count", 2}}},
@@ -85,8 +77,6 @@ QJsonObject sampleJson() {
             {"open", QJsonArray{1, "x", QJsonValue::Null}},
             {"small", 255}};
 }
-
-} // namespace
 
 /// No schema without the names of its members, but those declared open.
 static void requireClosed(const QJsonObject &schema, const QString &path) {

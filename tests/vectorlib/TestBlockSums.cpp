@@ -1,9 +1,5 @@
 #include <vectorlib/vectorization/AftlsVectorizer.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 
 namespace {

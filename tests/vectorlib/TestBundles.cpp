@@ -3,28 +3,20 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
-#include <map>
-
 using namespace vectorlib;
-
-namespace {
-
-std::vector<PotentialPair> pairsOf(const Segments &fixed, const Segments &moving) {
-    std::vector<PotentialPair> pairs;
-    for (std::size_t m = 0; m < moving.size(); ++m)
-        for (std::size_t f = 0; f < fixed.size(); ++f)
-            if (mayCorrespond(fixed[f], moving[m], PermittedError()))
-                pairs.emplace_back(CorrespondencePair{int(f), int(m)}, fixed[f], moving[m], Stiffness());
-    return pairs;
-}
-
-} // namespace
 
 /// Bundles of collinear pairs, their directions and combinations: the first half of the search, thesis 7.4.
 class TestBundles : public QObject {
     Q_OBJECT
+
+    static std::vector<PotentialPair> pairsOf(const Segments &fixed, const Segments &moving) {
+        std::vector<PotentialPair> pairs;
+        for (std::size_t m = 0; m < moving.size(); ++m)
+            for (std::size_t f = 0; f < fixed.size(); ++f)
+                if (mayCorrespond(fixed[f], moving[m], PermittedError()))
+                    pairs.emplace_back(CorrespondencePair{int(f), int(m)}, fixed[f], moving[m], Stiffness());
+        return pairs;
+    }
 
 private Q_SLOTS:
     void pairsOfOneShiftAreOneBundle() {

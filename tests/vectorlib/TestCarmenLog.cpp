@@ -2,35 +2,27 @@
 
 #include <vectorlib/io/CarmenLog.h>
 
-#include <QtTest>
-
-#include <sstream>
-
 using namespace vectorlib;
 
-namespace {
-
-Expected<CarmenLog> read(const QByteArray &text, bool skipDamaged = false) {
+static Expected<CarmenLog> read(const QByteArray &text, bool skipDamaged = false) {
     std::istringstream in(text.toStdString());
     CarmenOptions options;
     options.skipDamaged = skipDamaged;
     return readCarmenLog(in, "a.log", options);
 }
 
-QByteArray pose(double x, double y, double theta) {
+static QByteArray pose(double x, double y, double theta) {
     return QByteArray::number(x) + ' ' + QByteArray::number(y) + ' ' + QByteArray::number(theta) + ' ';
 }
 
-QByteArray odom(double x, double y, double theta) {
+static QByteArray odom(double x, double y, double theta) {
     return "ODOM " + pose(x, y, theta) + "0 0 0 1.5 host 1.5\n";
 }
 
-QByteArray flaser(const QByteArray &ranges, const QByteArray &poses, const QByteArray &stamp = "2.5") {
+static QByteArray flaser(const QByteArray &ranges, const QByteArray &poses, const QByteArray &stamp = "2.5") {
     return "FLASER " + QByteArray::number(ranges.split(' ').size()) + ' ' + ranges + ' ' + poses + stamp +
            " host 2.5\n";
 }
-
-} // namespace
 
 /// CARMEN logs: what is read, which motion is expected, and what damaged input is answered with.
 class TestCarmenLog : public QObject {

@@ -5,26 +5,18 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
-#include <chrono>
-
 using namespace vectorlib;
-
-namespace {
-
-Transformation2D between(const Pose2D &first, const Pose2D &second) {
-    return Transformation2D(first).inverse() * Transformation2D(second);
-}
-double distance(const Transformation2D &a, const Transformation2D &b) {
-    return (a.translation() - b.translation()).norm() + std::abs(wrapAngle(a.alpha() - b.alpha()));
-}
-
-} // namespace
 
 /// The search for corresponding segments finds the pose, thesis 7.4.
 class TestCorrespondence : public QObject {
     Q_OBJECT
+
+    static Transformation2D between(const Pose2D &first, const Pose2D &second) {
+        return Transformation2D(first).inverse() * Transformation2D(second);
+    }
+    static double distance(const Transformation2D &a, const Transformation2D &b) {
+        return (a.translation() - b.translation()).norm() + std::abs(wrapAngle(a.alpha() - b.alpha()));
+    }
 
 private Q_SLOTS:
     void findsThePoseOfRandomRooms() {

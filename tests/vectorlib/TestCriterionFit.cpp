@@ -3,33 +3,27 @@
 #include <vectorlib/similarity/CriterionMinimizer.h>
 #include <vectorlib/similarity/NelderMeadFitter.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 
-namespace {
-
 // A start up to 1 m and 1 radian away.
-Transformation2D near(const Transformation2D &truth, std::mt19937 &random) {
+static Transformation2D near(const Transformation2D &truth, std::mt19937 &random) {
     std::uniform_real_distribution<double> off(-1, 1);
     return {truth.x() + off(random), truth.y() + off(random), truth.alpha() + off(random)};
 }
 
-Transformation2D anyMotion(std::mt19937 &random) {
+static Transformation2D anyMotion(std::mt19937 &random) {
     std::uniform_real_distribution<double> t(-3, 3), a(-pi, pi);
     return {t(random), t(random), a(random)};
 }
 
-std::vector<SegmentPair> noisy(std::vector<SegmentPair> pairs, double sigma, std::mt19937 &random) {
+static std::vector<SegmentPair> noisy(std::vector<SegmentPair> pairs, double sigma, std::mt19937 &random) {
     std::normal_distribution<double> noise;
     for (SegmentPair &p : pairs)
         p.moving = Segment(p.moving.begin() + Vector2D<double>(sigma * noise(random), sigma * noise(random)),
                            p.moving.end() + Vector2D<double>(sigma * noise(random), sigma * noise(random)));
     return pairs;
 }
-
-} // namespace
 
 // Finding the transformation that makes two sets most alike: Newton on the area criterion, and the baseline
 // of the overview paper.

@@ -5,8 +5,6 @@
 #include "tests/vectorlib/OfficeFloor.h"
 #include "tests/vectorlib/RevisitError.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
 
 /// Drives whose way is not known in between.

@@ -3,8 +3,6 @@
 #include "tests/vectorlib/RevisitError.h"
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
 
 /// Poses that are nearly right.

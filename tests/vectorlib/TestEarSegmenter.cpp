@@ -1,16 +1,9 @@
 #include <vectorlib/edges/EdgeExtractor.h>
 
-#include <QtTest>
-
-#include <limits>
-#include <random>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
 
-namespace {
-
-Points arc(double from, double to, int count, double radius) {
+static Points arc(double from, double to, int count, double radius) {
     Points points;
     for (int i = 0; i < count; ++i) {
         const double a = from + (to - from) * i / count;
@@ -18,8 +11,6 @@ Points arc(double from, double to, int count, double radius) {
     }
     return points;
 }
-
-} // namespace
 
 class TestEarSegmenter : public QObject {
     Q_OBJECT

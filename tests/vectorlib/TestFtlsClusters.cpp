@@ -5,12 +5,6 @@
 #include <vectorlib/vectorization/FtlsVectorizer.h>
 #include <vectorlib/vectorization/IncVectorizer.h>
 
-#include <QProcess>
-#include <QtTest>
-
-#include <random>
-#include <sstream>
-
 using namespace vectorlib;
 
 namespace {

@@ -2,10 +2,6 @@
 #include <vectorlib/geometry/Transformation2D.h>
 #include <vectorlib/motion/MotionModel.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 
 class TestGeometry : public QObject {

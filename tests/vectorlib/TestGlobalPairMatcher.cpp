@@ -2,55 +2,48 @@
 #include <vectorlib/simd/Lanes.h>
 
 #include "tests/support/AllocationCounter.h"
-#include "tests/support/Patience.h"
 #include "tests/vectorlib/RepeatingWorlds.h"
 #include "tests/vectorlib/ScanWorld.h"
-
-#include <QtTest>
 
 using namespace vectorlib;
 using Points = ScanWorld::Points;
 using Verdict = GlobalPairVerdict;
 
-namespace {
+static const ScanWorld::Scanner wholeTurn{720, 2 * pi, 0.01};
 
-const ScanWorld::Scanner wholeTurn{720, 2 * pi, 0.01};
-
-double metres(const Transformation2D &a, const Transformation2D &b) {
+static double metres(const Transformation2D &a, const Transformation2D &b) {
     return (a.translation() - b.translation()).norm();
 }
-double degrees(const Transformation2D &a, const Transformation2D &b) {
+static double degrees(const Transformation2D &a, const Transformation2D &b) {
     return std::abs((a.inverse() * b).alpha()) * 180 / pi;
 }
-bool isRight(const GlobalPairSolution &s, const Transformation2D &motion) {
+static bool isRight(const GlobalPairSolution &s, const Transformation2D &motion) {
     return metres(s.pose, motion) < 0.03 && degrees(s.pose, motion) < 0.5;
 }
-bool holds(const GlobalPairMatch &match, const Transformation2D &motion) {
+static bool holds(const GlobalPairMatch &match, const Transformation2D &motion) {
     return std::any_of(match.solutions.begin(), match.solutions.end(),
                        [&](const GlobalPairSolution &s) { return isRight(s, motion); });
 }
-double probabilities(const GlobalPairMatch &match) {
+static double probabilities(const GlobalPairMatch &match) {
     double sum = 0;
     for (const GlobalPairSolution &s : match.solutions)
         sum += s.probability;
     return sum;
 }
 /// One is contradicted hardly more, of what both scans could see, and explains 0.6 of as much or more.
-bool fitsAlike(const SurfaceAgreement &one, const SurfaceAgreement &other) {
+static bool fitsAlike(const SurfaceAgreement &one, const SurfaceAgreement &other) {
     const auto contradicted = [](const SurfaceAgreement &a) {
         return a.contradicted() / (a.explained() + a.contradicted());
     };
     return one.explained() > 0.6 * other.explained() && contradicted(one) < contradicted(other) + 0.02;
 }
 /// A hall with niches and pillars, of which every part looks different.
-ScanWorld hall() {
+static ScanWorld hall() {
     ScanWorld w = ScanWorld::of(
         {{-7, -4}, {2, -4}, {2, -5}, {4, -5}, {4, -4}, {8, -4}, {8, 3}, {5, 5}, {-3, 5}, {-3, 4}, {-7, 4}});
     w.pillars = {{{5, 0}, 0.4}, {{-4, 2}, 0.3}, {{0, 3}, 0.2}, {{-5, -2}, 0.5}};
     return w;
 }
-
-} // namespace
 
 /// The motion between two scans from nothing but the scans.
 class TestGlobalPairMatcher : public QObject {

@@ -2,24 +2,17 @@
 
 #include <vectorlib/similarity/HausdorffDistances.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
-
-namespace {
-
-const Segment unit({0, 0}, {1, 0});
-
-Segment segment(const QLineF &l) {
-    return Segment({l.x1(), l.y1()}, {l.x2(), l.y2()});
-}
-
-} // namespace
 
 // The distances of segments that thesis 7.1.4 compares its criterion with.
 class TestHausdorffDistances : public QObject {
     Q_OBJECT
+
+    static inline const Segment unit{{0, 0}, {1, 0}};
+
+    static Segment segment(const QLineF &l) { return Segment({l.x1(), l.y1()}, {l.x2(), l.y2()}); }
+
 private Q_SLOTS:
     void knownSegments_data() {
         const Rows<QLineF, double, double, double> row("moving", "hausdorff", "modified", "perpendicular");

@@ -5,8 +5,6 @@
 #include "tests/vectorlib/OfficeFloor.h"
 #include "tests/vectorlib/RevisitError.h"
 
-#include <QtTest>
-
 #include <ctime>
 #include <numeric>
 #include <unistd.h>

@@ -2,12 +2,6 @@
 
 #include <vectorlib/io/LatexExport.h>
 
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <limits>
-#include <sstream>
-
 using namespace vectorlib;
 
 namespace {

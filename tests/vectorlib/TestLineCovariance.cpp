@@ -1,33 +1,23 @@
 #include <vectorlib/geometry/Angle.h>
 #include <vectorlib/tls/TlsFit.h>
 
-#include <QtTest>
-
-#include <random>
-#include <vector>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<double>>;
 
-namespace {
-
-TlsSums sumsOf(const Points &points) {
-    return TlsSums::of(points.begin(), points.end());
-}
-
-// Points every 2 cm on a line at `distance` from the origin that begins at `along`.
-Points wall(double theta, double distance, double along, int count) {
-    const Vector2D<double> direction(std::cos(theta), std::sin(theta));
-    Points points;
-    for (int i = 0; i < count; ++i)
-        points.push_back(direction * (along + 0.02 * i) + direction.left() * distance);
-    return points;
-}
-
-} // namespace
-
 class TestLineCovariance : public QObject {
     Q_OBJECT
+
+    static TlsSums sumsOf(const Points &points) { return TlsSums::of(points.begin(), points.end()); }
+
+    // Points every 2 cm on a line at `distance` from the origin that begins at `along`.
+    static Points wall(double theta, double distance, double along, int count) {
+        const Vector2D<double> direction(std::cos(theta), std::sin(theta));
+        Points points;
+        for (int i = 0; i < count; ++i)
+            points.push_back(direction * (along + 0.02 * i) + direction.left() * distance);
+        return points;
+    }
+
 private Q_SLOTS:
     void agreesWithMonteCarlo_data() {
         const Rows<double, double, int, bool> row("theta", "along", "count", "noiseKnown");

@@ -5,10 +5,6 @@
 #include "tests/vectorlib/RevisitError.h"
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <QtTest>
-
-#include <limits>
-
 using namespace vectorlib;
 
 namespace {

@@ -1,48 +1,8 @@
 #include <vectorlib/mapping/MapBuilder.h>
 #include <vectorlib/motion/MotionModel.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
-
-namespace {
-
-// A room of 8 m x 6 m with a box in it; free space on the left of every wall.
-const std::vector<Segment> room{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},      {{4, 3}, {-1, 3}},
-                                {{-1, 3}, {-1, 2}},  {{-1, 2}, {-4, 2}},     {{-4, 2}, {-4, -3}},
-                                {{2, 1}, {2, 1.8}},  {{2, 1.8}, {2.9, 1.8}}, {{2.9, 1.8}, {2.9, 1}},
-                                {{2.9, 1}, {2, 1}}};
-
-std::vector<Vector2D<float>> scan(const Pose2D &pose, int rays, double sigma, std::mt19937 &random) {
-    std::normal_distribution<double> noise;
-    std::vector<Vector2D<float>> points;
-    for (int i = 0; i < rays; ++i) {
-        const double angle = 2 * pi * i / rays, world = pose.theta + angle;
-        const Vector2D<double> d(std::cos(world), std::sin(world)), from(pose.x, pose.y);
-        double range = 1e9;
-        for (const Segment &wall : room) {
-            const double across = d.cross(wall.direction());
-            if (std::abs(across) < 1e-12)
-                continue;
-            const double r = (wall.begin() - from).cross(wall.direction()) / across;
-            const double t = wall.along(from + d * r);
-            if (r > 0 && t >= 0 && t <= wall.length())
-                range = std::min(range, r);
-        }
-        range += sigma * noise(random);
-        points.emplace_back(float(range * std::cos(angle)), float(range * std::sin(angle)));
-    }
-    return points;
-}
-
-double distance(const Pose2D &a, const Pose2D &b) {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
-
-} // namespace
 
 static EdgeRaw2D straight(Vector2D<double> from, Vector2D<double> to) {
     std::vector<Vector2D<double>> points;
@@ -53,6 +13,38 @@ static EdgeRaw2D straight(Vector2D<double> from, Vector2D<double> to) {
 
 class TestMapBuilder : public QObject {
     Q_OBJECT
+
+    // A room of 8 m x 6 m with a box in it; free space on the left of every wall.
+    static inline const std::vector<Segment> room{
+        {{-4, -3}, {4, -3}},    {{4, -3}, {4, 3}},   {{4, 3}, {-1, 3}},  {{-1, 3}, {-1, 2}},
+        {{-1, 2}, {-4, 2}},     {{-4, 2}, {-4, -3}}, {{2, 1}, {2, 1.8}}, {{2, 1.8}, {2.9, 1.8}},
+        {{2.9, 1.8}, {2.9, 1}}, {{2.9, 1}, {2, 1}}};
+
+    static std::vector<Vector2D<float>> scan(const Pose2D &pose, int rays, double sigma,
+                                             std::mt19937 &random) {
+        std::normal_distribution<double> noise;
+        std::vector<Vector2D<float>> points;
+        for (int i = 0; i < rays; ++i) {
+            const double angle = 2 * pi * i / rays, world = pose.theta + angle;
+            const Vector2D<double> d(std::cos(world), std::sin(world)), from(pose.x, pose.y);
+            double range = 1e9;
+            for (const Segment &wall : room) {
+                const double across = d.cross(wall.direction());
+                if (std::abs(across) < 1e-12)
+                    continue;
+                const double r = (wall.begin() - from).cross(wall.direction()) / across;
+                const double t = wall.along(from + d * r);
+                if (r > 0 && t >= 0 && t <= wall.length())
+                    range = std::min(range, r);
+            }
+            range += sigma * noise(random);
+            points.emplace_back(float(range * std::cos(angle)), float(range * std::sin(angle)));
+        }
+        return points;
+    }
+
+    static double distance(const Pose2D &a, const Pose2D &b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
 private Q_SLOTS:
     void mergedEdgeIsTheFitOfAllPoints() {
         std::mt19937 random(1);

@@ -4,74 +4,68 @@
 
 #include "tests/vectorlib/ScanWorld.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
-
-namespace {
-
-using Point = Vector2D<double>;
-using Wall = LineSegment2D<double>;
-
-EdgeRaw2D edgeOf(const Wall &wall) {
-    std::vector<Point> points;
-    for (int i = 0; i <= 20; ++i)
-        points.push_back(wall.begin() + (wall.end() - wall.begin()) * (i / 20.0));
-    return {TlsSums::of(points.begin(), points.end()), wall, 0};
-}
-/// Scans and their poses.
-struct Drive {
-    std::vector<std::vector<EdgeRaw2D>> edges;
-    std::vector<Pose2D> poses;
-
-    /// A scan at a place that sees these walls, of the map's frame.
-    void see(const std::vector<Wall> &walls, Pose2D pose) {
-        edges.emplace_back();
-        for (const Wall &wall : walls)
-            edges.back().push_back(edgeOf(Transformation2D(pose).inverse() * wall));
-        poses.push_back(pose);
-    }
-    /// Many scans along a line of y = 0, 20 cm apart.
-    void pass(const std::vector<Wall> &walls, int scans) {
-        for (int i = 0; i < scans; ++i)
-            see(walls, {0.2 * i, 0, 0});
-    }
-    ScanDrive all() const { return {edges, poses}; }
-};
-/// A corridor from x = -3 to 7, the upper wall as asked for.
-std::vector<Wall> corridor(std::vector<Wall> upper) {
-    upper.push_back({{-3, -2}, {7, -2}});
-    return upper;
-}
-const Wall upperWall({7, 2}, {-3, 2});
-
-VectorMap mapOf(const std::vector<Wall> &walls, std::int64_t observations = 10) {
-    VectorMap map;
-    for (const Wall &wall : walls)
-        map.add(edgeOf(wall), observations);
-    return map;
-}
-double lengthOf(const VectorMap &map) {
-    double sum = 0;
-    map.forEach([&](const MapEdge &e) { sum += e.segment.length(); });
-    return sum;
-}
-/// Whether the map has a wall within 8 cm of a place, whatever its direction.
-bool hasWallAt(const VectorMap &map, Point place) {
-    bool found = false;
-    map.forEach([&](const MapEdge &e) { found = found || e.segment.distance(place) < 0.08; });
-    return found;
-}
-void addBox(ScanWorld &world, Point low, Point high) {
-    const ScanWorld box = ScanWorld::of({low, {high.x, low.y}, high, {low.x, high.y}});
-    world.walls.insert(world.walls.end(), box.walls.begin(), box.walls.end());
-}
-
-} // namespace
 
 /// What becomes of a map when all scans of its drive are asked again.
 class TestMapReview : public QObject {
     Q_OBJECT
+
+    using Point = Vector2D<double>;
+    using Wall = LineSegment2D<double>;
+
+    static EdgeRaw2D edgeOf(const Wall &wall) {
+        std::vector<Point> points;
+        for (int i = 0; i <= 20; ++i)
+            points.push_back(wall.begin() + (wall.end() - wall.begin()) * (i / 20.0));
+        return {TlsSums::of(points.begin(), points.end()), wall, 0};
+    }
+    /// Scans and their poses.
+    struct Drive {
+        std::vector<std::vector<EdgeRaw2D>> edges;
+        std::vector<Pose2D> poses;
+
+        /// A scan at a place that sees these walls, of the map's frame.
+        void see(const std::vector<Wall> &walls, Pose2D pose) {
+            edges.emplace_back();
+            for (const Wall &wall : walls)
+                edges.back().push_back(edgeOf(Transformation2D(pose).inverse() * wall));
+            poses.push_back(pose);
+        }
+        /// Many scans along a line of y = 0, 20 cm apart.
+        void pass(const std::vector<Wall> &walls, int scans) {
+            for (int i = 0; i < scans; ++i)
+                see(walls, {0.2 * i, 0, 0});
+        }
+        ScanDrive all() const { return {edges, poses}; }
+    };
+    /// A corridor from x = -3 to 7, the upper wall as asked for.
+    static std::vector<Wall> corridor(std::vector<Wall> upper) {
+        upper.push_back({{-3, -2}, {7, -2}});
+        return upper;
+    }
+    static inline const Wall upperWall{{7, 2}, {-3, 2}};
+
+    static VectorMap mapOf(const std::vector<Wall> &walls, std::int64_t observations = 10) {
+        VectorMap map;
+        for (const Wall &wall : walls)
+            map.add(edgeOf(wall), observations);
+        return map;
+    }
+    static double lengthOf(const VectorMap &map) {
+        double sum = 0;
+        map.forEach([&](const MapEdge &e) { sum += e.segment.length(); });
+        return sum;
+    }
+    /// Whether the map has a wall within 8 cm of a place, whatever its direction.
+    static bool hasWallAt(const VectorMap &map, Point place) {
+        bool found = false;
+        map.forEach([&](const MapEdge &e) { found = found || e.segment.distance(place) < 0.08; });
+        return found;
+    }
+    static void addBox(ScanWorld &world, Point low, Point high) {
+        const ScanWorld box = ScanWorld::of({low, {high.x, low.y}, high, {low.x, high.y}});
+        world.walls.insert(world.walls.end(), box.walls.begin(), box.walls.end());
+    }
 
 private Q_SLOTS:
     // The drive goes round a room twice; between, a box is moved. People walk all the time.

@@ -1,30 +1,21 @@
 #include "vectorlib/relations/MatchErrors.h"
 
-#include <QtTest>
-
-#include <limits>
-#include <random>
-
 using namespace vectorlib;
-
-namespace {
 
 using Point = Vector2D<double>;
 using Segment = LineSegment2D<double>;
 
-constexpr double degree = pi / 180;
+static constexpr double degree = pi / 180;
 
-TypedSegment typed(Point begin, Point end) {
+static TypedSegment typed(Point begin, Point end) {
     TypedSegment t;
     t.segment = Segment(begin, end);
     return t;
 }
 
-bool near(double a, double b, double tolerance = 1e-9) {
+static bool near(double a, double b, double tolerance = 1e-9) {
     return std::abs(a - b) < tolerance;
 }
-
-} // namespace
 
 /// The measures of the pose-free thesis, chapter 6.
 class TestMatchErrors : public QObject {

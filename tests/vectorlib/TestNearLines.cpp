@@ -2,17 +2,12 @@
 
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
 #include <ctime>
-#include <random>
 
 using namespace vectorlib;
 
-namespace {
-
 /// Segments of any length and direction, or of four directions as those of buildings; metres.
-Segments drawn(std::size_t count, double size, bool isBuilding, std::mt19937 &random) {
+static Segments drawn(std::size_t count, double size, bool isBuilding, std::mt19937 &random) {
     std::uniform_real_distribution<double> at(-size, size), angle(-pi, pi), length(0.1, 4), skew(-0.02, 0.02);
     Segments segments;
     for (std::size_t i = 0; i < count; ++i) {
@@ -23,7 +18,7 @@ Segments drawn(std::size_t count, double size, bool isBuilding, std::mt19937 &ra
     return segments;
 }
 /// The wall of a round hall of 5 m, in so many pieces.
-Segments round(std::size_t count) {
+static Segments round(std::size_t count) {
     Segments segments;
     const auto corner = [&](std::size_t i) {
         const double a = 2 * pi * double(i) / double(count);
@@ -34,7 +29,7 @@ Segments round(std::size_t count) {
     return segments;
 }
 /// Both walls of a straight corridor, in pieces of half a metre.
-Segments corridor(std::size_t count) {
+static Segments corridor(std::size_t count) {
     Segments segments;
     for (std::size_t i = 0; i < count / 2; ++i) {
         const double x = 0.5 * double(i) - 0.125 * double(count);
@@ -43,14 +38,12 @@ Segments corridor(std::size_t count) {
     }
     return segments;
 }
-Segments world(int kind, std::size_t count) {
+static Segments world(int kind, std::size_t count) {
     std::mt19937 random(7);
     return kind == 0   ? drawn(count, 1.5 * std::sqrt(double(count)), true, random)
            : kind == 1 ? round(count)
                        : corridor(count);
 }
-
-} // namespace
 
 /// The static segments that may belong to a dynamic one: none is missed, and few others are looked at.
 class TestNearLines : public QObject {

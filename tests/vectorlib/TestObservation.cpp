@@ -1,48 +1,35 @@
+#include "ScanWorld.h"
+
 #include "vectorlib/observation/Observer.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
-
-namespace {
-
-using Segment = LineSegment2D<double>;
-using Point = Vector2D<double>;
-
-/// A room of 4 m x 2 m about the origin with free space inside, and a square pillar at (1, 0) of side 0.4 m.
-std::vector<Segment> room() {
-    const auto closed = [](std::vector<Point> corners) {
-        std::vector<Segment> edges;
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            edges.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
-        return edges;
-    };
-    std::vector<Segment> world = closed({{-2, -1}, {2, -1}, {2, 1}, {-2, 1}});
-    for (const Segment &edge : closed({{0.8, -0.2}, {0.8, 0.2}, {1.2, 0.2}, {1.2, -0.2}}))
-        world.push_back(edge);
-    return world;
-}
-
-bool near(Point a, Point b, double tolerance = 1e-9) {
-    return (a - b).norm() < tolerance;
-}
-
-/// Total angle under which the parts are seen from the origin.
-double seenAngle(const std::vector<VisiblePart<double>> &parts) {
-    double sum = 0;
-    for (const auto &part : parts)
-        sum += std::abs(wrapAngle(std::atan2(part.segment.end().y, part.segment.end().x) -
-                                  std::atan2(part.segment.begin().y, part.segment.begin().x)));
-    return sum;
-}
-
-} // namespace
 
 class TestObservation : public QObject {
     Q_OBJECT
+
+    using Segment = LineSegment2D<double>;
+    using Point = Vector2D<double>;
+
+    /// A room of 4 m x 2 m about the origin, free inside, with a square pillar at (1, 0), 0.4 m wide.
+    static std::vector<Segment> room() {
+        const auto closed = [](const std::vector<Point> &corners) { return ScanWorld::of(corners).walls; };
+        std::vector<Segment> world = closed({{-2, -1}, {2, -1}, {2, 1}, {-2, 1}});
+        for (const Segment &edge : closed({{0.8, -0.2}, {0.8, 0.2}, {1.2, 0.2}, {1.2, -0.2}}))
+            world.push_back(edge);
+        return world;
+    }
+
+    static bool near(Point a, Point b, double tolerance = 1e-9) { return (a - b).norm() < tolerance; }
+
+    /// Total angle under which the parts are seen from the origin.
+    static double seenAngle(const std::vector<VisiblePart<double>> &parts) {
+        double sum = 0;
+        for (const auto &part : parts)
+            sum += std::abs(wrapAngle(std::atan2(part.segment.end().y, part.segment.end().x) -
+                                      std::atan2(part.segment.begin().y, part.segment.begin().x)));
+        return sum;
+    }
 
 private Q_SLOTS:
     void anEmptyRoomIsSeenWhole() {

@@ -3,34 +3,26 @@
 #include <vectorlib/motion/MotionModel.h>
 #include <vectorlib/motion/OdometryBuffer.h>
 
-#include "tests/support/Rows.h"
-
-#include <cmath>
-
 using namespace vectorlib;
 using Outcome = OdometryBuffer::Outcome;
 
-namespace {
-
-constexpr double start = 1.7e9;
-const Twist2D twist{0.8, -0.2, 0.9};
+static constexpr double start = 1.7e9;
+static const Twist2D twist{0.8, -0.2, 0.9};
 
 // A robot on an arc, 50 times a second; the variance of its heading grows by 1e-4 rad^2 a second.
-OdometrySample onArc(double seconds) {
+static OdometrySample onArc(double seconds) {
     const Eigen::Matrix3d growth = Eigen::Vector3d(4e-4, 4e-4, 1e-4).asDiagonal();
     return {start + seconds, Pose2D{3, -2, 2.9} * twist.motion(seconds), twist, growth * seconds};
 }
 
-void fill(OdometryBuffer &buffer, int from, int to) {
+static void fill(OdometryBuffer &buffer, int from, int to) {
     for (int i = from; i < to; ++i)
         QCOMPARE(buffer.add(onArc(0.02 * i)), Outcome::Taken);
 }
 
-double distance(const Transformation2D &a, const Transformation2D &b) {
+static double distance(const Transformation2D &a, const Transformation2D &b) {
     return (a.translation() - b.translation()).norm() + std::abs((a.inverse() * b).alpha());
 }
-
-} // namespace
 
 Q_DECLARE_METATYPE(vectorlib::Pose2D)
 

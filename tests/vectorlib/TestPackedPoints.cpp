@@ -1,9 +1,5 @@
 #include <vectorlib/geometry/PackedPoints.h>
 
-#include <QtTest>
-
-#include <limits>
-
 using namespace vectorlib;
 
 /// Points kept in half the memory.

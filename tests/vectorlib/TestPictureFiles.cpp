@@ -3,20 +3,11 @@
 #include <vectorlib/io/Svg.h>
 #include <vectorlib/io/Tum.h>
 
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QJsonObject>
 #include <QXmlStreamReader>
-#include <QtTest>
-
-#include <limits>
-#include <sstream>
 
 using namespace vectorlib;
 
-namespace {
-
-std::vector<MapEdge> corner() {
+static std::vector<MapEdge> corner() {
     std::vector<MapEdge> map(2);
     map[0].id = 4;
     map[0].segment = {{0, 0}, {2, 0}};
@@ -25,14 +16,14 @@ std::vector<MapEdge> corner() {
     return map;
 }
 
-QByteArray written(SvgPicture &picture) {
+static QByteArray written(SvgPicture &picture) {
     std::ostringstream out;
     picture.write(out);
     return QByteArray::fromStdString(out.str());
 }
 
 /// Elements and text of an SVG file; fails the test when it is not well-formed.
-QByteArray contents(const QByteArray &svg) {
+static QByteArray contents(const QByteArray &svg) {
     QXmlStreamReader xml(svg);
     QByteArray seen;
     while (!xml.atEnd())
@@ -42,8 +33,6 @@ QByteArray contents(const QByteArray &svg) {
             seen += xml.text().toUtf8();
     return xml.hasError() ? "malformed: " + xml.errorString().toUtf8() : seen;
 }
-
-} // namespace
 
 /// Pictures and drawings of maps in the formats of other programs.
 class TestPictureFiles : public QObject {

@@ -6,30 +6,25 @@
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
-
-namespace {
-
-struct Box {
-    double x, y, width, depth;
-};
-
-// On the left side of the room, or on its right one.
-Box drawnBox(std::mt19937 &random, bool isRight) {
-    const auto between = [&random](double a, double b) {
-        return a + (b - a) * double(random() % 10001) / 1e4;
-    };
-    return {between(0.2, 0.8) + (isRight ? 2.8 : 0), between(0.1, 2.0), between(0.4, 1.2), between(0.3, 0.8)};
-}
-
-} // namespace
 
 Q_DECLARE_METATYPE(FloorPlan::Rooms)
 
 class TestPlaceEvidence : public QObject {
     Q_OBJECT
+
+    struct Box {
+        double x, y, width, depth;
+    };
+
+    // On the left side of the room, or on its right one.
+    static Box drawnBox(std::mt19937 &random, bool isRight) {
+        const auto between = [&random](double a, double b) {
+            return a + (b - a) * double(random() % 10001) / 1e4;
+        };
+        return {between(0.2, 0.8) + (isRight ? 2.8 : 0), between(0.1, 2.0), between(0.4, 1.2),
+                between(0.3, 0.8)};
+    }
 
 private Q_SLOTS:
     // Points of one object, whether it was seen from its short side first or last.

@@ -1,6 +1,5 @@
 // The search of a scan's place in a whole map.
 #include "PlaceCase.h"
-#include "tests/support/Patience.h"
 
 #include "tests/support/AllocationCounter.h"
 
@@ -9,20 +8,8 @@
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 
-#include <QElapsedTimer>
-#include <QtTest>
-
-#include <set>
-
 using namespace vectorlib;
 using Outcome = Relocalized::Outcome;
-
-namespace {
-
-// As long as a sanitizer or a busy machine may take.
-constexpr int muchTooLongMs = 60000;
-
-} // namespace
 
 Q_DECLARE_METATYPE(Points)
 Q_DECLARE_METATYPE(Walls)
@@ -30,6 +17,9 @@ Q_DECLARE_METATYPE(vectorlib::Relocalized::Outcome)
 
 class TestPlaceSearch : public QObject {
     Q_OBJECT
+
+    // As long as a sanitizer or a busy machine may take.
+    static constexpr int muchTooLongMs = 60000;
 
 private Q_SLOTS:
     void init() {

@@ -3,93 +3,88 @@
 #include "tests/vectorlib/ScanWorld.h"
 #include <vectorlib/observation/FloorPlan.h>
 
-#include <QtTest>
-
 #include <Eigen/LU>
 
 using namespace vectorlib;
 using Points = ScanWorld::Points;
 
-namespace {
-
-double between(std::mt19937 &random, double a, double b) {
-    return a + (b - a) * double(random() % 100001) / 100000;
-}
-/// Two scans of a place at random, and the motion between them.
-struct ScanPair {
-    Points fixed, moving;
-    Transformation2D motion;
-};
-void addBox(ScanWorld &world, const Transformation2D &place, double width, double depth) {
-    const ScanWorld::Point corners[] = {{0, 0}, {width, 0}, {width, depth}, {0, depth}};
-    for (int i = 0; i < 4; ++i)
-        world.walls.emplace_back(place * corners[i], place * corners[(i + 1) % 4]);
-}
-/// A room with boxes, but for the middle.
-ScanWorld clutter(std::mt19937 &random, int boxes) {
-    const double width = between(random, 5, 10), depth = between(random, 4, 8);
-    ScanWorld world = ScanWorld::of({{0, 0}, {width, 0}, {width, depth}, {0, depth}});
-    for (int i = 0; i < boxes; ++i) {
-        const double x = between(random, 0.1, width - 1), y = between(random, 0.1, depth - 1);
-        if (std::hypot(x + 0.25 - width / 2, y + 0.25 - depth / 2) > 1.5)
-            addBox(world, {x, y, between(random, 0, 1.5)}, between(random, 0.1, 0.5),
-                   between(random, 0.2, 0.6));
-    }
-    const ScanWorld::Point middle(width / 2, depth / 2);
-    for (auto &wall : world.walls)
-        wall = {wall.begin() - middle, wall.end() - middle};
-    return world;
-}
-/// A corridor between two ends, with niches on one side.
-ScanWorld corridor(std::mt19937 &random) {
-    const double half = between(random, 6, 12), width = between(random, 1.8, 3);
-    std::vector<ScanWorld::Point> corners{{-half, -width / 2}};
-    for (double x = between(random, 0.5, 2) - half; x + 1 < half; x += between(random, 1.5, 5))
-        corners.insert(
-            corners.end(),
-            {{x, -width / 2}, {x, -width / 2 - 0.3}, {x + 0.9, -width / 2 - 0.3}, {x + 0.9, -width / 2}});
-    corners.insert(corners.end(), {{half, -width / 2}, {half, width / 2}, {-half, width / 2}});
-    return ScanWorld::of(corners);
-}
-ScanPair drawPair(std::mt19937 &random, int number, double noise) {
-    Transformation2D from(0, 0, between(random, -3, 3));
-    ScanWorld world;
-    if (number % 3 == 0) {
-        FloorPlan plan(unsigned(random()), 8);
-        world.walls = plan.walls();
-        from = Transformation2D(plan.place());
-    } else
-        world = number % 3 == 1 ? clutter(random, int(random() % 20)) : corridor(random);
-    const bool half = random() % 2 == 0;
-    const int rays[] = {180, 360, 720, 1440};
-    const ScanWorld::Scanner scanner{rays[random() % 4], half ? pi : 2 * pi, noise, 30};
-    const double far = between(random, 0, 0.7), way = between(random, -3, 3);
-    const double turn = half ? 0.5 : 3;
-    ScanPair pair;
-    pair.motion = {far * std::cos(way), far * std::sin(way), between(random, -turn, turn)};
-    pair.fixed = world.scan(from, random, scanner);
-    pair.moving = world.scan(from * pair.motion, random, scanner);
-    return pair;
-}
-Eigen::Vector3d errorOf(const Transformation2D &found, const Transformation2D &motion) {
-    return {found.x() - motion.x(), found.y() - motion.y(), (motion.inverse() * found).alpha()};
-}
-/// What is told of two scans at the pose that is found from the motion given.
-Eigen::Matrix3d told(const Points &fixed, const Points &moving, const Transformation2D &motion,
-                     const PointCovariance &tell = {}) {
-    PointRefinement refine;
-    refine.start(fixed, moving);
-    return tell(refine, refine(motion, {{}, 1e6, 1e6}));
-}
-Eigen::Vector3d deviations(const Eigen::Matrix3d &covariance) {
-    return covariance.diagonal().cwiseSqrt();
-}
-
-} // namespace
-
 /// How sure a match of points is, as it tells itself.
 class TestPointCovariance : public QObject {
     Q_OBJECT
+
+    static double between(std::mt19937 &random, double a, double b) {
+        return a + (b - a) * double(random() % 100001) / 100000;
+    }
+    /// Two scans of a place at random, and the motion between them.
+    struct ScanPair {
+        Points fixed, moving;
+        Transformation2D motion;
+    };
+    static void addBox(ScanWorld &world, const Transformation2D &place, double width, double depth) {
+        const ScanWorld::Point corners[] = {{0, 0}, {width, 0}, {width, depth}, {0, depth}};
+        for (int i = 0; i < 4; ++i)
+            world.walls.emplace_back(place * corners[i], place * corners[(i + 1) % 4]);
+    }
+    /// A room with boxes, but for the middle.
+    static ScanWorld clutter(std::mt19937 &random, int boxes) {
+        const double width = between(random, 5, 10), depth = between(random, 4, 8);
+        ScanWorld world = ScanWorld::of({{0, 0}, {width, 0}, {width, depth}, {0, depth}});
+        for (int i = 0; i < boxes; ++i) {
+            const double x = between(random, 0.1, width - 1), y = between(random, 0.1, depth - 1);
+            if (std::hypot(x + 0.25 - width / 2, y + 0.25 - depth / 2) > 1.5)
+                addBox(world, {x, y, between(random, 0, 1.5)}, between(random, 0.1, 0.5),
+                       between(random, 0.2, 0.6));
+        }
+        const ScanWorld::Point middle(width / 2, depth / 2);
+        for (auto &wall : world.walls)
+            wall = {wall.begin() - middle, wall.end() - middle};
+        return world;
+    }
+    /// A corridor between two ends, with niches on one side.
+    static ScanWorld corridor(std::mt19937 &random) {
+        const double half = between(random, 6, 12), width = between(random, 1.8, 3);
+        std::vector<ScanWorld::Point> corners{{-half, -width / 2}};
+        for (double x = between(random, 0.5, 2) - half; x + 1 < half; x += between(random, 1.5, 5))
+            corners.insert(
+                corners.end(),
+                {{x, -width / 2}, {x, -width / 2 - 0.3}, {x + 0.9, -width / 2 - 0.3}, {x + 0.9, -width / 2}});
+        corners.insert(corners.end(), {{half, -width / 2}, {half, width / 2}, {-half, width / 2}});
+        return ScanWorld::of(corners);
+    }
+    static ScanPair drawPair(std::mt19937 &random, int number, double noise) {
+        Transformation2D from(0, 0, between(random, -3, 3));
+        ScanWorld world;
+        if (number % 3 == 0) {
+            FloorPlan plan(unsigned(random()), 8);
+            world.walls = plan.walls();
+            from = Transformation2D(plan.place());
+        } else
+            world = number % 3 == 1 ? clutter(random, int(random() % 20)) : corridor(random);
+        const bool half = random() % 2 == 0;
+        const int rays[] = {180, 360, 720, 1440};
+        const ScanWorld::Scanner scanner{rays[random() % 4], half ? pi : 2 * pi, noise, 30};
+        const double far = between(random, 0, 0.7), way = between(random, -3, 3);
+        const double turn = half ? 0.5 : 3;
+        ScanPair pair;
+        pair.motion = {far * std::cos(way), far * std::sin(way), between(random, -turn, turn)};
+        pair.fixed = world.scan(from, random, scanner);
+        pair.moving = world.scan(from * pair.motion, random, scanner);
+        return pair;
+    }
+    static Eigen::Vector3d errorOf(const Transformation2D &found, const Transformation2D &motion) {
+        return {found.x() - motion.x(), found.y() - motion.y(), (motion.inverse() * found).alpha()};
+    }
+    /// What is told of two scans at the pose that is found from the motion given.
+    static Eigen::Matrix3d told(const Points &fixed, const Points &moving, const Transformation2D &motion,
+                                const PointCovariance &tell = {}) {
+        PointRefinement refine;
+        refine.start(fixed, moving);
+        return tell(refine, refine(motion, {{}, 1e6, 1e6}));
+    }
+    static Eigen::Vector3d deviations(const Eigen::Matrix3d &covariance) {
+        return covariance.diagonal().cwiseSqrt();
+    }
+
 private Q_SLOTS:
     void errorsAreAsTold_data() {
         QTest::addColumn<double>("noise");

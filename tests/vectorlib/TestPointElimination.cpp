@@ -5,46 +5,43 @@
 using namespace vectorlib;
 using Points = Algorithm::Points;
 
-namespace {
-
-template <typename Vectorizer>
-std::vector<std::size_t> keptPoints(Vectorizer &vectorize, const Points &points) {
-    std::vector<std::size_t> kept;
-    for (const VectorizedLine &line : vectorize(points))
-        kept.push_back(line.first);
-    kept.push_back(points.size() - 1);
-    return kept;
-}
-
-// The textbook's Douglas-Peucker.
-void recursively(const Points &points, std::size_t first, std::size_t last, double tolerance,
-                 std::vector<std::size_t> &kept) {
-    const LineSegment2D<double> chord(points[first], points[last]);
-    double most = tolerance;
-    std::size_t split = first;
-    for (std::size_t i = first + 1; i < last; ++i)
-        if (chord.distance(points[i]) > most) {
-            most = chord.distance(points[i]);
-            split = i;
-        }
-    if (split == first) {
-        kept.push_back(last);
-    } else {
-        recursively(points, first, split, tolerance, kept);
-        recursively(points, split, last, tolerance, kept);
-    }
-}
-
-template <typename Vectorizer>
-std::size_t allocationsOf(Vectorizer vectorize, const std::vector<Vector2D<float>> &points) {
-    return allocationsOnceGrown(3, [&] { vectorize(points); });
-}
-
-} // namespace
-
 /// The rivals of thesis 6.5 as they are published, and that no vectorizer allocates memory once it has grown.
 class TestPointElimination : public QObject {
     Q_OBJECT
+
+    template <typename Vectorizer>
+    static std::vector<std::size_t> keptPoints(Vectorizer &vectorize, const Points &points) {
+        std::vector<std::size_t> kept;
+        for (const VectorizedLine &line : vectorize(points))
+            kept.push_back(line.first);
+        kept.push_back(points.size() - 1);
+        return kept;
+    }
+
+    // The textbook's Douglas-Peucker.
+    static void recursively(const Points &points, std::size_t first, std::size_t last, double tolerance,
+                            std::vector<std::size_t> &kept) {
+        const LineSegment2D<double> chord(points[first], points[last]);
+        double most = tolerance;
+        std::size_t split = first;
+        for (std::size_t i = first + 1; i < last; ++i)
+            if (chord.distance(points[i]) > most) {
+                most = chord.distance(points[i]);
+                split = i;
+            }
+        if (split == first) {
+            kept.push_back(last);
+        } else {
+            recursively(points, first, split, tolerance, kept);
+            recursively(points, split, last, tolerance, kept);
+        }
+    }
+
+    template <typename Vectorizer>
+    static std::size_t allocationsOf(Vectorizer vectorize, const std::vector<Vector2D<float>> &points) {
+        return allocationsOnceGrown(3, [&] { vectorize(points); });
+    }
+
 private Q_SLOTS:
     void douglasPeuckerKeepsWhatTheRecursiveFormKeeps() {
         DouglasPeuckerVectorizer<double> vectorize;

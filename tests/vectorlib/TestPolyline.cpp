@@ -6,58 +6,55 @@ using namespace vectorlib;
 using Lines = Algorithm::Lines;
 using Points = Algorithm::Points;
 
-namespace {
-
-// Points along y = f(x), every 2 cm, with noise across.
-template <typename Function>
-Points curve(Function f, int count, double noise = 0) {
-    std::mt19937 random(4);
-    std::normal_distribution<double> normal;
-    Points points;
-    for (int i = 0; i < count; ++i)
-        points.emplace_back(0.02 * i, f(0.02 * i) + noise * normal(random));
-    return points;
-}
-
-// The lines between consecutive cuts.
-Lines linesOf(const Points &points, const std::vector<std::size_t> &cuts) {
-    Lines lines;
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-        lines.push_back(makeLine<double>(
-            points, cuts[i], cuts[i + 1] - 1,
-            TlsSums::of(points.begin() + long(cuts[i]), points.begin() + long(cuts[i + 1]))));
-    return lines;
-}
-
-Lines joined(const Points &points, Lines lines, const VectorizerSettings &settings = {}) {
-    PrefixSums sums;
-    sums.assign(PointSpan<double>(points));
-    PolylineJoiner join;
-    join(PointSpan<double>(points), sums, settings, lines);
-    return lines;
-}
-
-int interruptions(const Lines &lines) {
-    int count = 0;
-    for (std::size_t i = 1; i < lines.size(); ++i)
-        count += !(lines[i - 1].segment.end() == lines[i].segment.begin());
-    return count;
-}
-
-// The sum of the squared distances of all points from the edges of their lines.
-double squaresOf(const Points &points, const Lines &lines) {
-    double squares = 0;
-    for (const VectorizedLine &line : lines)
-        for (std::size_t i = line.first; i <= line.last; ++i)
-            squares += std::pow(line.segment.across(points[i]), 2);
-    return squares;
-}
-
-} // namespace
-
 /// Joining the lines of a cluster: thesis 6.3.3.
 class TestPolyline : public QObject {
     Q_OBJECT
+
+    // Points along y = f(x), every 2 cm, with noise across.
+    template <typename Function>
+    static Points curve(Function f, int count, double noise = 0) {
+        std::mt19937 random(4);
+        std::normal_distribution<double> normal;
+        Points points;
+        for (int i = 0; i < count; ++i)
+            points.emplace_back(0.02 * i, f(0.02 * i) + noise * normal(random));
+        return points;
+    }
+
+    // The lines between consecutive cuts.
+    static Lines linesOf(const Points &points, const std::vector<std::size_t> &cuts) {
+        Lines lines;
+        for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+            lines.push_back(makeLine<double>(
+                points, cuts[i], cuts[i + 1] - 1,
+                TlsSums::of(points.begin() + long(cuts[i]), points.begin() + long(cuts[i + 1]))));
+        return lines;
+    }
+
+    static Lines joined(const Points &points, Lines lines, const VectorizerSettings &settings = {}) {
+        PrefixSums sums;
+        sums.assign(PointSpan<double>(points));
+        PolylineJoiner join;
+        join(PointSpan<double>(points), sums, settings, lines);
+        return lines;
+    }
+
+    static int interruptions(const Lines &lines) {
+        int count = 0;
+        for (std::size_t i = 1; i < lines.size(); ++i)
+            count += !(lines[i - 1].segment.end() == lines[i].segment.begin());
+        return count;
+    }
+
+    // The sum of the squared distances of all points from the edges of their lines.
+    static double squaresOf(const Points &points, const Lines &lines) {
+        double squares = 0;
+        for (const VectorizedLine &line : lines)
+            for (std::size_t i = line.first; i <= line.last; ++i)
+                squares += std::pow(line.segment.across(points[i]), 2);
+        return squares;
+    }
+
 private Q_SLOTS:
     void cornersAreIntersections() {
         const Points points = curve([](double x) { return std::abs(x - 1); }, 101);

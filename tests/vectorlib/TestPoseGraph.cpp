@@ -1,17 +1,10 @@
 #include <vectorlib/graph/PoseGraph.h>
 #include <vectorlib/io/Tum.h>
 
-#include <QtTest>
-
-#include <random>
-#include <sstream>
-
 using namespace vectorlib;
 
-namespace {
-
 /// A drive over a grid of streets: poses a metre apart, corners at random.
-std::vector<Pose2D> driveOf(int poses, std::mt19937 &random) {
+static std::vector<Pose2D> driveOf(int poses, std::mt19937 &random) {
     std::vector<Pose2D> drive{{3, -2, 0.5}};
     while (int(drive.size()) < poses) {
         const Pose2D &p = drive.back();
@@ -20,20 +13,18 @@ std::vector<Pose2D> driveOf(int poses, std::mt19937 &random) {
     }
     return drive;
 }
-Transformation2D between(const Pose2D &from, const Pose2D &to) {
+static Transformation2D between(const Pose2D &from, const Pose2D &to) {
     return Transformation2D(from).inverse() * Transformation2D(to);
 }
-Eigen::Matrix3d informationOf(double xy, double alpha) {
+static Eigen::Matrix3d informationOf(double xy, double alpha) {
     return Eigen::Vector3d(1 / (xy * xy), 1 / (xy * xy), 1 / (alpha * alpha)).asDiagonal();
 }
-double farthest(const std::vector<Pose2D> &a, const std::vector<Pose2D> &b) {
+static double farthest(const std::vector<Pose2D> &a, const std::vector<Pose2D> &b) {
     double most = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
         most = std::max(most, std::hypot(a[i].x - b[i].x, a[i].y - b[i].y));
     return most;
 }
-
-} // namespace
 
 /// Poses and the motions measured between them.
 class TestPoseGraph : public QObject {

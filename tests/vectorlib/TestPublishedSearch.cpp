@@ -3,57 +3,48 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/PublishedSearch.h"
 
-#include <QtTest>
-
-#include <limits>
-#include <set>
-
 using namespace vectorlib;
-
-namespace {
-
-/// Walls in two directions: `across` of them 40 cm apart that face one way, `along` that face across.
-Segments twoDirections(int across, int along) {
-    Segments walls;
-    for (int i = 0; i < across; ++i)
-        walls.push_back(Segment({2 + 0.4 * i, -1}, {2 + 0.4 * i, 1}));
-    for (int i = 0; i < along; ++i)
-        walls.push_back(Segment({1, 3 + 0.4 * i}, {-1, 3 + 0.4 * i}));
-    return walls;
-}
-
-double ambiguityOf(const PublishedSearch &search, const std::vector<std::size_t> &bundles) {
-    LineSegmentRegistration sums;
-    sums.stiffness = search.settings.stiffness;
-    for (const std::size_t bundle : bundles)
-        sums.add(search.bundles().bundles()[bundle].sums);
-    return sums.ambiguity().total();
-}
-double reliabilityOf(const PublishedSearch &search, const std::vector<std::size_t> &bundles) {
-    LineSegmentRegistration sums;
-    for (const std::size_t bundle : bundles)
-        sums.add(search.bundles().bundles()[bundle].sums);
-    return sums.reliability();
-}
-
-/// All choices of at most one bundle of each bucket.
-void forEachChoice(const PublishedBundles &sorted, std::size_t bucket, std::vector<std::size_t> &chosen,
-                   const std::function<void()> &take) {
-    if (bucket == sorted.buckets().size())
-        return take();
-    forEachChoice(sorted, bucket + 1, chosen, take);
-    for (const std::size_t bundle : sorted.buckets()[bucket]) {
-        chosen.push_back(bundle);
-        forEachChoice(sorted, bucket + 1, chosen, take);
-        chosen.pop_back();
-    }
-}
-
-} // namespace
 
 /// The search of thesis 7.4 to the letter.
 class TestPublishedSearch : public QObject {
     Q_OBJECT
+
+    /// Walls in two directions: `across` of them 40 cm apart that face one way, `along` that face across.
+    static Segments twoDirections(int across, int along) {
+        Segments walls;
+        for (int i = 0; i < across; ++i)
+            walls.push_back(Segment({2 + 0.4 * i, -1}, {2 + 0.4 * i, 1}));
+        for (int i = 0; i < along; ++i)
+            walls.push_back(Segment({1, 3 + 0.4 * i}, {-1, 3 + 0.4 * i}));
+        return walls;
+    }
+
+    static double ambiguityOf(const PublishedSearch &search, const std::vector<std::size_t> &bundles) {
+        LineSegmentRegistration sums;
+        sums.stiffness = search.settings.stiffness;
+        for (const std::size_t bundle : bundles)
+            sums.add(search.bundles().bundles()[bundle].sums);
+        return sums.ambiguity().total();
+    }
+    static double reliabilityOf(const PublishedSearch &search, const std::vector<std::size_t> &bundles) {
+        LineSegmentRegistration sums;
+        for (const std::size_t bundle : bundles)
+            sums.add(search.bundles().bundles()[bundle].sums);
+        return sums.reliability();
+    }
+
+    /// All choices of at most one bundle of each bucket.
+    static void forEachChoice(const PublishedBundles &sorted, std::size_t bucket,
+                              std::vector<std::size_t> &chosen, const std::function<void()> &take) {
+        if (bucket == sorted.buckets().size())
+            return take();
+        forEachChoice(sorted, bucket + 1, chosen, take);
+        for (const std::size_t bundle : sorted.buckets()[bucket]) {
+            chosen.push_back(bundle);
+            forEachChoice(sorted, bucket + 1, chosen, take);
+            chosen.pop_back();
+        }
+    }
 
 private Q_SLOTS:
     // As in thesis figure 7.18: five positions in one direction and three in the other are 15 solutions.

@@ -1,19 +1,11 @@
 #include <vectorlib/correspondence/QuadrangleMatcher.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 using Segments = std::vector<Segment>;
 
-namespace {
-
-const Segments room{Segment({0, 0}, {5, 0}), Segment({5, 0}, {5, 4}), Segment({5, 4}, {0, 4}),
-                    Segment({0, 4}, {0, 0})};
-
-} // namespace
+static const Segments room{Segment({0, 0}, {5, 0}), Segment({5, 0}, {5, 4}), Segment({5, 4}, {0, 4}),
+                           Segment({0, 4}, {0, 0})};
 
 // The matcher of overview paper 2.2.
 class TestQuadrangleMatcher : public QObject {

@@ -4,21 +4,13 @@
 #include <vectorlib/registration/LineSegmentRegistration.h>
 #include <vectorlib/registration/PointRefinement.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 
-namespace {
-
-Segment direction(double degrees) {
+static Segment direction(double degrees) {
     const double a = degrees * pi / 180;
     return {{1, 1}, {1 + std::cos(a), 1 + std::sin(a)}};
 }
-
-} // namespace
 
 class TestRegistration : public QObject {
     Q_OBJECT

@@ -1,46 +1,38 @@
 #include <vectorlib/registration/RegistrationCovariance.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
-
-namespace {
-
-constexpr double spacing = 0.05; // metres between points
-
-/// A wall as points see it: the segment with its fit, and how sure the fit is.
-struct Seen {
-    Segment segment;
-    LineCovariance covariance;
-};
-
-Seen see(const Segment &wall, double noise, std::mt19937 &random) {
-    std::normal_distribution<double> normal(0, 1);
-    std::vector<Vector2D<double>> points;
-    for (double t = 0; t <= wall.length(); t += spacing)
-        points.push_back(wall.begin() + wall.direction() * t +
-                         Vector2D<double>(normal(random), normal(random)) * noise);
-    const TlsSums sums = TlsSums::of(points.begin(), points.end());
-    const Line2D line = fitLine(sums).line;
-    return {Segment(line.project(wall.begin()), line.project(wall.end())), lineCovariance(sums, noise)};
-}
-
-// Static walls around the sensor, one of them with the origin behind it.
-const std::vector<Segment> room{Segment({-2, -1.5}, {3, -1.5}), Segment({3, -1.5}, {3, 2}),
-                                Segment({1, 2.5}, {-2, 2}), Segment({-1, 0.2}, {-0.4, 0.4})};
-
-double weightOf(const Segment &a, const Segment &b) {
-    return std::min(a.length(), b.length());
-}
-
-} // namespace
 
 // How sure a registration is, against repeated measurements of the same walls.
 class TestRegistrationCovariance : public QObject {
     Q_OBJECT
+
+    static constexpr double spacing = 0.05; // metres between points
+
+    /// A wall as points see it: the segment with its fit, and how sure the fit is.
+    struct Seen {
+        Segment segment;
+        LineCovariance covariance;
+    };
+
+    static Seen see(const Segment &wall, double noise, std::mt19937 &random) {
+        std::normal_distribution<double> normal(0, 1);
+        std::vector<Vector2D<double>> points;
+        for (double t = 0; t <= wall.length(); t += spacing)
+            points.push_back(wall.begin() + wall.direction() * t +
+                             Vector2D<double>(normal(random), normal(random)) * noise);
+        const TlsSums sums = TlsSums::of(points.begin(), points.end());
+        const Line2D line = fitLine(sums).line;
+        return {Segment(line.project(wall.begin()), line.project(wall.end())), lineCovariance(sums, noise)};
+    }
+
+    // Static walls around the sensor, one of them with the origin behind it.
+    static inline const std::vector<Segment> room{Segment({-2, -1.5}, {3, -1.5}), Segment({3, -1.5}, {3, 2}),
+                                                  Segment({1, 2.5}, {-2, 2}),
+                                                  Segment({-1, 0.2}, {-0.4, 0.4})};
+
+    static double weightOf(const Segment &a, const Segment &b) { return std::min(a.length(), b.length()); }
+
 private Q_SLOTS:
     void agreesWithMonteCarlo_data() {
         const Rows<double, double, double, int, double> row("x", "y", "alpha", "rotation", "mapNoise");

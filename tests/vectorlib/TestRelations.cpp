@@ -8,10 +8,6 @@
 #include "vectorlib/relations/RelationScores.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using TypedSegments = std::vector<TypedSegment>;
 

@@ -6,8 +6,6 @@
 #include "vectorlib/relations/RelationScores.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
 using TypedSegments = std::vector<TypedSegment>;
 

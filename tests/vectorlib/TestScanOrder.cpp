@@ -6,10 +6,6 @@
 #include "vectorlib/relations/RelationMatcher.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
 

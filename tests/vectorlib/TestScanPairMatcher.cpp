@@ -4,31 +4,24 @@
 #include "tests/support/AllocationCounter.h"
 #include "tests/vectorlib/ScanWorld.h"
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Points = ScanWorld::Points;
-
-namespace {
-
-const auto room = ScanWorld::room, grove = ScanWorld::grove, corridor = ScanWorld::corridor;
-
-EarSettings scanner() {
-    return EarSettings::forScanner(pi, 361);
-}
-
-double metres(const Transformation2D &a, const Transformation2D &b) {
-    return (a.translation() - b.translation()).norm();
-}
-double degrees(const Transformation2D &a, const Transformation2D &b) {
-    return std::abs((a.inverse() * b).alpha()) * 180 / pi;
-}
-
-} // namespace
 
 // The motion between two scans by lines and points, and what it takes to be believed.
 class TestScanPairMatcher : public QObject {
     Q_OBJECT
+
+    static inline const auto room = ScanWorld::room, grove = ScanWorld::grove, corridor = ScanWorld::corridor;
+
+    static EarSettings scanner() { return EarSettings::forScanner(pi, 361); }
+
+    static double metres(const Transformation2D &a, const Transformation2D &b) {
+        return (a.translation() - b.translation()).norm();
+    }
+    static double degrees(const Transformation2D &a, const Transformation2D &b) {
+        return std::abs((a.inverse() * b).alpha()) * 180 / pi;
+    }
+
 private Q_SLOTS:
     void nearestIsThatOfAllPoints() {
         std::mt19937 random(1);

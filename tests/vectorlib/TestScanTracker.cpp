@@ -2,34 +2,26 @@
 #include <vectorlib/mapping/ScanTracker.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 
-#include <QtTest>
-
-#include <limits>
-#include <random>
-
 using namespace vectorlib;
-
-namespace {
-
-// A room of 8 m x 6 m with a niche.
-const std::vector<LineSegment2D<float>> room{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},  {{4, 3}, {-1, 3}},
-                                             {{-1, 3}, {-1, 2}},  {{-1, 2}, {-4, 2}}, {{-4, 2}, {-4, -3}}};
-
-bool isNear(const Pose2D &a, const Pose2D &b) {
-    return std::hypot(a.x - b.x, a.y - b.y) < 0.02 && std::abs(wrapAngle(a.theta - b.theta)) < 0.01;
-}
-
-OdometryTrack track(const Pose2D &pose, double stamp, std::optional<double> variance = {}) {
-    OdometrySample sample{stamp, pose, {}, {}};
-    if (variance)
-        sample.covariance = Eigen::Matrix3d(Eigen::Matrix3d::Identity() * *variance);
-    return {1, {sample}};
-}
-
-} // namespace
 
 class TestScanTracker : public QObject {
     Q_OBJECT
+
+    // A room of 8 m x 6 m with a niche.
+    static inline const std::vector<LineSegment2D<float>> room{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},
+                                                               {{4, 3}, {-1, 3}},   {{-1, 3}, {-1, 2}},
+                                                               {{-1, 2}, {-4, 2}},  {{-4, 2}, {-4, -3}}};
+
+    static bool isNear(const Pose2D &a, const Pose2D &b) {
+        return std::hypot(a.x - b.x, a.y - b.y) < 0.02 && std::abs(wrapAngle(a.theta - b.theta)) < 0.01;
+    }
+
+    static OdometryTrack track(const Pose2D &pose, double stamp, std::optional<double> variance = {}) {
+        OdometrySample sample{stamp, pose, {}, {}};
+        if (variance)
+            sample.covariance = Eigen::Matrix3d(Eigen::Matrix3d::Identity() * *variance);
+        return {1, {sample}};
+    }
 
 private Q_SLOTS:
     void init() {

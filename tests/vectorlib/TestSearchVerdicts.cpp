@@ -3,10 +3,6 @@
 #include "tests/support/RandomRoom.h"
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 
 /// What the search for corresponding segments says when it finds nothing, or nothing that is sure.

@@ -1,9 +1,5 @@
 #include <vectorlib/segmentation/EarSegmenter.h>
 
-#include <QtTest>
-
-#include <limits>
-#include <random>
 #include <type_traits>
 
 using namespace vectorlib;

@@ -2,28 +2,22 @@
 
 #include <vectorlib/similarity/EdgeSetComparator.h>
 
-#include <QtTest>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 
-namespace {
+static const Segment unit({0, 0}, {1, 0});
 
-const Segment unit({0, 0}, {1, 0});
-
-double pairByPair(const std::vector<SegmentPair> &pairs, const Transformation2D &t) {
+static double pairByPair(const std::vector<SegmentPair> &pairs, const Transformation2D &t) {
     double sum = 0;
     for (const SegmentPair &p : pairs)
         sum += p.weight * areaCriterion(p.fixed, t * p.moving);
     return sum;
 }
 
-Transformation2D anyMotion(std::mt19937 &random) {
+static Transformation2D anyMotion(std::mt19937 &random) {
     std::uniform_real_distribution<double> t(-3, 3), a(-pi, pi);
     return {t(random), t(random), a(random)};
 }
-
-} // namespace
 
 // The similarity criterion of thesis 7.2.
 class TestSimilarity : public QObject {

@@ -1,10 +1,5 @@
 #include "vectorlib/geometry/SmallMatrix.h"
 
-#include <Eigen/Dense>
-#include <QtTest>
-#include <limits>
-#include <random>
-
 using namespace vectorlib;
 
 // The plain loops give what Eigen's expressions give.

@@ -1,22 +1,16 @@
 #include <vectorlib/correspondence/CorrespondenceFinder.h>
 #include <vectorlib/correspondence/SearchResult.h>
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 
-namespace {
-
-constexpr double spacing = 0.05; // metres between points
+static constexpr double spacing = 0.05; // metres between points
 
 // Free space is inside; one wall stands alone, far away and short.
-const std::vector<Segment> room{Segment({-2, -1.5}, {3, -1.5}), Segment({3, -1.5}, {3, 2}),
-                                Segment({3, 2.5}, {-2, 2}), Segment({-2.5, 1}, {-2.5, 0.2})};
+static const std::vector<Segment> room{Segment({-2, -1.5}, {3, -1.5}), Segment({3, -1.5}, {3, 2}),
+                                       Segment({3, 2.5}, {-2, 2}), Segment({-2.5, 1}, {-2.5, 0.2})};
 
-MeasuredSegments seen(const Transformation2D &from, double noise, std::mt19937 &random) {
+static MeasuredSegments seen(const Transformation2D &from, double noise, std::mt19937 &random) {
     std::normal_distribution<double> normal(0, 1);
     MeasuredSegments result;
     for (const Segment &wall : room) {
@@ -31,8 +25,6 @@ MeasuredSegments seen(const Transformation2D &from, double noise, std::mt19937 &
     }
     return result;
 }
-
-} // namespace
 
 // How sure a solution of the correspondence search is, against repeated measurements of the same walls.
 class TestSolutionCovariance : public QObject {

@@ -3,17 +3,10 @@
 #include <vectorlib/io/MapCsv.h>
 #include <vectorlib/io/Pcd.h>
 
-#include <QtTest>
-
-#include <random>
-#include <sstream>
-
 using namespace vectorlib;
 
-namespace {
-
 /// How many rows a reader finds, or its message.
-std::pair<int, QByteArray> outcome(const QByteArray &kind, const QByteArray &text) {
+static std::pair<int, QByteArray> outcome(const QByteArray &kind, const QByteArray &text) {
     std::istringstream in(text.toStdString());
     const auto result = [](const auto &read, auto count) {
         return read ? std::pair(int(count(*read)), QByteArray())
@@ -35,12 +28,10 @@ std::pair<int, QByteArray> outcome(const QByteArray &kind, const QByteArray &tex
     return result(readCsvPairs(in, "f"), [](const auto &t) { return t.pairs.size(); });
 }
 
-const QByteArray pcdHeader =
+static const QByteArray pcdHeader =
     "# .PCD v0.7\nVERSION 0.7\nFIELDS i x y\nSIZE 4 4 4\nTYPE F F F\nCOUNT 2 1 1\nWIDTH 2\nHEIGHT "
     "1\nVIEWPOINT 0 0 0 1 0 0 0\n";
-const QByteArray pairRow = "0,0,1,0,5,5,6,5";
-
-} // namespace
+static const QByteArray pairRow = "0,0,1,0,5,5,6,5";
 
 /// Points, segments, pairs and maps from text: what is accepted, what is refused and how it is said.
 class TestTableFiles : public QObject {

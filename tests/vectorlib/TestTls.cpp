@@ -1,18 +1,9 @@
 #include <vectorlib/tls/TlsFit.h>
 
-#include "tests/support/Rows.h"
-
-#include <QtTest>
-
-#include <random>
-#include <vector>
-
 using namespace vectorlib;
 
-namespace {
-
-std::vector<Vector2D<double>> noisyLine(double theta, double distance, int count, double sigma,
-                                        Vector2D<double> offset = {}, unsigned seed = 1) {
+static std::vector<Vector2D<double>> noisyLine(double theta, double distance, int count, double sigma,
+                                               Vector2D<double> offset = {}, unsigned seed = 1) {
     std::mt19937 random(seed);
     std::normal_distribution<double> noise;
     const Vector2D<double> d(std::cos(theta), std::sin(theta)), n = d.left();
@@ -22,11 +13,9 @@ std::vector<Vector2D<double>> noisyLine(double theta, double distance, int count
     return points;
 }
 
-TlsSums sumsOf(const std::vector<Vector2D<double>> &points) {
+static TlsSums sumsOf(const std::vector<Vector2D<double>> &points) {
     return TlsSums::of(points.begin(), points.end());
 }
-
-} // namespace
 
 class TestTls : public QObject {
     Q_OBJECT

@@ -5,11 +5,6 @@
 #include <vectorlib/motion/OdometryBuffer.h>
 #include <vectorlib/observation/Observer.h>
 
-#include <QtTest>
-
-#include <functional>
-#include <random>
-
 using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 using Point = Vector2D<double>;

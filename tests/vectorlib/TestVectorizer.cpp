@@ -2,17 +2,11 @@
 
 #include "tests/support/AllocationCounter.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
 
-namespace {
-
 // A polyline through the corners with `each` points a side and noise across.
-Points polyline(const std::vector<Vector2D<double>> &corners, int each, double sigma, unsigned seed) {
+static Points polyline(const std::vector<Vector2D<double>> &corners, int each, double sigma, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> noise;
     Points points;
@@ -25,14 +19,13 @@ Points polyline(const std::vector<Vector2D<double>> &corners, int each, double s
     return points;
 }
 
-Vector2D<float> onRay(std::size_t ray, double range) {
+static Vector2D<float> onRay(std::size_t ray, double range) {
     const double angle = 0.01 * static_cast<double>(ray);
     return Vector2D<float>(Vector2D<double>(std::cos(angle), std::sin(angle)) * range);
 }
 
-const std::vector<Vector2D<double>> staircase{{2, -2}, {2, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 2}, {-2, 2}};
-
-} // namespace
+static const std::vector<Vector2D<double>> staircase{{2, -2}, {2, 0}, {1, 0}, {1, 1},
+                                                     {0, 1},  {0, 2}, {-2, 2}};
 
 class TestVectorizer : public QObject {
     Q_OBJECT

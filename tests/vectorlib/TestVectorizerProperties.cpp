@@ -5,32 +5,28 @@ using Points = Algorithm::Points;
 
 Q_DECLARE_METATYPE(Algorithm)
 
-namespace {
-
-void algorithmRows(const QStringList &without = {}) {
+static void algorithmRows(const QStringList &without = {}) {
     const Rows<Algorithm> row("algorithm");
     for (const Algorithm &a : algorithms)
         if (!isOneOf(a, without))
             row(a.name, a);
 }
 
-VectorizerSettings settingsOf(bool polyline) {
+static VectorizerSettings settingsOf(bool polyline) {
     VectorizerSettings settings;
     settings.polyline = polyline;
     return settings;
 }
 
-double distanceOfEnds(const LineSegment2D<double> &a, const LineSegment2D<double> &b) {
+static double distanceOfEnds(const LineSegment2D<double> &a, const LineSegment2D<double> &b) {
     return std::max((a.begin() - b.begin()).norm(), (a.end() - b.end()).norm());
 }
 
-const char *at(std::uint64_t seed) {
+static const char *at(std::uint64_t seed) {
     static QByteArray text;
     text = "seed " + QByteArray::number(qulonglong(seed));
     return text.constData();
 }
-
-} // namespace
 
 /// What holds of every vectorizer, on scans of random rooms and on input that is no scan at all.
 class TestVectorizerProperties : public QObject {

@@ -1,47 +1,36 @@
+#include "ScanWorld.h"
+
 #include "vectorlib/observation/Discrepancy.h"
 
-#include <QtTest>
-
-#include <random>
-
 using namespace vectorlib;
-
-namespace {
-
-using Segment = LineSegment2D<double>;
-using Point = Vector2D<double>;
-using View = std::vector<VisiblePart<double>>;
-
-/// The walls of a closed polygon, counter-clockwise.
-std::vector<Segment> walls(const std::vector<Point> &corners) {
-    std::vector<Segment> edges;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        edges.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
-    return edges;
-}
-std::vector<Segment> square(double half) {
-    return walls({{-half, -half}, {half, -half}, {half, half}, {-half, half}});
-}
-View look(const std::vector<Segment> &world, const Pose2D &pose = {},
-          const std::vector<Segment> &obstacles = {}) {
-    return Observer<double>()(world, pose, obstacles);
-}
-bool near(double a, double b, double tolerance = 1e-9) {
-    return std::abs(a - b) <= tolerance;
-}
-double rangeOf(const View &view, double angle) {
-    double nearest = noHit;
-    for (const auto &part : view)
-        nearest = std::min(nearest, rayDistance({std::cos(angle), std::sin(angle)}, part.segment.begin(),
-                                                part.segment.end()));
-    return nearest;
-}
-
-} // namespace
 
 /// What is compared when a solution is tested: expected views, unexplored space, discrepancy.
 class TestViews : public QObject {
     Q_OBJECT
+
+    using Segment = LineSegment2D<double>;
+    using Point = Vector2D<double>;
+    using View = std::vector<VisiblePart<double>>;
+
+    /// The walls of a closed polygon, counter-clockwise.
+    static std::vector<Segment> walls(const std::vector<Point> &corners) {
+        return ScanWorld::of(corners).walls;
+    }
+    static std::vector<Segment> square(double half) {
+        return walls({{-half, -half}, {half, -half}, {half, half}, {-half, half}});
+    }
+    static View look(const std::vector<Segment> &world, const Pose2D &pose = {},
+                     const std::vector<Segment> &obstacles = {}) {
+        return Observer<double>()(world, pose, obstacles);
+    }
+    static bool near(double a, double b, double tolerance = 1e-9) { return std::abs(a - b) <= tolerance; }
+    static double rangeOf(const View &view, double angle) {
+        double nearest = noHit;
+        for (const auto &part : view)
+            nearest = std::min(nearest, rayDistance({std::cos(angle), std::sin(angle)}, part.segment.begin(),
+                                                    part.segment.end()));
+        return nearest;
+    }
 
 private Q_SLOTS:
     void directionsKeepTheirOrder() {

@@ -2,8 +2,6 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QLabel>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

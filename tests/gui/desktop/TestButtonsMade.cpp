@@ -1,8 +1,5 @@
 #include "tests/gui/desktop/ButtonsWindow.h"
 
-#include <QListWidget>
-#include <QMenu>
-#include <QPlainTextEdit>
 #include <QToolBar>
 
 using namespace hermes;

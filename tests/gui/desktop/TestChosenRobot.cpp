@@ -3,8 +3,6 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QLabel>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

@@ -3,7 +3,6 @@
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
-#include "tests/support/Patience.h"
 
 #include <QWheelEvent>
 

@@ -2,9 +2,6 @@
 #include "gui/desktop/view/PointRaster.h"
 #include "tests/gui/desktop/CloudSession.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/Patience.h"
-
-#include <QComboBox>
 
 using namespace hermes;
 using namespace hermes::desktop;

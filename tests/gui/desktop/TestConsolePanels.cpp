@@ -4,12 +4,6 @@
 #include "gui/desktop/view/PlotPane.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QComboBox>
-#include <QFile>
-#include <QLabel>
-#include <QListWidget>
-#include <QPlainTextEdit>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

@@ -5,9 +5,6 @@
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QLabel>
-#include <QListWidget>
-#include <QPlainTextEdit>
 #include <csignal>
 
 using namespace hermes;

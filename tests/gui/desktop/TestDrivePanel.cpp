@@ -5,12 +5,7 @@
 #include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QLabel>
-#include <QLineEdit>
-#include <QMenu>
-#include <QPushButton>
 #include <QSlider>
-#include <QToolButton>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -1,7 +1,6 @@
 #include "gui/desktop/view/Clipping.h"
 #include "gui/desktop/view/MapPainter.h"
 #include "tests/gui/desktop/EightSession.h"
-#include "tests/support/Patience.h"
 #include "tests/support/ThreadTime.h"
 
 #include <QPainter>

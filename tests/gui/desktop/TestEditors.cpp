@@ -1,8 +1,5 @@
 #include "tests/gui/desktop/OpenForm.h"
 
-#include <QCheckBox>
-#include <QToolButton>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

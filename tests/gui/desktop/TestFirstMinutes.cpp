@@ -5,9 +5,7 @@
 
 #include "common/client/DaemonAddress.h"
 
-#include <QLabel>
 #include <QMenuBar>
-#include <QProcess>
 #include <QTabBar>
 
 using namespace hermes;

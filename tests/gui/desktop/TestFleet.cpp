@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 
 #include <QSignalSpy>
-#include <QtTest>
 
 using namespace hermes;
 using namespace hermes::desktop;

@@ -3,7 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QHeaderView>
-#include <QLabel>
 
 using namespace hermes;
 using namespace hermes::desktop;

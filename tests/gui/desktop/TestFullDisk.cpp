@@ -1,10 +1,8 @@
 #include "common/files/SavedFile.h"
 #include "gui/desktop/model/CurveTable.h"
 #include "gui/desktop/widgets/WrittenFile.h"
-#include "tests/support/Files.h"
 
 #include <QPainter>
-#include <QtTest>
 
 #include <csignal>
 #include <sys/resource.h>

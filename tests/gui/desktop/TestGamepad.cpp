@@ -4,10 +4,6 @@
 #include "tests/gui/desktop/VirtualGamepad.h"
 #include "tests/support/FakeRobot.h"
 
-#include <QLabel>
-#include <cmath>
-#include <limits>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

@@ -9,52 +9,49 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-namespace {
-
-/// Another program on the same display.
-class OtherProgram {
-public:
-    OtherProgram()
-        : display_(call<void *>("XOpenDisplay", static_cast<const char *>(nullptr))) {}
-    ~OtherProgram() { call<int>("XCloseDisplay", display_); }
-    void lockGroup(unsigned group) {
-        constexpr unsigned coreKeyboard = 0x100;
-        call<int>("XkbLockGroup", display_, coreKeyboard, group);
-        call<int>("XSync", display_, 0);
-    }
-    bool grabKeyboard() {
-        constexpr int async = 1;
-        return call<int>("XGrabKeyboard", display_, call<unsigned long>("XDefaultRootWindow", display_), 0,
-                         async, async, 0UL) == 0;
-    }
-
-private:
-    template <typename Result, typename... Values>
-    Result call(const char *name, Values... values) {
-        return reinterpret_cast<Result (*)(Values...)>(QLibrary::resolve("X11", 6, name))(values...);
-    }
-
-    void *display_;
-};
-
-/// Loses each release of a key.
-class LostReleases : public QAbstractNativeEventFilter {
-public:
-    LostReleases() { qApp->installNativeEventFilter(this); }
-    bool nativeEventFilter(const QByteArray &type, void *message, long *) override {
-        constexpr quint8 xInput = 35, release = 3;
-        const auto *const bytes = static_cast<const quint8 *>(message);
-        return type == "xcb_generic_event_t" &&
-               ((bytes[0] & 0x7f) == release || ((bytes[0] & 0x7f) == xInput && bytes[8] == release));
-    }
-};
-
-} // namespace
-
 /// A key that stays held while the keyboard repeats it drives only once: with real keys (xdotool) on a
 /// display (with_display), whose releases between repeats are not always told to be repeats.
 class TestHeldKeys : public QObject {
     Q_OBJECT
+
+    /// Another program on the same display.
+    class OtherProgram {
+    public:
+        OtherProgram()
+            : display_(call<void *>("XOpenDisplay", static_cast<const char *>(nullptr))) {}
+        ~OtherProgram() { call<int>("XCloseDisplay", display_); }
+        void lockGroup(unsigned group) {
+            constexpr unsigned coreKeyboard = 0x100;
+            call<int>("XkbLockGroup", display_, coreKeyboard, group);
+            call<int>("XSync", display_, 0);
+        }
+        bool grabKeyboard() {
+            constexpr int async = 1;
+            return call<int>("XGrabKeyboard", display_, call<unsigned long>("XDefaultRootWindow", display_),
+                             0, async, async, 0UL) == 0;
+        }
+
+    private:
+        template <typename Result, typename... Values>
+        Result call(const char *name, Values... values) {
+            return reinterpret_cast<Result (*)(Values...)>(QLibrary::resolve("X11", 6, name))(values...);
+        }
+
+        void *display_;
+    };
+
+    /// Loses each release of a key.
+    class LostReleases : public QAbstractNativeEventFilter {
+    public:
+        LostReleases() { qApp->installNativeEventFilter(this); }
+        bool nativeEventFilter(const QByteArray &type, void *message, long *) override {
+            constexpr quint8 xInput = 35, release = 3;
+            const auto *const bytes = static_cast<const quint8 *>(message);
+            return type == "xcb_generic_event_t" &&
+                   ((bytes[0] & 0x7f) == release || ((bytes[0] & 0x7f) == xInput && bytes[8] == release));
+        }
+    };
+
 private Q_SLOTS:
     void initTestCase() {
         if (QGuiApplication::platformName() != "xcb")

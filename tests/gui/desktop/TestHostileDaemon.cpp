@@ -2,18 +2,9 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/support/LoopWatch.h"
-#include "tests/support/Patience.h"
 
 #include <QCborValue>
-#include <QDockWidget>
-#include <QFile>
-#include <QLabel>
-#include <QListWidget>
-#include <QMenu>
 #include <QPainter>
-#include <QPushButton>
-#include <QTreeWidget>
-#include <QtTest>
 
 using namespace hermes;
 using namespace hermes::desktop;

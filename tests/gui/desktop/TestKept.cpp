@@ -6,9 +6,6 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QCheckBox>
-#include <QJsonDocument>
-#include <QProcess>
 #include <csignal>
 #include <sys/stat.h>
 

@@ -4,31 +4,19 @@
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAction>
-#include <QCheckBox>
-#include <QComboBox>
-#include <QDockWidget>
-#include <QLabel>
-#include <QLineEdit>
-#include <QPushButton>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QToolTip>
-#include <QTreeWidget>
-#include <QtTest>
 
 using namespace hermes;
 using namespace hermes::desktop;
 
-namespace {
-
 /// It, or what covers all of it and belongs to it.
-bool isInSight(const QWidget &widget) {
+static bool isInSight(const QWidget &widget) {
     const auto inner = widget.findChildren<QWidget *>(QString(), Qt::FindDirectChildrenOnly);
     return !widget.visibleRegion().isEmpty() ||
            std::any_of(inner.begin(), inner.end(), [](const QWidget *part) { return isInSight(*part); });
 }
-
-} // namespace
 
 /// Everything in the window is within reach of the keyboard.
 class TestKeyboard : public QObject {

@@ -1,34 +1,24 @@
 #include "gui/desktop/drive/OwnName.h"
-#include "tests/gui/desktop/FakeDaemon.h"
-#include "tests/gui/desktop/OpenWindow.h"
+#include "tests/gui/desktop/TwoRobots.h"
 
 using namespace hermes;
 using namespace hermes::desktop;
 
 /// The control of a robot that is given when another one is chosen already drives nobody.
-class TestLateControl : public QObject {
+class TestLateControl : public QObject, TwoRobots {
     Q_OBJECT
 private Q_SLOTS:
     void init() {
-        red_ = std::make_unique<FakeDaemon>(robotOf("red"));
-        blue_ = std::make_unique<FakeDaemon>(robotOf("blue"));
+        begin();
         blue_->setResult("motor.state", // whatever it says, it has not given the control as yet
                          "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() +
                              "\"}}");
-        window_ = std::make_unique<OpenWindow>();
-        QVERIFY(window_->show());
-        for (const FakeDaemon *const one : {red_.get(), blue_.get()})
-            QVERIFY(window_->fleet.add(addressOf(*one)));
-        QTRY_VERIFY(robot(*red_) && robot(*blue_));
+        open();
         choose(*red_);
         QTRY_VERIFY(window_->drive.isPossible());
     }
 
-    void cleanup() {
-        window_.reset();
-        blue_.reset();
-        red_.reset();
-    }
+    void cleanup() { close(); }
 
     void drivesNobody_data() {
         const Rows<bool> row("takesOver");
@@ -115,14 +105,6 @@ private Q_SLOTS:
     }
 
 private:
-    static Mischief robotOf(const QByteArray &name) {
-        Mischief robot;
-        robot.isMotors = true;
-        robot.topics["processes"] = "{\"robot\":\"" + name + "\",\"processes\":[]}";
-        return robot;
-    }
-    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
-    Robot *robot(const FakeDaemon &daemon) const { return window_->fleet.robotAt(addressOf(daemon)); }
     void choose(const FakeDaemon &daemon) {
         window_->fleet.choose(robot(daemon));
         QCOMPARE(window_->fleet.robot(), robot(daemon));
@@ -155,9 +137,6 @@ private:
         const int asked = blue_->calls("motor.state");
         QTRY_VERIFY(blue_->calls("motor.state") > asked + 1); // twice a second
     }
-
-    std::unique_ptr<FakeDaemon> red_, blue_;
-    std::unique_ptr<OpenWindow> window_;
 };
 
 QTEST_MAIN(TestLateControl)

@@ -1,7 +1,6 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 #include "tests/support/FileSizeLimit.h"
 
-#include <QProcess>
 #include <QRandomGenerator>
 #include <QSettings>
 

@@ -1,8 +1,6 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/LayoutWindow.h"
 
-#include <QComboBox>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

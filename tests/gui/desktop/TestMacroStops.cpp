@@ -1,33 +1,23 @@
-#include "tests/gui/desktop/FakeDaemon.h"
-#include "tests/gui/desktop/OpenWindow.h"
-
-#include <QLabel>
+#include "tests/gui/desktop/TwoRobots.h"
 
 using namespace hermes;
 using namespace hermes::desktop;
 
 /// A button that moves a robot ends at any stop of that robot, whoever pressed it and whichever robot is
 /// chosen, and at any STOP of the window.
-class TestMacroStops : public QObject {
+class TestMacroStops : public QObject, TwoRobots {
     Q_OBJECT
 private Q_SLOTS:
     void init() {
-        red_ = std::make_unique<FakeDaemon>(robotOf("red"));
-        blue_ = std::make_unique<FakeDaemon>(robotOf("blue"));
-        window_ = std::make_unique<OpenWindow>();
-        QVERIFY(window_->show());
-        for (const FakeDaemon *const one : {red_.get(), blue_.get()})
-            QVERIFY(window_->fleet.add(addressOf(*one)));
-        QTRY_VERIFY(robot(*red_) && robot(*blue_));
+        begin();
+        open();
         window_->fleet.choose(robot(*red_));
         runner_ = std::make_unique<MacroRunner>(window_->fleet, window_->drive);
     }
 
     void cleanup() {
         runner_.reset();
-        window_.reset();
-        blue_.reset();
-        red_.reset();
+        close();
     }
 
     void stopOfAnyRobotThatItGoesTo_data() {
@@ -130,17 +120,9 @@ private:
     static constexpr const char *stopped =
         R"({"latched":{"estop":"somebody else"},"control":{"held":false}})";
 
-    static Mischief robotOf(const QByteArray &name) {
-        Mischief robot;
-        robot.isMotors = true;
-        robot.topics["processes"] = "{\"robot\":\"" + name + "\",\"processes\":[]}";
-        return robot;
-    }
-    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
     static MacroStep call(const FakeDaemon &robot, double pause_s = 0) {
         return {addressOf(robot), "fake", "fake.call", {}, pause_s};
     }
-    Robot *robot(const FakeDaemon &daemon) const { return window_->fleet.robotAt(addressOf(daemon)); }
     void run(const std::vector<MacroStep> &steps) {
         QTRY_VERIFY(runner_->hindrance({"Tour", steps}).isEmpty());
         runner_->run({"Tour", steps});
@@ -150,8 +132,6 @@ private:
         return !runner_->isRunning() && runner_->hasFailed() && runner_->text().endsWith(": " + why);
     }
 
-    std::unique_ptr<FakeDaemon> red_, blue_;
-    std::unique_ptr<OpenWindow> window_;
     std::unique_ptr<MacroRunner> runner_;
 };
 

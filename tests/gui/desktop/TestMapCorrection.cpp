@@ -1,5 +1,4 @@
 #include "tests/gui/desktop/EightSession.h"
-#include "tests/support/Patience.h"
 
 using namespace hermes;
 using namespace hermes::desktop;

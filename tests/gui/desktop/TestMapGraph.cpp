@@ -1,7 +1,6 @@
 #include "tests/gui/desktop/EightSession.h"
 
 #include <QAction>
-#include <QMenu>
 
 using namespace hermes;
 using namespace hermes::desktop;

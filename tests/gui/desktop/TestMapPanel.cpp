@@ -5,11 +5,6 @@
 #include <QDialog>
 #include <QFileInfo>
 #include <QImage>
-#include <QListWidget>
-#include <QMenu>
-#include <QPlainTextEdit>
-#include <QRegularExpression>
-#include <QToolButton>
 #include <QXmlStreamReader>
 
 using namespace hermes;

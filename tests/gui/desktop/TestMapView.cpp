@@ -1,8 +1,6 @@
 #include "tests/gui/desktop/MapWindow.h"
 
 #include <QImage>
-#include <QMenu>
-#include <QRegularExpression>
 #include <QWheelEvent>
 
 using namespace hermes;

@@ -4,10 +4,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QAccessible>
-#include <QComboBox>
-#include <QFile>
-#include <QLabel>
-#include <QMenu>
 #include <QTextBlock>
 #include <QTextBrowser>
 

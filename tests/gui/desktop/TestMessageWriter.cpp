@@ -1,8 +1,6 @@
 #include "gui/desktop/MessageWriter.h"
-#include "tests/support/Patience.h"
 
 #include <fcntl.h>
-#include <thread>
 #include <unistd.h>
 
 using namespace hermes::desktop;

@@ -1,13 +1,9 @@
 #include "gui/desktop/view/CurveLine.h"
 #include "gui/desktop/view/PlotPane.h"
-#include "tests/support/Patience.h"
 #include "tests/support/ThreadTime.h"
 
 #include <QImage>
 #include <QWheelEvent>
-#include <QtTest>
-#include <cmath>
-#include <limits>
 
 using namespace hermes;
 using namespace hermes::desktop;

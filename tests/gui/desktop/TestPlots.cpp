@@ -6,7 +6,6 @@
 #include <QFileDialog>
 #include <QImageReader>
 #include <QInputDialog>
-#include <QLabel>
 #include <QTabBar>
 
 using namespace hermes;

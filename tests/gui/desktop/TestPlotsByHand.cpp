@@ -2,8 +2,6 @@
 #include "gui/desktop/view/PlotPane.h"
 #include "tests/gui/desktop/PlotWindow.h"
 
-#include <QProcess>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

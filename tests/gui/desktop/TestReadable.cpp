@@ -4,13 +4,10 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QComboBox>
 #include <QDirIterator>
 #include <QHeaderView>
 #include <QHelpEvent>
-#include <QLabel>
 #include <QLayout>
-#include <QRegularExpression>
 #include <QScrollArea>
 #include <QStyleOptionComboBox>
 #include <QTabBar>
@@ -20,9 +17,7 @@
 using namespace hermes;
 using namespace hermes::desktop;
 
-namespace {
-
-const QRegularExpression &foreignWords() {
+static const QRegularExpression &foreignWords() {
     static const QRegularExpression words(
         "\\b(socket|(?<!\\.)JSON|CBOR|RPC|null|payload|schema|tcp://"
         "|stderr|errno|boolean|OpenGL|lease|latched|"
@@ -31,7 +26,7 @@ const QRegularExpression &foreignWords() {
     return words;
 }
 
-QString nameOf(const QWidget &widget, const QString &text) {
+static QString nameOf(const QWidget &widget, const QString &text) {
     QString path = widget.objectName();
     for (const QWidget *above = widget.parentWidget(); above && path.count('/') < 3;
          above = above->parentWidget())
@@ -43,18 +38,18 @@ QString nameOf(const QWidget &widget, const QString &text) {
         .arg(widget.height());
 }
 
-int widthOf(const QWidget &widget, const QString &text) {
+static int widthOf(const QWidget &widget, const QString &text) {
     return widget.fontMetrics().size(Qt::TextShowMnemonic, text).width();
 }
 
-QString shownToolTip(QWidget &widget) {
+static QString shownToolTip(QWidget &widget) {
     const QPoint middle = widget.rect().center();
     QHelpEvent asks(QEvent::ToolTip, middle, widget.mapToGlobal(middle));
     QApplication::sendEvent(&widget, &asks);
     return QToolTip::text();
 }
 
-bool fits(QLabel &label) {
+static bool fits(QLabel &label) {
     if (auto *const plain = qobject_cast<PlainLabel *>(&label); plain && plain->isElided())
         return shownToolTip(label).contains(label.text().toHtmlEscaped());
     const QRect room = label.contentsRect();
@@ -62,7 +57,7 @@ bool fits(QLabel &label) {
                             : widthOf(label, label.text()) <= room.width();
 }
 
-bool fits(const QHeaderView &header, int section) {
+static bool fits(const QHeaderView &header, int section) {
     const auto *const model = header.model();
     const QString text = model->headerData(section, Qt::Horizontal).toString();
     const int arrow =
@@ -71,12 +66,12 @@ bool fits(const QHeaderView &header, int section) {
            widthOf(header, text) + arrow <= header.sectionSize(section);
 }
 
-bool fits(const QTabBar &bar, int tab) {
+static bool fits(const QTabBar &bar, int tab) {
     return bar.tabRect(tab).right() < bar.width() &&
            widthOf(bar, bar.tabText(tab)) <= bar.tabRect(tab).width();
 }
 
-bool fits(const QComboBox &list) {
+static bool fits(const QComboBox &list) {
     QStyleOptionComboBox option;
     option.initFrom(&list);
     const QRect room =
@@ -85,7 +80,7 @@ bool fits(const QComboBox &list) {
 }
 
 /// What of this window does not fit, in words.
-QStringList tooNarrow(MainWindow &window) {
+static QStringList tooNarrow(MainWindow &window) {
     QStringList found;
     for (QWidget *widget : window.findChildren<QWidget *>()) {
         if (widget->visibleRegion().isEmpty())
@@ -115,7 +110,7 @@ QStringList tooNarrow(MainWindow &window) {
     return found;
 }
 
-QStringList overlapping(MainWindow &window) {
+static QStringList overlapping(MainWindow &window) {
     QStringList found;
     for (const QLayout *layout : window.findChildren<QLayout *>()) {
         QList<QWidget *> widgets;
@@ -132,7 +127,7 @@ QStringList overlapping(MainWindow &window) {
     return found;
 }
 
-double luminance(const QColor &colour) {
+static double luminance(const QColor &colour) {
     const auto linear = [](double part) {
         return part <= 0.03928 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
     };
@@ -141,12 +136,10 @@ double luminance(const QColor &colour) {
 }
 
 /// As WCAG 2 defines it.
-double contrast(const QColor &one, const QColor &other) {
+static double contrast(const QColor &one, const QColor &other) {
     const double a = luminance(one), b = luminance(other);
     return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);
 }
-
-} // namespace
 
 /// Every text of the window is seen whole or has a tool tip with the rest, stands out, and is in words of an
 /// operator. The theme is that of HERMES_THEME, the scale that of QT_SCALE_FACTOR.

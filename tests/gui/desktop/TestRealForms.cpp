@@ -5,8 +5,6 @@
 #include "tests/gui/desktop/OpenForm.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 
-#include <QCheckBox>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

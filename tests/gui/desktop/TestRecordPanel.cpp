@@ -6,9 +6,6 @@
 #include "tests/support/PatientClient.h"
 
 #include <QHeaderView>
-#include <QLineEdit>
-#include <QTreeWidget>
-#include <cmath>
 
 using namespace hermes;
 using namespace hermes::desktop;

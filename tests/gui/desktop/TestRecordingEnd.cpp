@@ -4,9 +4,7 @@
 #include "tests/gui/desktop/TcpLink.h"
 #include "tests/support/PatientClient.h"
 
-#include <QRegularExpression>
 #include <QScrollArea>
-#include <QTreeWidget>
 
 using namespace hermes;
 using namespace hermes::desktop;

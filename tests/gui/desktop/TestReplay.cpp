@@ -4,13 +4,8 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/PatientClient.h"
 
-#include <QCheckBox>
-#include <QComboBox>
-#include <QLabel>
-#include <QRegularExpression>
 #include <QTabBar>
 #include <QToolTip>
-#include <cmath>
 
 using namespace hermes;
 using namespace hermes::desktop;

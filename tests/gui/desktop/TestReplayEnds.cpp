@@ -3,9 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/gui/desktop/TcpLink.h"
 
-#include <QLabel>
-#include <QProcess>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

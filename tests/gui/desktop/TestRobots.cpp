@@ -5,9 +5,6 @@
 #include "tests/support/FakeRobot.h"
 
 #include <QAbstractItemView>
-#include <QComboBox>
-#include <QLabel>
-#include <QMenu>
 
 using namespace hermes;
 using namespace hermes::desktop;

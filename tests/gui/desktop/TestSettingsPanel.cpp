@@ -3,10 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/PatientClient.h"
 
-#include <QComboBox>
-#include <QFile>
-#include <QJsonDocument>
-#include <QLabel>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QSlider>

@@ -3,13 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/PatientClient.h"
 
-#include <QCheckBox>
-#include <QComboBox>
-#include <QDir>
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QLabel>
-
 using namespace hermes;
 using namespace hermes::desktop;
 

@@ -2,25 +2,19 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 
 #include <QFileDialog>
-#include <atomic>
-#include <thread>
 
 using namespace hermes;
 using namespace hermes::desktop;
 
-namespace {
+static std::atomic<int> syncs{0};
+static std::atomic<bool> isSlow{false}; // whoever writes waits until it is not, for two seconds at most
 
-std::atomic<int> syncs{0};
-std::atomic<bool> isSlow{false}; // whoever writes waits until it is not, for two seconds at most
-
-int sync() {
+static int sync() {
     ++syncs;
     for (int i = 0; i < 400 && isSlow; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return 0;
 }
-
-} // namespace
 
 // In the place of those of the C library.
 extern "C" int fsync(int) {

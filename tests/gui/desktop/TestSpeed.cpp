@@ -3,13 +3,10 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
-#include "tests/support/Patience.h"
 #include "tests/support/PatientClient.h"
 #include "tests/support/ThreadTime.h"
 
-#include <QPlainTextEdit>
 #include <QTcpServer>
-#include <QTcpSocket>
 #include <csignal>
 
 using namespace hermes;

@@ -3,9 +3,7 @@
 #include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <QLabel>
 #include <QTcpServer>
-#include <QTcpSocket>
 
 using namespace hermes;
 using namespace hermes::desktop;

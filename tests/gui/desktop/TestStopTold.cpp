@@ -1,8 +1,5 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/Patience.h"
-
-#include <QLabel>
 
 using namespace hermes;
 using namespace hermes::desktop;

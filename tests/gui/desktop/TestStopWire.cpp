@@ -3,8 +3,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QMenuBar>
-#include <QToolButton>
-#include <algorithm>
 #include <sys/resource.h>
 
 using namespace hermes;

@@ -1,10 +1,7 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
-#include "tests/support/Patience.h"
 
-#include <QComboBox>
-#include <QMenu>
 #include <QMenuBar>
 
 using namespace hermes;

@@ -6,9 +6,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
 #include "tests/support/LoopWatch.h"
-#include "tests/support/Patience.h"
-
-#include <QLabel>
 
 using namespace hermes;
 using namespace hermes::desktop;

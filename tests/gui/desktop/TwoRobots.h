@@ -1,0 +1,44 @@
+#pragma once
+
+#include "tests/gui/desktop/FakeDaemon.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+namespace hermes {
+
+/// A window on two robots, red and blue, each of which is only a motor control.
+class TwoRobots {
+protected:
+    void begin() {
+        red_ = std::make_unique<FakeDaemon>(robotOf("red"));
+        blue_ = std::make_unique<FakeDaemon>(robotOf("blue"));
+    }
+    void open() {
+        window_ = std::make_unique<OpenWindow>();
+        QVERIFY(window_->show());
+        for (const FakeDaemon *const one : {red_.get(), blue_.get()})
+            QVERIFY(window_->fleet.add(addressOf(*one)));
+        QTRY_VERIFY(robot(*red_) && robot(*blue_));
+    }
+    void close() {
+        window_.reset();
+        blue_.reset();
+        red_.reset();
+    }
+    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
+    desktop::Robot *robot(const FakeDaemon &daemon) const {
+        return window_->fleet.robotAt(addressOf(daemon));
+    }
+
+    std::unique_ptr<FakeDaemon> red_, blue_;
+    std::unique_ptr<OpenWindow> window_;
+
+private:
+    static Mischief robotOf(const QByteArray &name) {
+        Mischief robot;
+        robot.isMotors = true;
+        robot.topics["processes"] = "{\"robot\":\"" + name + "\",\"processes\":[]}";
+        return robot;
+    }
+};
+
+} // namespace hermes
