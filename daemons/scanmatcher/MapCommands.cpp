@@ -120,7 +120,7 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
             map.add(edge, edge.observations);
         replace(tracker, std::move(map));
         corrector_->restart(tracker);
-        seeks_ = grows_ ? Seeks::Anywhere : Seeks::Nothing; // else what it maps lies anywhere in it
+        seek(tracker, Seeks::Anywhere); // else what it maps lies anywhere in it
         showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}));
     });
 }
@@ -141,7 +141,7 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
     drive.review(builder.map, poses);
     replace(tracker, std::move(builder.map));
     tracker.place(poses.back());
-    seeks_ = Seeks::Anywhere;
+    seek(tracker, Seeks::Anywhere);
     LoadedMap answer{0, drive.loops.scans(), drive.loops.keys().size(), drive.loops.counts().closed,
                      quint64(remembered->leftOut)};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
@@ -170,7 +170,7 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
     replace(tracker, std::move(back));
     tracker.place(pose);
     corrector_->restart(tracker);
-    seeks_ = Seeks::Anywhere;
+    seek(tracker, Seeks::Anywhere);
     LoadedMap answer;
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
     showNewMap(tracker, reply, asJson(answer));
@@ -202,10 +202,13 @@ void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
     LiveMap live = std::move(*live_);
     live_.reset();
     keepsLiveMap_ = false;
-    seeks_ = isEmpty(live.map) ? Seeks::Nothing : Seeks::Anywhere;
+    const bool isSought = !isEmpty(live.map);
+    seeks_ = Seeks::Nothing;
     replace(tracker, std::move(live.map));
     mapNumber_ = live.number;
     tracker.place(live.pose);
+    if (isSought)
+        seek(tracker, Seeks::Anywhere);
     corrector_->restart(tracker);
     QMetaObject::invokeMethod(this, [this] { // whether it closes loops is known there
         if (worker_)
@@ -227,9 +230,9 @@ void ScanMatcher::followReplay(const Scan &scan) {
     worker_->post([this](vectorlib::ScanTracker &tracker) {
         if (isEmpty(tracker.builder.map))
             return;
-        tracker.place(tracker.builder.report().pose);            // it stands still
-        seeks_ = live_ ? Seeks::AnywhereOrNew : Seeks::Anywhere; // with live_ the map is the replay's own
-        setGrowth(tracker);
+        tracker.place(tracker.builder.report().pose); // it stands still
+        seek(tracker,
+             live_ ? Seeks::AnywhereOrNew : Seeks::Anywhere); // with live_ the map is the replay's own
     });
 }
 

@@ -64,17 +64,25 @@ void ScanMatcher::declareMatcherCommands() {
                    .takes(20000)
                    .gives<PairMatch>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { matchTwo(call, reply); }));
-    addCommand(Command("pose.set", "Tells where the sensor is, standing still, in the map's frame")
+    addCommand(Command("pose.set",
+                       "Tells where the sensor is, standing still, in the map's frame. While the map "
+                       "grows, nothing is mapped until some scans agree with the place")
                    .param(Field::number("x", "Position").unit("m"))
                    .param(Field::number("y", "Position").unit("m"))
                    .param(Field::number("theta", "Heading").unit("rad"))
+                   .param(Field::boolean("confirm",
+                                         "A person has looked: the place is right, whatever the scans say")
+                              .byDefault(false))
                    .returnsNull()
                    .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
                    .asyncHandler([this](const Call &call, const Reply &reply) {
                        const Pose2D pose = toPose(call.params);
-                       worker_->post([this, pose, reply](vectorlib::ScanTracker &tracker) {
+                       worker_->post([this, pose, isSure = call.flag("confirm"),
+                                      reply](vectorlib::ScanTracker &tracker) {
                            tracker.place(pose);
-                           seeks_ = Seeks::Nothing;
+                           seeks_ = isSure || !grows_ || tracker.builder.map.isEmpty() ? Seeks::Nothing
+                                                                                       : Seeks::Told;
+                           agreed_ = 0;
                            setGrowth(tracker);
                            reply.result(QJsonValue());
                        });

@@ -10,6 +10,7 @@ using vectorlib::Relocalized;
 namespace {
 
 constexpr double longestBlindness_s = 3;
+constexpr int enoughToAgree = 5; // scans with a place that was told
 
 QString text(const Pose2D &pose) {
     return QString("x %1 m, y %2 m, theta %3 rad")
@@ -52,22 +53,30 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     });
 }
 
-// After a scan; searches the whole map when it is time to.
+// After a scan; searches the whole map when it is time to. What waits for a place goes on when it is found.
 std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
-    if (seeks_ == Seeks::Anywhere || seeks_ == Seeks::AnywhereOrNew) {
-        const Relocalized found = tracker.relocalize(true);
-        const bool isElsewhere = seeks_ == Seeks::AnywhereOrNew && !found.isFound();
-        seeks_ = isElsewhere ? Seeks::Nowhere : Seeks::Here;
-        if (isElsewhere) // not now: what the scan gave is to be told
-            worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
-        return found;
+    const std::optional<Relocalized> found = tracker.recover();
+    if (found && found->isFound() && seeks_ != Seeks::Nothing)
+        seeks_ = Seeks::Here;
+    if (found && !found->isFound() && seeks_ == Seeks::AnywhereOrNew) {
+        seeks_ = Seeks::Nowhere; // not now: what the scan gave is to be told
+        worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
     }
-    if (seeks_ == Seeks::Here &&
-        tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched) {
+    const bool agrees = tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched &&
+                        !tracker.isPlaced() && tracker.agrees();
+    agreed_ = agrees ? agreed_ + 1 : 0;
+    if ((seeks_ == Seeks::Here && agreed_ >= 1) || (seeks_ == Seeks::Told && agreed_ >= enoughToAgree)) {
         seeks_ = Seeks::Nothing;
         setGrowth(tracker);
     }
-    return tracker.recover();
+    return found;
+}
+
+// Until then scans are not matched.
+void ScanMatcher::seek(vectorlib::ScanTracker &tracker, Seeks what) {
+    seeks_ = what;
+    tracker.seek();
+    setGrowth(tracker);
 }
 
 void ScanMatcher::setGrowth(vectorlib::ScanTracker &tracker) const {
@@ -121,7 +130,10 @@ void ScanMatcher::updateTrackingHealth() {
                                       : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
-    if (seeks_ != Seeks::Nothing)
+    if (seeks_ == Seeks::Told)
+        message += "; the scans do not confirm the place that was told: nothing is mapped until they do, or "
+                   "pose.set insists with confirm";
+    else if (seeks_ != Seeks::Nothing)
         message += "; the place in the map is sought: until then nothing is mapped";
     const HealthLevel level = lostInARow_ >= 3 ? HealthLevel::Failed
                               : isBlind()      ? HealthLevel::Warn

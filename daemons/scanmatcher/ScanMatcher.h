@@ -115,7 +115,10 @@ private:
     /// A map that was loaded goes on once its place is found: with the first scan in the whole map, then
     /// where the sensor stood last. A replay that was sought to a place that its map does not have (Nowhere)
     /// gets a new map.
-    enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Here, Nowhere };
+    /// A place that somebody told counts once scans agree.
+    enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Here, Nowhere, Told };
+    void seek(vectorlib::ScanTracker &tracker, Seeks what);
+    int agreed_ = 0;                           ///< scans in a row with the place; the worker's
     std::atomic<Seeks> seeks_{Seeks::Nothing}; ///< set by the worker
     bool grows_ = true;                        ///< the map, while no place is sought; the worker's
     Client source_;

@@ -187,6 +187,49 @@ private Q_SLOTS:
         QVERIFY2(text.contains("found in the whole map after 4 lost scans"), text);
     }
 
+    void aLoadedMapWaitsForItsPlace() {
+        call("matcher.start", {{"mode", "mapping"}});
+        load(pillars());
+        for (int i = 0; i < 12; ++i)
+            scan(square(), {0.05 * i, 0.3, 0.2}); // another building
+        QCOMPARE(number("map_segments"), int(pillars().size()));
+        QCOMPARE(number("matched"), 0);
+        QVERIFY(healthItem("tracking")["message"].toString().contains("nothing is mapped"));
+        QTRY_VERIFY((scan(pillars(), {1, 0.9, 0}), number("matched") > 1));
+        QCOMPARE(number("map_segments"), int(pillars().size()));
+    }
+
+    void aPlaceThatIsToldIsTried() {
+        set("relocalize_after", 5);
+        call("matcher.start", {{"mode", "mapping"}});
+        load(pillars());
+        QTRY_VERIFY((scan(pillars(), {1, 0.9, 0}), number("matched") > 1));
+        call("pose.set", {{"x", 2}, {"y", 1.5}, {"theta", 0.3}});
+        for (int i = 0; i < 4; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(number("map_segments"), int(pillars().size()));
+        QVERIFY(healthItem("tracking")["message"].toString().contains("place that was told"));
+        const int lost = number("lost");
+        QVERIFY(lost > 0);
+        QTRY_VERIFY((scan(pillars(), {1, 0.9, 0}), number("lost") < number("scans") - 4));
+        QTRY_VERIFY(
+            (scan(pillars(), {1, 0.9, 0}), !healthItem("tracking")["message"].toString().contains("told")));
+        QCOMPARE(number("map_segments"), int(pillars().size()));
+        call("pose.set", {{"x", 1}, {"y", 0.9}, {"theta", 0}});
+        for (int i = 0; i < 6; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(healthItem("tracking")["message"].toString(), QString("on track"));
+    }
+
+    void aPersonMayInsistOnAPlace() {
+        call("matcher.start", {{"mode", "mapping"}});
+        load(pillars());
+        call("pose.set", {{"x", 20}, {"y", 20}, {"theta", 0}, {"confirm", true}});
+        for (int i = 0; i < 5; ++i)
+            scan(square(), {});
+        QVERIFY(number("map_segments") > int(pillars().size()));
+    }
+
     void triesSeldomWhereItCannotRecover() {
         load(square());
         set("relocalize_after", 1);
@@ -284,6 +327,7 @@ private:
         QVERIFY(!call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{name, value}}}}}})
                      .contains("failed"));
     }
+    int number(const char *count) { return call("matcher.state")[count].toInt(); }
     int lost() { return healthItem("tracking")["values"].toObject()["lost_in_a_row"].toInt(); }
 
     vectorlib::SimulatedScanner<float> scanner;

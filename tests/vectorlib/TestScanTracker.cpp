@@ -2,7 +2,12 @@
 #include <vectorlib/mapping/ScanTracker.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 
+#include "tests/support/Rows.h"
+
 using namespace vectorlib;
+
+Q_DECLARE_METATYPE(vectorlib::Pose2D)
+Q_DECLARE_METATYPE(vectorlib::LineSegment2D<float>)
 
 class TestScanTracker : public QObject {
     Q_OBJECT
@@ -214,6 +219,44 @@ private Q_SLOTS:
         tracker->place({1, 2, 1});
         QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
         QCOMPARE(tracker->trust(), 0.0);
+    }
+
+    void whatContradictsAFinishedMapIsLost_data() {
+        const Rows<std::vector<LineSegment2D<float>>, Pose2D, bool> row("world", "pose", "isLost");
+        row("as it was", room, {-2, -1, 0}, false);
+        row("carried by 0.45 m", room, {-1.55, -1, 0}, true);
+        row("turned by 20 degrees", room, {-2, -1, 0.35}, true);
+        auto furnished = room;
+        for (const float x : {-3.f, 1.f}) // two cupboards at the lower wall
+            for (const LineSegment2D<float> &side : {LineSegment2D<float>({x + 1, -3}, {x + 1, -2.5f}),
+                                                     LineSegment2D<float>({x + 1, -2.5f}, {x, -2.5f}),
+                                                     LineSegment2D<float>({x, -2.5f}, {x, -3})})
+                furnished.push_back(side);
+        row("new furniture", furnished, {-2, -1, 0}, false);
+    }
+    void whatContradictsAFinishedMapIsLost() {
+        using World = std::vector<LineSegment2D<float>>;
+        FETCH(World, world, Pose2D, pose, bool, isLost);
+        for (int i = 1; i <= 5; ++i)
+            see({-2, -1, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        tracker->builder.settings.grow = false;
+        int lost = 0, wrong = 0;
+        for (int i = 6; i < 26; ++i) { // the odometry knows nothing of it
+            const ScanReport &report = see(world, pose, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+            lost += report.outcome != ScanReport::Outcome::Matched;
+            wrong += report.outcome == ScanReport::Outcome::Matched && !isNear(report.pose, pose);
+        }
+        QVERIFY2(wrong <= 10, qPrintable(QString::number(wrong)));
+        QVERIFY2(isLost || lost == 0, qPrintable(QString::number(lost)));
+    }
+
+    void whatIsSoughtIsLostUntilItIsFound() {
+        tracker->seek();
+        QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
+        const auto found = tracker->recover();
+        QVERIFY(found && found->isFound());
+        QCOMPARE(see({-2, -1, 0}, 10.2).outcome, ScanReport::Outcome::Matched);
+        QVERIFY(tracker->agrees());
     }
 
     void trustIsAProbabilityWhateverComes() {

@@ -25,7 +25,7 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     straight_ = locate(scan, begin, end);
     if (builder.report().outcome == ScanReport::Outcome::Matched && !builder.settings.grow)
         weigh(scan.points, scan.stamp);
-    if (isContradicted())
+    if (isContradicted() || isSought_)
         builder.refuse();
     const ScanReport &report = builder.conclude(scan.points, straight_);
     points_ = scan.points;
@@ -50,12 +50,15 @@ VECTORLIB_BODY void ScanTracker::weigh(PointSpan<float> points, double stamp) {
     const PlaceFit fit =
         search_.judge(builder.map.slots(), builder.edges(), points, Transformation2D(builder.report().pose));
     const double since_s = lastStamp_ ? std::max(0.0, stamp - *lastStamp_) : 0;
-    against_ += std::max(least, 1 - std::exp(-since_s / against_s)) * (fit.against() - against_);
+    const double share = std::max({least, 1 - std::exp(-since_s / against_s), 1.0 / ++weighed_});
+    against_ += share * (fit.against() - against_);
     knownAgainst_ -= forgotten * knownAgainst_;
 }
 
 VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     isPlaced_ = true;
+    isSought_ = false;
+    weighed_ = 0;
     against_ = knownAgainst_ = against;
     motion_.reset(pose);
     odometry_.reset();
@@ -217,6 +220,8 @@ VECTORLIB_BODY bool ScanTracker::isSearchDue() const {
     // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
     // itself, at a place that may be wrong, and the search would find that.
     const bool holdsTheScan = builder.settings.grow && lostInARow_ >= builder.settings.lostBeforeRestart;
+    if (isSought_)
+        return Clock::now() >= nextSearch_;
     return settings_.relocalizeAfter > 0 && lostInARow_ >= settings_.relocalizeAfter && !holdsTheScan &&
            Clock::now() >= nextSearch_;
 }

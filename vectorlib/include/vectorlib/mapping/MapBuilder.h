@@ -112,7 +112,10 @@ public:
     /// next one is not matched with it.
     const ScanReport &conclude(PointSpan<float> scan, bool sure);
     /// Between the two: the match does not count, the scan is lost; its pose stays.
-    void refuse() { report_.outcome = ScanReport::Outcome::Lost; }
+    void refuse() {
+        if (report_.outcome == ScanReport::Outcome::Matched)
+            report_.outcome = ScanReport::Outcome::Lost;
+    }
 
     /// The map takes edges (sensor frame) that were seen from a pose that is known otherwise; it stays as it
     /// is told, and so does what is known of the last scan but for match() and its candidates.

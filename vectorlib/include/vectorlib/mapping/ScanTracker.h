@@ -33,7 +33,7 @@ struct ScanTrackerSettings {
     /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
     double moment = 0.5;
     /// How much of the last scans may speak against a pose in a finished map; see ScanTracker::against.
-    double mostAgainst = 0.3;
+    double mostAgainst = 0.35;
     std::int64_t relocalizeAfter = 10; ///< lost scans in a row; 0: never by itself
     double relocalizeSeconds = 3;      ///< longest search
 };
@@ -74,10 +74,14 @@ public:
 
     /// Puts the sensor somewhere, standing still. `against`: what is known to speak against the place.
     void place(const Pose2D &pose, double against = 0);
+    /// The place in the map is not known: scans count as lost until it is found or told.
+    void seek() { isSought_ = true; }
+    /// Whether it was put somewhere since the last scan.
+    bool isPlaced() const { return isPlaced_; }
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
     Relocalized relocalize(bool apply);
-    /// The same by itself, to be called after each scan: when enough scans in a row were lost, and for at
-    /// most about a tenth of the time; else nothing.
+    /// The same by itself, to be called after each scan: when enough scans in a row were lost or the place is
+    /// sought, and for at most about a tenth of the time; else nothing.
     std::optional<Relocalized> recover();
     /// The map was made anew: takes it, and gives the old one. `moved` tells where in it a pose of the old
     /// one lies; tracking goes on from there.
@@ -103,6 +107,8 @@ public:
     /// through walls, and half of the share that lies on none. Less what was known when the place was found,
     /// as the world may have changed. 0 while the map grows.
     double against() const { return std::max(0.0, against_ - knownAgainst_); }
+    /// Whether little does.
+    bool agrees() const { return against() < 0.5 * settings_.mostAgainst; }
     /// Whether that is too much for the pose to be right: the scan then counts as lost.
     bool isContradicted() const { return against() > settings_.mostAgainst; }
     /// What it goes by; nothing where it is 0 anyway.
@@ -184,6 +190,8 @@ private:
     bool byOdometry_ = false, straight_ = true, isWellExpected_ = false; // the last scan
     bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false;     // since the last scan, and before it
     int lostInARow_ = 0;
+    bool isSought_ = false;
+    int weighed_ = 0;                       // scans since the sensor was put somewhere
     double against_ = 0, knownAgainst_ = 0; // shares of the last scans, and of them what the search knew of
     Clock::time_point nextSearch_;
 };
