@@ -42,6 +42,10 @@ private Q_SLOTS:
         row("no header", "points", "1,2\n3,4\n", 2);
         row("comments, header, blank lines", "points", "# a scan\nx,y\n\n 1 , 2\n# in between\n3,+4e0\n", 2);
         row("CR LF and no last line end", "points", "x,y\r\n1,2\r\n3,4", 2);
+        row("map in UTM", "map",
+            "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n"
+            "5,691608.9,1e7,691609.9,1e7,2,0,1,691609.4,1e7,1,0,1\n",
+            1);
         row("byte order mark", "points", "\xEF\xBB\xBFx,y\n1,2\n3,4\n", 2);
         row("byte order mark, no header", "points",
             "\xEF\xBB\xBF"
@@ -104,6 +108,9 @@ private Q_SLOTS:
         row("pcd without y", "pcd", "FIELDS x z\nPOINTS 1\nDATA ascii\n", "f:3", "fields x and y");
         row("pcd with nan", "pcd", pcdHeader + "POINTS 1\nDATA ascii\n9 9 nan 2\n", "f:12",
             "a finite number as x");
+        row("map beyond UTM", "map",
+            "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n5,0,1.2e7,1,0,2,0,1,0,0,1,0,1\n",
+            "f:2", "a coordinate beyond 11,000 km");
         row("pcd with a field of no numbers", "pcd", "FIELDS y x\nCOUNT 1 0\nPOINTS 1\nDATA ascii\n5\n",
             "f:2", "a count as COUNT");
         row("beyond all floats", "float points", "1,2\n1e39,3\n", "f:2", "a coordinate beyond all measure");
