@@ -66,7 +66,7 @@ private Q_SLOTS:
     void badInput_data() {
         const Rows<QString, QByteArray, QByteArray, QByteArray> row("command", "text", "place", "expected");
         const QByteArray log = contentOf(data("raw.log"));
-        row("nan in points", "segment", "x,y\n1,2\nnan,3\n", "in:3:", "a finite number");
+        row("a word in points", "segment", "x,y\n1,2\none,3\n", "in:3:", "a finite number");
         row("one column", "vectorize", "1,2\n3\n", "in:2:", "2 fields");
         row("no pairs", "register", "1,2,3,4\n", "in:1:", "dx1");
         row("empty pairs", "register", QByteArray(), "in", "an empty file");
