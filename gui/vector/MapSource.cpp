@@ -2,7 +2,7 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
-#include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/Number.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,11 +16,12 @@ namespace fs = std::filesystem;
 MapSourceReport readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
-    const vectorlib::CarmenLog log =
-        valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name(), {options.skipDamaged, kind}));
+    const vectorlib::CarmenLog log = valueOrFail(vectorlib::readCarmenLog(
+        input.stream(), input.name(), {options.skipDamaged, kind, options.fieldOfView, options.maxRange}));
+    const vectorlib::Pose2D mount = options.mount.value_or(log.sensorOnRobot(kind));
     const std::size_t total = (log.scans.size() + options.every - 1) / options.every;
     MapScan scan;
-    vectorlib::CarmenDrive drive(log, kind);
+    vectorlib::CarmenDrive drive(log, kind, mount);
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
         drive.advance();
         if (i % options.every != 0)
@@ -42,6 +43,9 @@ MapSourceReport readLog(Input &input, const MapSourceOptions &options, const Map
     report.damagedLines = log.damaged;
     report.odometryRefused = log.odometryRefused;
     report.odometryLeaps = drive.leaps();
+    report.noReturn = log.noReturn;
+    report.assumedRays = log.assumedRays;
+    report.mount = mount;
     if (log.firstDamage)
         report.firstDamage = log.firstDamage->message();
     return report;
@@ -107,10 +111,13 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
         refuse("--port", "capture");
     if (!isCapture && !options.sensor.sender.empty())
         refuse("--sender", "capture");
-    if (!isLog && options.corrected)
-        refuse("--corrected", "CARMEN log");
-    if (!isLog && options.skipDamaged)
-        refuse("--skip-damaged", "CARMEN log");
+    for (const auto &[option, isGiven] :
+         {std::pair("--corrected", options.corrected), std::pair("--skip-damaged", options.skipDamaged),
+          std::pair("--sensor", options.mount.has_value()),
+          std::pair("--field-of-view", options.fieldOfView.has_value()),
+          std::pair("--max-range", options.maxRange.has_value())})
+        if (!isLog && isGiven)
+            refuse(option, "CARMEN log");
 }
 
 MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
@@ -155,6 +162,8 @@ nlohmann::ordered_json MapSourceReport::summary() const {
           std::pair("odometry_refused", odometryRefused), std::pair("odometry_leaps", odometryLeaps)})
         if (count > 0)
             json[key] = count;
+    if (mount.x != 0 || mount.y != 0 || mount.theta != 0)
+        json["sensor"] = {vectorlib::micrometres(mount.x), vectorlib::micrometres(mount.y), mount.theta};
     return json;
 }
 
@@ -170,6 +179,13 @@ void MapSourceReport::warn(std::ostream &out) const {
          "scan(s) have a stamp before that of the last one: they are taken in the order of the log");
     tell(odometryRefused, "pose(s) of the odometry refused: expected finite numbers below 1e7");
     tell(odometryLeaps, "motion(s) of the odometry refused: no robot drives or turns that fast");
+    if (noReturn)
+        out << "hermes-vector: " << vectorlib::Number(vectorlib::rounded(noReturn->range, 4)) << " m, in "
+            << noReturn->rays
+            << " rays, is no wall: it is taken as no return (--max-range M tells the longest range)\n";
+    if (assumedRays > 0)
+        out << "hermes-vector: FLASER with " << assumedRays
+            << " rays does not tell its field of view: 180 degrees are assumed (--field-of-view DEG)\n";
     if (!otherSensors.empty())
         out << "hermes-vector: " << otherSensors << '\n';
 }
