@@ -23,7 +23,7 @@ void MapOptions::addInput(CLI::App &command) {
     command
         .add_option("LOG", source.path,
                     "CARMEN log, pcap of an " + velodyne::sensorNames() +
-                        ", or a folder of points files taken in name order")
+                        ", or a folder of points files taken in name order (2 before 10)")
         ->required();
     command
         .add_option("--scan", onlyScan,

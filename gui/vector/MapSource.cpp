@@ -13,6 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The name with zeros before its numbers, so that scan2 goes before scan10.
+std::string orderOf(const std::string &name) {
+    std::string key;
+    for (std::size_t at = 0, end = 0; at < name.size(); at = end) {
+        end = std::min(name.find_first_not_of("0123456789", at), name.size());
+        key.append(end > at ? 30 - std::min<std::size_t>(30, end - at) : 0, '0');
+        end = std::max(end, at + 1);
+        key.append(name, at, end - at);
+    }
+    return key;
+}
+
 MapSourceReport readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
@@ -85,7 +97,9 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
         if (entry.is_regular_file() &&
             (hasExtension(entry.path().u8string(), ".csv") || hasExtension(entry.path().u8string(), ".pcd")))
             names.push_back(entry.path().u8string());
-    std::sort(names.begin(), names.end());
+    std::sort(names.begin(), names.end(), [](const std::string &a, const std::string &b) {
+        return std::pair(orderOf(a), a) < std::pair(orderOf(b), b);
+    });
     if (names.empty())
         throw Failure(options.path + ": found no file *.csv or *.pcd, expected points files, one a scan");
     MapScan scan;

@@ -61,8 +61,8 @@ struct MapSourceReport {
 using MapScanSink = std::function<void(MapScan &, std::size_t number, std::size_t total)>;
 
 /// Delivers the scans of a CARMEN log, a capture of an HDL-32E or VLP-16 (its horizontal ring, a turn a scan)
-/// or a folder of points files in the order of their names. Throws Failure on damaged input, after delivering
-/// what came before it.
+/// or a folder of points files in the order of their names, numbers by their size. Throws Failure on damaged
+/// input, after delivering what came before it.
 MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink);
 
 } // namespace hermes::vector

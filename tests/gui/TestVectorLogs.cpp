@@ -129,6 +129,16 @@ private Q_SLOTS:
         QVERIFY(std::hypot(pose["x"].toDouble() - there[5].x, pose["y"].toDouble() - there[5].y) < 0.05);
     }
 
+    void aFolderIsTakenByItsNumbers() {
+        QVERIFY(QDir(path("")).mkpath("scans"));
+        for (int i = 1; i <= 11; ++i)
+            ran({"observe", data("world.json"), "--pose", QStringLiteral("%1,0,0").arg(0.05 * i), "--scan",
+                 "400", "--out", path(qPrintable(QStringLiteral("scans/scan%1.csv").arg(i))), "--force"});
+        const QList<Pose2D> poses = trajectory({path("scans")});
+        QCOMPARE(poses.size(), 11);
+        for (int i = 0; i < 11; ++i)
+            QVERIFY(std::abs(poses[i].x - 0.05 * i) < 0.01);
+    }
     /// Rays without return among the points are no points.
     void pointsOfNoReturn() {
         put(path("nan.csv"), contentOf(data("room.csv")).replace("x,y\n", "x,y\nnan,nan\ninf,1\n"));
