@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 namespace hermes::vector {
 
@@ -117,21 +118,17 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
 
 /// Options that say nothing of what is read.
 void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
-    const auto refuse = [&options](const char *option, const char *what) {
-        throw CLI::ValidationError(option,
-                                   std::string("only of a ") + what + ", and " + options.path + " is none");
-    };
-    if (!isCapture && options.sensor.port)
-        refuse("--port", "capture");
-    if (!isCapture && !options.sensor.sender.empty())
-        refuse("--sender", "capture");
-    for (const auto &[option, isGiven] :
-         {std::pair("--corrected", options.corrected), std::pair("--skip-damaged", options.skipDamaged),
-          std::pair("--sensor", options.mount.has_value()),
-          std::pair("--field-of-view", options.fieldOfView.has_value()),
-          std::pair("--max-range", options.maxRange.has_value())})
-        if (!isLog && isGiven)
-            refuse(option, "CARMEN log");
+    for (const auto &[option, what, isUnused] :
+         {std::tuple("--port", "capture", !isCapture && options.sensor.port),
+          std::tuple("--sender", "capture", !isCapture && !options.sensor.sender.empty()),
+          std::tuple("--corrected", "CARMEN log", !isLog && options.corrected),
+          std::tuple("--skip-damaged", "CARMEN log", !isLog && options.skipDamaged),
+          std::tuple("--sensor", "CARMEN log", !isLog && options.mount),
+          std::tuple("--field-of-view", "CARMEN log", !isLog && options.fieldOfView),
+          std::tuple("--max-range", "CARMEN log", !isLog && options.maxRange)})
+        if (isUnused)
+            throw CLI::ValidationError(option, std::string("only of a ") + what + ", and " + options.path +
+                                                   " is none");
 }
 
 MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
