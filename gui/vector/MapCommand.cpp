@@ -26,6 +26,8 @@ public:
     void run() {
         options.segment.over({}); // contradictions come to light before any file is touched
         options.source.open = options.segment.open;
+        if (!options.sensor.empty())
+            options.source.mount = parsePose(options.sensor);
         if (options.onlyScan)
             writeScan();
         else if (options.localize.empty())
@@ -81,6 +83,7 @@ private:
             std::cerr << "hermes-vector: " << options.source.path
                       << ": the map is empty: no scan showed a wall\n";
         warnOfLost(run.tracker.counts());
+        tellContradictions(run.tracker.counts(), json);
         run.warnOfBreaks(std::cerr);
         conclude(json, begin, summaryFile);
         files.commit();
@@ -108,6 +111,7 @@ private:
         run.finish(options.source.path);
         nlohmann::ordered_json json = run.summary();
         json.update(report.summary());
+        tellContradictions(run.localizer.tracker.counts(), json);
         const std::vector<vectorlib::StampedPose> trajectory = run.trajectory();
         if (svgFile)
             vectorlib::drawMap(*svgFile,
@@ -165,6 +169,14 @@ private:
                 << "hermes-vector: " << counts.lost << " of " << counts.scans
                 << " scans were lost: what the map shows of them stands where they were expected, which may "
                    "be far off\n";
+    }
+    static void tellContradictions(const vectorlib::ScanTrackerCounts &counts, nlohmann::ordered_json &json) {
+        if (counts.contradicted == 0)
+            return;
+        json["contradicted"] = counts.contradicted;
+        std::cerr << "hermes-vector: odometry and scans contradict each other " << counts.contradicted
+                  << " time(s): the sensor is mounted otherwise on the robot (--sensor), or the odometry is "
+                     "wrong (--odometry ignore)\n";
     }
     static void writeTrajectory(std::ostream &out, const std::vector<vectorlib::StampedPose> &trajectory,
                                 nlohmann::ordered_json &json) {

@@ -15,7 +15,7 @@ void MapOptions::addTo(CLI::App &command) {
             command.get_option(option)->excludes(command.get_option(other));
     };
     excludes("--scan", {"--out-map", "--out-trajectory", "--out-graph", "--out-trust", "--svg", "--odometry",
-                        "--loops", "--corrected", "--every", "--localize"});
+                        "--loops", "--corrected", "--every", "--localize", "--sensor"});
     excludes("--localize", {"--out-map", "--out-graph", "--out-trust", "--loops"});
 }
 
@@ -23,7 +23,7 @@ void MapOptions::addInput(CLI::App &command) {
     command
         .add_option("LOG", source.path,
                     "CARMEN log, pcap of an " + velodyne::sensorNames() +
-                        ", or a folder of points files taken in name order")
+                        ", or a folder of points files taken in name order (2 before 10)")
         ->required();
     command
         .add_option("--scan", onlyScan,
@@ -85,6 +85,20 @@ void MapOptions::addWays(CLI::App &command) {
         "--corrected", source.corrected,
         "The log's scan poses are a corrected reference: odometry is taken from its ODOM lines only, and the "
         "summary tells the error against the reference");
+    command
+        .add_option("--sensor", sensor,
+                    "Pose of the sensor on the robot of a CARMEN log: metres, radians (degrees as 90deg)")
+        ->check(poseText(true))
+        ->type_name("X,Y,THETA");
+    command
+        .add_option("--field-of-view", source.fieldOfView,
+                    "Angle that a scan of a CARMEN log covers, degrees")
+        ->check(between(1, 360))
+        ->type_name("DEG");
+    command
+        .add_option("--max-range", source.maxRange, "No return of a CARMEN log from this range on, metres")
+        ->check(between(0.01, 1000))
+        ->type_name("M");
     command.add_option("--every", source.every, "Take every N-th scan only")
         ->transform(wholeNumber(1, 1e9))
         ->type_name("N")

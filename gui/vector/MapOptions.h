@@ -10,6 +10,7 @@ namespace hermes::vector {
 struct MapOptions {
     MapSourceOptions source;
     std::string odometry = "use";
+    std::string sensor;   ///< its pose on the robot, as text; empty: as the log tells
     std::string localize; ///< a map; empty: one is built
     std::string outMap, outTrajectory, outGraph, outTrust;
     std::string loops = "close";

@@ -2,10 +2,11 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
-#include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/Number.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 namespace hermes::vector {
 
@@ -13,14 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The name with zeros before its numbers, so that scan2 goes before scan10.
+std::string orderOf(const std::string &name) {
+    std::string key;
+    for (std::size_t at = 0, end = 0; at < name.size(); at = end) {
+        end = std::min(name.find_first_not_of("0123456789", at), name.size());
+        key.append(end > at ? 30 - std::min<std::size_t>(30, end - at) : 0, '0');
+        end = std::max(end, at + 1);
+        key.append(name, at, end - at);
+    }
+    return key;
+}
+
 MapSourceReport readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
-    const vectorlib::CarmenLog log =
-        valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name(), {options.skipDamaged, kind}));
+    const vectorlib::CarmenLog log = valueOrFail(vectorlib::readCarmenLog(
+        input.stream(), input.name(), {options.skipDamaged, kind, options.fieldOfView, options.maxRange}));
+    const vectorlib::Pose2D mount = options.mount.value_or(log.sensorOnRobot(kind));
     const std::size_t total = (log.scans.size() + options.every - 1) / options.every;
     MapScan scan;
-    vectorlib::CarmenDrive drive(log, kind);
+    vectorlib::CarmenDrive drive(log, kind, mount);
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
         drive.advance();
         if (i % options.every != 0)
@@ -42,6 +56,9 @@ MapSourceReport readLog(Input &input, const MapSourceOptions &options, const Map
     report.damagedLines = log.damaged;
     report.odometryRefused = log.odometryRefused;
     report.odometryLeaps = drive.leaps();
+    report.noReturn = log.noReturn;
+    report.assumedRays = log.assumedRays;
+    report.mount = mount;
     if (log.firstDamage)
         report.firstDamage = log.firstDamage->message();
     return report;
@@ -81,7 +98,9 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
         if (entry.is_regular_file() &&
             (hasExtension(entry.path().u8string(), ".csv") || hasExtension(entry.path().u8string(), ".pcd")))
             names.push_back(entry.path().u8string());
-    std::sort(names.begin(), names.end());
+    std::sort(names.begin(), names.end(), [](const std::string &a, const std::string &b) {
+        return std::pair(orderOf(a), a) < std::pair(orderOf(b), b);
+    });
     if (names.empty())
         throw Failure(options.path + ": found no file *.csv or *.pcd, expected points files, one a scan");
     MapScan scan;
@@ -99,18 +118,17 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
 
 /// Options that say nothing of what is read.
 void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
-    const auto refuse = [&options](const char *option, const char *what) {
-        throw CLI::ValidationError(option,
-                                   std::string("only of a ") + what + ", and " + options.path + " is none");
-    };
-    if (!isCapture && options.sensor.port)
-        refuse("--port", "capture");
-    if (!isCapture && !options.sensor.sender.empty())
-        refuse("--sender", "capture");
-    if (!isLog && options.corrected)
-        refuse("--corrected", "CARMEN log");
-    if (!isLog && options.skipDamaged)
-        refuse("--skip-damaged", "CARMEN log");
+    for (const auto &[option, what, isUnused] :
+         {std::tuple("--port", "capture", !isCapture && options.sensor.port),
+          std::tuple("--sender", "capture", !isCapture && !options.sensor.sender.empty()),
+          std::tuple("--corrected", "CARMEN log", !isLog && options.corrected),
+          std::tuple("--skip-damaged", "CARMEN log", !isLog && options.skipDamaged),
+          std::tuple("--sensor", "CARMEN log", !isLog && options.mount),
+          std::tuple("--field-of-view", "CARMEN log", !isLog && options.fieldOfView),
+          std::tuple("--max-range", "CARMEN log", !isLog && options.maxRange)})
+        if (isUnused)
+            throw CLI::ValidationError(option, std::string("only of a ") + what + ", and " + options.path +
+                                                   " is none");
 }
 
 MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
@@ -155,6 +173,8 @@ nlohmann::ordered_json MapSourceReport::summary() const {
           std::pair("odometry_refused", odometryRefused), std::pair("odometry_leaps", odometryLeaps)})
         if (count > 0)
             json[key] = count;
+    if (mount.x != 0 || mount.y != 0 || mount.theta != 0)
+        json["sensor"] = {vectorlib::micrometres(mount.x), vectorlib::micrometres(mount.y), mount.theta};
     return json;
 }
 
@@ -170,6 +190,13 @@ void MapSourceReport::warn(std::ostream &out) const {
          "scan(s) have a stamp before that of the last one: they are taken in the order of the log");
     tell(odometryRefused, "pose(s) of the odometry refused: expected finite numbers below 1e7");
     tell(odometryLeaps, "motion(s) of the odometry refused: no robot drives or turns that fast");
+    if (noReturn)
+        out << "hermes-vector: " << vectorlib::Number(vectorlib::rounded(noReturn->range, 4)) << " m, in "
+            << noReturn->rays
+            << " rays, is no wall: it is taken as no return (--max-range M tells the longest range)\n";
+    if (assumedRays > 0)
+        out << "hermes-vector: FLASER with " << assumedRays
+            << " rays does not tell its field of view: 180 degrees are assumed (--field-of-view DEG)\n";
     if (!otherSensors.empty())
         out << "hermes-vector: " << otherSensors << '\n';
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/LidarCapture.h"
+#include "vectorlib/io/CarmenLog.h"
 #include "vectorlib/mapping/TimedScan.h"
 
 #include <nlohmann/json.hpp>
@@ -31,7 +32,10 @@ struct MapSourceOptions {
     bool corrected = false;   ///< a CARMEN log's scan poses are a reference, not odometry
     bool skipDamaged = false; ///< count damaged lines of a CARMEN log instead of failing
     bool open = false;        ///< scans of a folder are less than a full turn
-    SensorOptions sensor;     ///< of a capture
+    /// Of a CARMEN log, instead of what it tells: the sensor's pose on the robot; degrees, metres.
+    std::optional<vectorlib::Pose2D> mount;
+    std::optional<double> fieldOfView, maxRange;
+    SensorOptions sensor; ///< of a capture
 };
 
 /// What was met beside the scans.
@@ -42,6 +46,9 @@ struct MapSourceReport {
     std::size_t repeated = 0, empty = 0;                ///< scans
     std::size_t stampsBack = 0;                         ///< scans with a stamp before the last one's
     std::size_t odometryRefused = 0, odometryLeaps = 0; ///< poses, and motions between scans
+    std::optional<vectorlib::RepeatedRange> noReturn;   ///< as of CarmenLog
+    std::size_t assumedRays = 0;                        ///< as of CarmenLog
+    vectorlib::Pose2D mount;                            ///< of the sensor on the robot, by a log or an option
 
     /// For the summary: what there was none of is left out.
     nlohmann::ordered_json summary() const;
@@ -54,8 +61,8 @@ struct MapSourceReport {
 using MapScanSink = std::function<void(MapScan &, std::size_t number, std::size_t total)>;
 
 /// Delivers the scans of a CARMEN log, a capture of an HDL-32E or VLP-16 (its horizontal ring, a turn a scan)
-/// or a folder of points files in the order of their names. Throws Failure on damaged input, after delivering
-/// what came before it.
+/// or a folder of points files in the order of their names, numbers by their size. Throws Failure on damaged
+/// input, after delivering what came before it.
 MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink);
 
 } // namespace hermes::vector

@@ -24,6 +24,22 @@ CLI::Validator numberThat(std::string expected, std::function<bool(double)> hold
         "", "number");
 }
 
+std::optional<vectorlib::Pose2D> readPose(const std::string &text) {
+    std::vector<std::string_view> fields;
+    vectorlib::splitCommas(text, fields);
+    std::string_view &theta = fields.back();
+    const bool inDegrees = theta.size() > 3 && theta.substr(theta.size() - 3) == "deg";
+    theta.remove_suffix(inDegrees ? 3 : 0);
+    std::vector<double> numbers;
+    for (const std::string_view field : fields)
+        if (const auto number = vectorlib::parseNumber(field))
+            numbers.push_back(*number);
+    if (fields.size() != 3 || numbers.size() != 3)
+        return std::nullopt;
+    return vectorlib::Pose2D{numbers[0], numbers[1],
+                             inDegrees ? numbers[2] * vectorlib::pi / 180 : numbers[2]};
+}
+
 std::string plain(double value) {
     std::ostringstream out;
     out << std::setprecision(12) << value;
@@ -64,27 +80,22 @@ CLI::Validator pictureName(const std::string &format) {
     return {check, ""};
 }
 
-CLI::Validator poseText() {
+CLI::Validator poseText(bool withinTurn) {
     return CLI::Validator(
-        [](const std::string &text) {
-            std::vector<std::string_view> fields;
-            vectorlib::splitCommas(text, fields);
-            bool good = fields.size() == 3;
-            for (const std::string_view field : fields)
-                good = good && vectorlib::parseNumber(field);
-            return good ? std::string()
-                        : "found " + vectorlib::quoted(text) +
-                              ", expected three numbers x,y,theta (metres, radians)";
+        [withinTurn](const std::string &text) {
+            const auto pose = readPose(text);
+            if (!pose)
+                return "found " + vectorlib::quoted(text) +
+                       ", expected three numbers x,y,theta (metres, radians or as 90deg)";
+            return withinTurn && isBeyondTurn(pose->theta)
+                       ? "found " + vectorlib::quoted(text) + ": " + beyondTurnText(pose->theta)
+                       : std::string();
         },
         "", "pose");
 }
 
 vectorlib::Pose2D parsePose(const std::string &text) {
-    std::vector<std::string_view> fields;
-    vectorlib::splitCommas(text, fields);
-    const vectorlib::Pose2D pose{vectorlib::parseNumber(fields.at(0)).value(),
-                                 vectorlib::parseNumber(fields.at(1)).value(),
-                                 vectorlib::parseNumber(fields.at(2)).value()};
+    const vectorlib::Pose2D pose = readPose(text).value();
     if (isBeyondTurn(pose.theta))
         std::cerr << "hermes-vector: " << text << ": " << beyondTurnText(pose.theta) << '\n';
     return pose;

@@ -27,6 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
             FUZZ_REQUIRE(p.isFinite());
         const std::size_t last = log->scans.size() - 1;
         FUZZ_REQUIRE(log->referenceMotion(0, last).isFinite());
+        const Pose2D mount = log->sensorOnRobot(CarmenOdometryKind::Raw);
+        FUZZ_REQUIRE(std::isfinite(mount.x) && std::isfinite(mount.y) && std::isfinite(mount.theta));
         for (const auto kind : {CarmenOdometryKind::Raw, CarmenOdometryKind::Corrected})
             if (const auto motion = log->odometryMotion(0, last, kind))
                 FUZZ_REQUIRE(motion->isFinite());

@@ -210,7 +210,7 @@ private Q_SLOTS:
     void badInput_data() {
         const Rows<QByteArray, QByteArray> row("text", "message");
         row("empty", QByteArray(), "in.csv: found an empty file");
-        row("NaN point", "x,y\n1,nan\n", "in.csv:2:");
+        row("word point", "x,y\n1,two\n", "in.csv:2:");
         row("NaN segment", "1,2,3,nan\n", "in.csv:1:");
         row("three columns", "1,2,3\n", "in.csv:1:");
         row("map without sums", "id,x1,y1,x2,y2,mean_x\n0,1,2,3,4,5\n", "in.csv:1:");

@@ -39,6 +39,15 @@ private Q_SLOTS:
         row("no whole number", {"segment", room, "--k", "2.5"}, "found \"2.5\", expected a whole number");
         row("every 0th", {"map", log, "--every", "0"}, "--every");
         row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
+        row("half a mount", {"map", log, "--sensor", "1,2"}, "--sensor: found \"1,2\"");
+        row("mount in degrees", {"map", log, "--sensor", "0,0,180"}, "did you mean 3.142 rad (180 degrees)?");
+        row("over a turn", {"map", log, "--sensor", "0,0,450deg"}, "is 1.25 turns");
+        row("no angle", {"map", log, "--sensor", "0,0,deg"}, "--sensor");
+        row("mount of one scan", {"map", log, "--sensor", "0,0,0", "--scan", "1"}, "--sensor");
+        row("field of no view", {"map", log, "--field-of-view", "0"}, "--field-of-view");
+        row("no range", {"map", log, "--max-range", "0"}, "--max-range");
+        for (const char *option : {"--sensor=0,0,0", "--field-of-view=180", "--max-range=8"})
+            row(option, {"map", TEST_DATA_DIR, option}, ": only of a CARMEN log");
         row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
         row("port 0", {"ring", "x.pcap", "--port", "0"}, "--port");
         row("no address", {"map", "x.pcap", "--sender", "sensor"}, "--sender");
@@ -66,7 +75,7 @@ private Q_SLOTS:
     void badInput_data() {
         const Rows<QString, QByteArray, QByteArray, QByteArray> row("command", "text", "place", "expected");
         const QByteArray log = contentOf(data("raw.log"));
-        row("nan in points", "segment", "x,y\n1,2\nnan,3\n", "in:3:", "a finite number");
+        row("a word in points", "segment", "x,y\n1,2\none,3\n", "in:3:", "a finite number");
         row("one column", "vectorize", "1,2\n3\n", "in:2:", "2 fields");
         row("no pairs", "register", "1,2,3,4\n", "in:1:", "dx1");
         row("empty pairs", "register", QByteArray(), "in", "an empty file");

@@ -164,6 +164,24 @@ private Q_SLOTS:
         QCOMPARE(cell(0.25, 1.25), 205); // never seen
         QVERIFY(yaml.str().find("image: a.pgm\nresolution: 0.1\norigin: [-1, -1, 0]") == 0);
     }
+    void pictureNamesAreQuoted_data() {
+        const Rows<QByteArray, QByteArray> row("name", "quoted");
+        row("plain", "my-map_2.pgm", "my-map_2.pgm");
+        row("number sign", "x #2.pgm", "\"x #2.pgm\"");
+        row("colon", "a: b.pgm", "\"a: b.pgm\"");
+        row("list", "[1].pgm", "\"[1].pgm\"");
+        row("quotes", "'q' \"r\".pgm", "\"'q' \\U00000022r\\U00000022.pgm\"");
+        row("back slash", "a\\b.pgm", "\"a\\U0000005cb.pgm\"");
+        row("dash", "- a.pgm", "\"- a.pgm\"");
+        row("line end", "a\nb.pgm", "\"a\\U0000000ab.pgm\"");
+        row("beyond ASCII", "\xC3\xBC\xF0\x9F\x98\x80.pgm", "\"\\U000000fc\\U0001f600.pgm\"");
+    }
+    void pictureNamesAreQuoted() {
+        FETCH(QByteArray, name, QByteArray, quoted);
+        std::ostringstream yaml;
+        OccupancyPicture::draw(corner(), {})->writeYaml(yaml, name.toStdString());
+        QCOMPARE(QByteArray::fromStdString(yaml.str()).split('\n')[0], "image: " + quoted);
+    }
     void hugeMapsAreNotDrawn() {
         std::vector<MapEdge> map(1);
         map[0].segment = {{0, 0}, {1e7, 1e7}};

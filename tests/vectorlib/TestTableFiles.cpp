@@ -42,6 +42,14 @@ private Q_SLOTS:
         row("no header", "points", "1,2\n3,4\n", 2);
         row("comments, header, blank lines", "points", "# a scan\nx,y\n\n 1 , 2\n# in between\n3,+4e0\n", 2);
         row("CR LF and no last line end", "points", "x,y\r\n1,2\r\n3,4", 2);
+        row("CR alone", "points", "x,y\r1,2\r3,4\r", 2);
+        row("rays without return", "points", "inf,nan\n1,2\nnan,3\n-Infinity,4\n3,4\n", 2);
+        row("rays without return in a pcd", "pcd", pcdHeader + "POINTS 2\nDATA ascii\n9 9 nan inf\n9 9 3 4\n",
+            1);
+        row("map in UTM", "map",
+            "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n"
+            "5,691608.9,1e7,691609.9,1e7,2,0,1,691609.4,1e7,1,0,1\n",
+            1);
         row("byte order mark", "points", "\xEF\xBB\xBFx,y\n1,2\n3,4\n", 2);
         row("byte order mark, no header", "points",
             "\xEF\xBB\xBF"
@@ -68,9 +76,10 @@ private Q_SLOTS:
     void badInput_data() {
         const Rows<QByteArray, QByteArray, QByteArray, QByteArray> row("kind", "text", "place", "said");
         row("empty", "points", "", "f", "an empty file, expected columns x,y");
-        row("nan", "points", "x,y\n1,2\nnan,3\n", "f:3", "found \"nan\", expected a finite number as x");
-        row("nan in the first line", "points", "NaN,3\n", "f:1", "a finite number as x");
-        row("infinite", "points", "1,-inf\n", "f:1", "a finite number as y");
+        row("nan", "segments", "1,2,3,4\nnan,2,3,4\n", "f:2",
+            "found \"nan\", expected a finite number as x1");
+        row("nan in the first line", "segments", "NaN,2,3,4\n", "f:1", "a finite number as x1");
+        row("infinite", "segments", "1,-inf,3,4\n", "f:1", "a finite number as y1");
         row("too large", "points", "1,1e999\n", "f:1", "a finite number as y");
         row("a word", "points", "1,2\n3,four\n", "f:2", "found \"four\"");
         row("half a number", "points", "1,2\n3,4x\n", "f:2", "found \"4x\"");
@@ -102,8 +111,11 @@ private Q_SLOTS:
             "a count as POINTS");
         row("binary pcd", "pcd", pcdHeader + "POINTS 2\nDATA binary\n", "f:11", "DATA ascii");
         row("pcd without y", "pcd", "FIELDS x z\nPOINTS 1\nDATA ascii\n", "f:3", "fields x and y");
-        row("pcd with nan", "pcd", pcdHeader + "POINTS 1\nDATA ascii\n9 9 nan 2\n", "f:12",
-            "a finite number as x");
+        row("pcd with a word", "pcd", pcdHeader + "POINTS 1\nDATA ascii\n9 9 none 2\n", "f:12",
+            "a number as x");
+        row("map beyond UTM", "map",
+            "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n5,0,1.2e7,1,0,2,0,1,0,0,1,0,1\n",
+            "f:2", "a coordinate beyond 11,000 km");
         row("pcd with a field of no numbers", "pcd", "FIELDS y x\nCOUNT 1 0\nPOINTS 1\nDATA ascii\n5\n",
             "f:2", "a count as COUNT");
         row("beyond all floats", "float points", "1,2\n1e39,3\n", "f:2", "a coordinate beyond all measure");

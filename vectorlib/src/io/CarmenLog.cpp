@@ -1,8 +1,83 @@
 #include "vectorlib/io/CarmenLog.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <tuple>
+#include <utility>
 
 namespace vectorlib {
+
+VECTORLIB_BODY bool CarmenParameters::take(std::string_view name, std::string_view value) {
+    std::string plain(name); // laser_front_laser_fov, laser_frontlaser_fov
+    plain.erase(std::remove(plain.begin(), plain.end(), '_'), plain.end());
+    using P = CarmenParameters;
+    for (const auto &[known, target, least, most] :
+         {std::tuple("robotfrontlasermax", &P::maxRange, 1e-3, 1e6),
+          std::tuple("laserfrontlaserfov", &P::fieldOfView, 1e-3, 360.0),
+          std::tuple("laserlaser1fov", &P::fieldOfView, 1e-3, 360.0),
+          std::tuple("laserfrontlaserresolution", &P::resolution, 1e-3, 360.0),
+          std::tuple("laserlaser1resolution", &P::resolution, 1e-3, 360.0),
+          std::tuple("robotfrontlaseroffset", &P::offset, -100.0, 100.0),
+          std::tuple("robotfrontlasersideoffset", &P::sideOffset, -100.0, 100.0),
+          std::tuple("robotfrontlaserangularoffset", &P::angularOffset, -2 * pi, 2 * pi)})
+        if (plain == known) {
+            const auto number = parseNumber(value);
+            if (!number || *number < least || *number > most)
+                return false;
+            this->*target = number;
+        }
+    return true;
+}
+
+VECTORLIB_BODY std::optional<double> CarmenParameters::angle(std::size_t rays) const {
+    const auto steps = static_cast<double>(stepsOf(rays));
+    const auto isOneOf = [rays](std::initializer_list<std::size_t> counts) {
+        return std::find(counts.begin(), counts.end(), rays) != counts.end();
+    };
+    if (fieldOfView)
+        return *fieldOfView / 180 * pi;
+    if (resolution && *resolution * steps <= 360)
+        return *resolution * steps / 180 * pi;
+    if (isOneOf({180, 181, 360, 361, 720, 721})) // SICK LMS 2xx
+        return pi;
+    if (isOneOf({540, 541, 1080, 1081})) // SICK LMS 1xx, Hokuyo UTM-30LX
+        return 1.5 * pi;
+    if (isOneOf({682, 683, 725, 726, 768, 769})) // Hokuyo URG-04LX
+        return steps / 512 * pi;
+    return std::nullopt;
+}
+
+VECTORLIB_BODY std::optional<RepeatedRange> findRepeatedRange(const std::vector<CarmenScan> &scans) {
+    constexpr float about = 0.998F; // causes differ by a few counts: 8.191, 8.183
+    constexpr float similar = 0.8F;
+    constexpr std::size_t leastRays = 10, directions = 5;
+    std::vector<std::pair<float, std::size_t>> all; // returns and their rays, the largest first
+    for (const CarmenScan &scan : scans)
+        for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+            if (scan.isReturn(i))
+                all.emplace_back(scan.ranges[i], i);
+    std::sort(all.rbegin(), all.rend());
+    const auto above = [&all](float least) { // how many are
+        const auto is = [least](const auto &ray) { return ray.first > least; };
+        return static_cast<std::size_t>(std::partition_point(all.begin(), all.end(), is) - all.begin());
+    };
+    const auto endOf = [&](std::size_t at) { return above(std::nextafter(all[at].first, 0.0F)); };
+    for (std::size_t at = 0, end = 0; at < all.size(); at = end) {
+        const float range = all[at].first;
+        end = endOf(at);
+        const std::size_t rays = end - at, beyond = above(range / about), from = above(range * about);
+        if (beyond * 100 > all.size())
+            break;
+        if (rays < std::max(leastRays, all.size() / 500) || beyond * 20 > rays || rays * 20 > all.size() * 19)
+            continue;
+        std::size_t most = 0; // rays at one range of about this size
+        for (std::size_t i = from, next = 0; i < above(range * similar); i = next)
+            most = std::max(most, (next = endOf(i)) - i);
+        if (most * 10 <= rays && all[at].second >= all[end - 1].second + directions)
+            return RepeatedRange{range, double(range) * about, from};
+    }
+    return std::nullopt;
+}
 
 VECTORLIB_BODY std::optional<Transformation2D> CarmenLog::odometryMotion(std::size_t from, std::size_t to,
                                                                          CarmenOdometryKind kind) const {
@@ -27,6 +102,27 @@ VECTORLIB_BODY double CarmenLog::guessMaxRange() const {
     return largest >= 30 ? std::min(80.0, 0.998 * largest) : std::numeric_limits<double>::infinity();
 }
 
+VECTORLIB_BODY Pose2D CarmenLog::sensorOnRobot(CarmenOdometryKind kind) const {
+    constexpr double farthest = 5, same = 1e-3, near = 0.05; // metres, radians
+    if (kind == CarmenOdometryKind::Corrected)
+        return {};
+    std::vector<Pose2D> mounts;
+    for (const CarmenScan &scan : scans)
+        if (scan.hasOdometry)
+            mounts.push_back(scan.robotPose.inverse() * scan.laserPose);
+    const Pose2D mount = mounts.empty() ? Pose2D() : mounts[mounts.size() / 2];
+    const auto isNear = [&mount](const Pose2D &other, double limit) {
+        return std::hypot(mount.x - other.x, mount.y - other.y) < limit &&
+               std::abs(wrapAngle(mount.theta - other.theta)) < limit;
+    };
+    const auto isLike = [&](const Pose2D &other) { return isNear(other, near); };
+    const auto alike = static_cast<std::size_t>(std::count_if(mounts.begin(), mounts.end(), isLike));
+    if (alike * 10 >= mounts.size() * 9 && !isNear({}, same) && std::hypot(mount.x, mount.y) < farthest)
+        return mount;
+    return {parameters.offset.value_or(0), parameters.sideOffset.value_or(0),
+            parameters.angularOffset.value_or(0)};
+}
+
 VECTORLIB_BODY Expected<CarmenLog> detail::CarmenReader::read() {
     while (const auto line = lines_.next()) {
         if (const auto error = readLine(trimmed(*line))) {
@@ -40,11 +136,33 @@ VECTORLIB_BODY Expected<CarmenLog> detail::CarmenReader::read() {
         return *lines_.error();
     if (log_.scans.empty())
         return lines_.errorHere("the end of the log and no scan", "at least one line FLASER or ROBOTLASER1");
-    const double maxRange = log_.guessMaxRange();
-    for (CarmenScan &scan : log_.scans)
-        if (std::isinf(scan.maxRange))
-            scan.maxRange = maxRange;
+    describeScanner();
     return std::move(log_);
+}
+
+VECTORLIB_BODY void detail::CarmenReader::describeScanner() {
+    CarmenParameters told = log_.parameters;
+    if (options_.fieldOfView)
+        told.fieldOfView = options_.fieldOfView;
+    for (CarmenScan &scan : log_.scans) {
+        const std::size_t rays = scan.ranges.size();
+        const bool isFrontLaser = std::isinf(scan.maxRange); // which says neither
+        if (isFrontLaser || options_.fieldOfView) {
+            const auto angle = told.angle(rays);
+            if (!angle)
+                log_.assumedRays = rays;
+            scan.startAngle = -angle.value_or(pi) / 2;
+            scan.angleStep = angle.value_or(pi) / static_cast<double>(told.stepsOf(rays));
+        }
+        if (isFrontLaser && told.maxRange)
+            scan.maxRange = *told.maxRange;
+        scan.maxRange = options_.maxRange.value_or(scan.maxRange);
+    }
+    if (!options_.maxRange)
+        log_.noReturn = findRepeatedRange(log_.scans);
+    const double repeated = log_.noReturn ? log_.noReturn->from : farthest, guessed = log_.guessMaxRange();
+    for (CarmenScan &scan : log_.scans)
+        scan.maxRange = std::min({std::isinf(scan.maxRange) ? guessed : scan.maxRange, repeated, farthest});
 }
 
 VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readLine(std::string_view line) {
@@ -66,14 +184,30 @@ VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readLine(std:
     if (!isKeyword || (!lines_.terminated() && fields_.size() == 1))
         return lines_.errorHere(vectorlib::quoted(keyword),
                                 "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
-    return {}; // PARAM, NEFF, SYNC, RLASER, TRUEPOS and others tell nothing of the front laser
+    const auto isPartOfName = [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; };
+    for (const char *message : {"FLASER ", "ROBOTLASER1 ", "ODOM "})
+        if (const auto at = line.find(message, 1);
+            at != std::string_view::npos && !isPartOfName(line[at - 1]))
+            return lines_.errorHere(vectorlib::quoted(line.substr(at)) + " in a line " + std::string(keyword),
+                                    "one message a line");
+    if (keyword == "PARAM")
+        return readParameter();
+    return {}; // NEFF, SYNC, RLASER, TRUEPOS and others tell nothing of the front laser
+}
+
+VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readParameter() {
+    if (fields_.size() > 2 && !log_.parameters.take(fields_[1], fields_[2]))
+        return lines_.errorHere(vectorlib::quoted(fields_[2]),
+                                "a value of " + std::string(fields_[1]) +
+                                    ": metres, degrees (fov, resolution) or radians (angular offset)");
+    return {};
 }
 
 VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readOdometry() {
     CarmenOdometry odometry;
     odometry.line = lines_.number();
-    if (fields_.size() < 10)
-        return tooShort("ODOM", 10);
+    if (fields_.size() != 10)
+        return notOfLength("ODOM", 10);
     if (const auto problem = readPose(1, odometry.pose))
         return refuse(problem);
     if (const auto problem = readField(7, "the time stamp", odometry.stamp))
@@ -89,19 +223,13 @@ VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readFrontLase
     if (const auto problem = readRanges("FLASER", at, 9, scan))
         return problem;
     if (fields_.size() != at + 9)
-        return lines_.errorHere(std::to_string(fields_.size()) + " fields",
-                                std::to_string(at + 9) + " fields of FLASER with " +
-                                    std::to_string(scan.ranges.size()) + " ranges");
-    // 180 or 181 rays stand 1 degree apart, 360 or 361 half a degree: an even count lacks the last ray.
-    const std::size_t n = scan.ranges.size();
-    scan.startAngle = -pi / 2;
-    scan.angleStep = pi / static_cast<double>(n % 2 == 0 ? n : n - 1);
+        return notOfLength("FLASER", at + 9, scan.ranges.size());
     return finish(scan, at, at + 6);
 }
 
 VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readRobotLaser() {
     if (fields_.size() < 9)
-        return tooShort("ROBOTLASER1", 9);
+        return notOfLength("ROBOTLASER1", 9);
     CarmenScan scan;
     double fieldOfView = 0;
     for (const auto &[index, what, value] : {std::tuple(2, "the start angle", &scan.startAngle),
@@ -120,12 +248,16 @@ VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readRobotLase
     std::size_t at = 8;
     if (const auto problem = readRanges("ROBOTLASER1", at, 15, scan))
         return problem;
+    const std::size_t rays = scan.ranges.size();
+    if (scan.angleStep * static_cast<double>(rays - 1) > widestScan)
+        return lines_.errorHere(std::to_string(rays) + " rays " + std::string(fields_[4]) + " rad apart",
+                                "rays within a turn");
     const auto remissions = parseCount(fields_[at], maxRays);
     if (!remissions)
         return lines_.errorHere(vectorlib::quoted(fields_[at]), "the number of remissions");
     at += 1 + *remissions;
-    if (fields_.size() < at + 14)
-        return tooShort("ROBOTLASER1", at + 14);
+    if (fields_.size() != at + 14)
+        return notOfLength("ROBOTLASER1", at + 14, rays);
     return finish(scan, at, at + 11);
 }
 
@@ -136,15 +268,16 @@ detail::CarmenReader::readRanges(const char *keyword, std::size_t &at, std::size
         return lines_.errorHere(fields_.size() > at ? quoted(fields_[at]) : "the end of the line",
                                 "the number of ranges, 2 to " + std::to_string(maxRays));
     if (fields_.size() < at + 1 + *count + rest)
-        return tooShort(keyword, at + 1 + *count + rest);
+        return notOfLength(keyword, at + 1 + *count + rest, *count);
     scan.ranges.reserve(*count);
     for (std::size_t i = 0; i < *count; ++i) {
-        const auto range = parseNumber(fields_[at + 1 + i]);
-        if (!range || *range < 0)
+        const auto range = parseAnyNumber(fields_[at + 1 + i]);
+        if (!range)
             return lines_.errorHere(vectorlib::quoted(fields_[at + 1 + i]),
                                     "range " + std::to_string(i + 1) + " of " + std::to_string(*count) +
-                                        ", a finite number of metres");
-        scan.ranges.push_back(static_cast<float>(std::min(*range, farthest)));
+                                        ", a number of metres");
+        const bool isReturn = std::isfinite(*range) && *range > 0;
+        scan.ranges.push_back(isReturn ? static_cast<float>(std::min(*range, farthest)) : 0);
     }
     at += 1 + *count;
     return {};
@@ -231,9 +364,12 @@ VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readField(std
     return {};
 }
 
-VECTORLIB_BODY InputError detail::CarmenReader::tooShort(const char *keyword, std::size_t fields) const {
-    return lines_.errorHere("a line cut short after " + std::to_string(fields_.size()) + " fields",
-                            std::to_string(fields) + " fields of " + keyword);
+VECTORLIB_BODY InputError detail::CarmenReader::notOfLength(const char *keyword, std::size_t fields,
+                                                            std::size_t ranges) const {
+    const char *found = fields_.size() < fields ? "a line cut short after " : "a line that goes on to ";
+    return lines_.errorHere(found + std::to_string(fields_.size()) + " fields",
+                            std::to_string(fields) + " fields of " + keyword +
+                                (ranges > 0 ? " with " + std::to_string(ranges) + " ranges" : ""));
 }
 
 VECTORLIB_BODY void CarmenDrive::advance() {
@@ -254,7 +390,8 @@ VECTORLIB_BODY std::optional<OdometryTrack> CarmenDrive::odometry() const {
     const Step &step = steps_.back();
     if (!step.isKnown)
         return std::nullopt;
-    return OdometryTrack(step.epoch, {{log_.scans[steps_.size() - 1].stamp, step.robot.pose(), {}, {}}});
+    return OdometryTrack(step.epoch,
+                         {{log_.scans[steps_.size() - 1].stamp, step.robot.pose() * mount_, {}, {}}});
 }
 
 VECTORLIB_BODY CarmenDrive::Step CarmenDrive::stepTo(std::size_t i) {

@@ -94,8 +94,8 @@ VECTORLIB_BODY bool CsvReader::takeRow() {
     }
     row_.clear();
     for (const std::size_t at : positions_) {
-        const auto number = parseNumber(fields_[at]);
-        if (!number) {
+        const auto number = parseAnyNumber(fields_[at]);
+        if (!number || !(std::isfinite(*number) || columns_.anyNumbers)) {
             error_ = lines_.errorHere(vectorlib::quoted(fields_[at]),
                                       "a finite number as " + columnName(row_.size()));
             return false;

@@ -27,6 +27,7 @@ VECTORLIB_BODY Expected<std::vector<MapEdge>> readMapCsv(std::istream &in, std::
         {{"id", "x1", "y1", "x2", "y2", "n", "sigma", "observations", "mean_x", "mean_y", "xx", "xy", "yy"},
          {}});
     std::vector<MapEdge> map;
+    constexpr double farthest = 1.1e7; // all of UTM, and what a robot sees and drives from its ends
     const auto isWhole = [](double v) { return v >= 0 && v < 9007199254740992.0 && v == std::floor(v); };
     while (const auto *row = csv.next()) {
         const std::vector<double> &r = *row;
@@ -37,8 +38,8 @@ VECTORLIB_BODY Expected<std::vector<MapEdge>> readMapCsv(std::istream &in, std::
             if (r[column] < 0)
                 return csv.errorHere("a negative n, sigma, xx or yy", "numbers from 0");
         for (const std::size_t column : {1, 2, 3, 4, 8, 9})
-            if (std::abs(r[column]) > 1e6)
-                return csv.errorHere("a coordinate beyond 1000 km", "metres in the map's frame");
+            if (std::abs(r[column]) > farthest)
+                return csv.errorHere("a coordinate beyond 11,000 km", "metres in the map's frame");
         for (const std::size_t column : {5, 6, 10, 11, 12})
             if (std::abs(r[column]) > 1e18)
                 return csv.errorHere("an n, sigma, xx, xy or yy beyond 1e18",

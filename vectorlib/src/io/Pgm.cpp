@@ -3,6 +3,7 @@
 #include "vectorlib/io/TextInput.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace vectorlib {
 
@@ -20,6 +21,22 @@ OccupancyPicture::draw(const std::vector<MapEdge> &map, const std::vector<Stampe
     for (const MapEdge &m : map)
         p.line(m.segment.begin(), m.segment.end(), 0, occupiedCell);
     return p;
+}
+
+VECTORLIB_BODY std::string OccupancyPicture::yamlText(const std::string &text) {
+    constexpr const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-";
+    if (text.find_first_not_of(plain) == std::string::npos && text.find_first_of(".-") != 0)
+        return text;
+    std::string quoted = "\"";
+    for (std::size_t at = 0; at < text.size();) {
+        const auto [code, length] = nextCharacter(text, at);
+        char escaped[12];
+        std::snprintf(escaped, sizeof escaped, "\\U%08x", code ? unsigned(code) : text[at] & 0xffu);
+        const bool isShown = code >= ' ' && code <= '~' && code != '"' && code != '\\';
+        quoted += isShown ? text.substr(at, 1) : escaped;
+        at += length;
+    }
+    return quoted + '"';
 }
 
 VECTORLIB_BODY bool OccupancyPicture::frame(const std::vector<MapEdge> &map,

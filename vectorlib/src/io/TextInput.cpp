@@ -35,8 +35,6 @@ VECTORLIB_BODY std::optional<std::string_view> LineReader::next() {
         takeRestOfLine();
     if (error_)
         return std::nullopt;
-    if (!line_.empty() && line_.back() == '\r')
-        line_.pop_back();
     if (number_ == 1 && line_.rfind(byteOrderMark, 0) == 0) // as Windows begins text
         line_.erase(0, byteOrderMark.size());
     if (line_.find('\0') != std::string::npos)
@@ -57,10 +55,13 @@ VECTORLIB_BODY bool LineReader::fill() {
 
 VECTORLIB_BODY void LineReader::takeRestOfLine() {
     const std::string_view rest(block_.data() + at_, filled_ - at_);
-    const std::size_t length = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    const std::size_t length = std::min(line.find('\r'), line.size());
     line_.append(rest.substr(0, length));
     terminated_ = length < rest.size();
     at_ += length + (terminated_ ? 1 : 0);
+    if (length < line.size() && (at_ < filled_ || fill()) && block_[at_] == '\n')
+        ++at_; // CR LF is one line end
     if (line_.size() > maxLineLength)
         fail("a line of over " + std::to_string(maxLineLength) + " characters", "lines of text");
     if (error_)
@@ -80,15 +81,20 @@ VECTORLIB_BODY std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-VECTORLIB_BODY std::optional<double> parseNumber(std::string_view text) {
+VECTORLIB_BODY std::optional<double> parseAnyNumber(std::string_view text) {
     text = trimmed(text);
     if (text.size() > 1 && text[0] == '+' && text[1] != '-')
         text.remove_prefix(1);
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    if (code != std::errc() || end != text.data() + text.size())
         return std::nullopt;
     return value;
+}
+
+VECTORLIB_BODY std::optional<double> parseNumber(std::string_view text) {
+    const auto value = parseAnyNumber(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 VECTORLIB_BODY std::optional<std::size_t> parseCount(std::string_view text, std::size_t limit) {

@@ -28,9 +28,10 @@ struct CarmenScan {
     double stamp = 0;
     double startAngle = 0; ///< of the first ray, in the sensor's frame
     double angleStep = 0;
-    /// Ranges from here on mean no return. FLASER does not say it: CarmenLog::guessMaxRange fills it in.
+    /// Ranges from here on mean no return. FLASER does not say it: CarmenParameters::maxRange or
+    /// CarmenLog::guessMaxRange fill it in.
     double maxRange = std::numeric_limits<double>::infinity();
-    std::vector<float> ranges; ///< every ray, also those without return
+    std::vector<float> ranges; ///< every ray; 0 where the log has inf, nan or a negative number
     Pose2D laserPose;          ///< first triple; the reference pose in corrected logs
     Pose2D robotPose;          ///< second triple; the odometry in ordinary logs
     /// Motion since the previous scan by the ODOM lines between them, begun at the previous scan's pose as
@@ -53,9 +54,30 @@ struct CarmenScan {
     }
 };
 
-} // namespace vectorlib
+/// What the lines PARAM of a log tell of the laser in front. Nothing where they do not.
+struct CarmenParameters {
+    std::optional<double> maxRange, fieldOfView, resolution; ///< metres, degrees
+    std::optional<double> offset, sideOffset, angularOffset; ///< its pose on the robot; metres, radians
 
-namespace vectorlib {
+    /// Takes one, unless it tells of something else. False when its value is none that it can have.
+    bool take(std::string_view name, std::string_view value);
+    /// The angle (radians) that so many rays divide into stepsOf() steps: as the parameters tell, or as known
+    /// scanners have it; else nothing.
+    std::optional<double> angle(std::size_t rays) const;
+    /// An even number of rays lacks the last one.
+    static std::size_t stepsOf(std::size_t rays) { return rays / 2 * 2; }
+};
+
+/// A range that a scanner writes for "no return".
+struct RepeatedRange {
+    float range = 0;
+    double from = 0;      ///< ranges from here on mean it
+    std::size_t rays = 0; ///< so many
+};
+
+/// The largest range of the scans, when far more rays in many directions have exactly this one than any other
+/// of about its size: no wall is as constant. A twentieth of them may be larger.
+std::optional<RepeatedRange> findRepeatedRange(const std::vector<CarmenScan> &scans);
 
 /// Which of a log's poses tell the motion that the wheels measured.
 enum class CarmenOdometryKind {
@@ -64,12 +86,14 @@ enum class CarmenOdometryKind {
                ///< only
 };
 
-/// What readCarmenLog() does with damaged lines.
+/// What readCarmenLog() does with damaged lines, and what it is told of the scanner.
 struct CarmenOptions {
     bool skipDamaged = false; ///< count damaged lines instead of giving an error
     /// Count poses of the odometry that are no finite numbers below 1e7 m, of such a log, instead of giving
     /// an error: a scan is kept without them.
     std::optional<CarmenOdometryKind> refusesOdometry;
+    /// Whatever the log says; degrees, metres.
+    std::optional<double> fieldOfView, maxRange;
 };
 
 /// A robot's log in CARMEN's text format.
@@ -79,6 +103,9 @@ struct CarmenLog {
     std::size_t damaged = 0;               ///< lines left out, with CarmenOptions::skipDamaged only
     std::optional<InputError> firstDamage; ///< the first of them
     std::size_t odometryRefused = 0;       ///< poses, with CarmenOptions::refusesOdometry only
+    CarmenParameters parameters;
+    std::optional<RepeatedRange> noReturn; ///< below what the log calls its longest range
+    std::size_t assumedRays = 0; ///< of a FLASER whose field of view was taken for 180 degrees; 0: none
 
     /// Motion of the robot from one scan to a later one as its odometry tells it, composed over the scans
     /// between. Nothing when a part of the way has no odometry.
@@ -88,6 +115,11 @@ struct CarmenLog {
     Transformation2D referenceMotion(std::size_t from, std::size_t to) const {
         return Transformation2D(scans[from].laserPose).inverse() * Transformation2D(scans[to].laserPose);
     }
+
+    /// The laser on the robot: as the two poses of the scans tell it, the same all over the log and no
+    /// farther away than a robot is long; as the parameters, where the two are the same or differ otherwise.
+    /// In the origin in a corrected log, both of whose poses are the reference.
+    Pose2D sensorOnRobot(CarmenOdometryKind kind) const;
 
     /// Range from which FLASER readings mean no return: just below the largest of the log when that is one a
     /// scanner writes for it (30 m and more, a little apart by device: 81.91 and 81.83, 51.1
@@ -111,14 +143,13 @@ private:
     static constexpr std::size_t maxRays = 100000;
     static constexpr double farthest = 1000;           // metres; no scanner of such logs sees as far
     static constexpr double largestAngle = 2.001 * pi; // a turn, however it was rounded
+    static constexpr double widestScan = 2.02 * pi;    // the same of a sum of rounded steps
     static constexpr double widest = 1e7;              // metres; nor does a robot drive as far
 
     Problem readLine(std::string_view line);
-
+    Problem readParameter();
     Problem readOdometry();
-
     Problem readFrontLaser();
-
     Problem readRobotLaser();
 
     /// The count at field `at` and so many ranges; moves `at` behind them. `rest` fields must follow.
@@ -137,7 +168,9 @@ private:
 
     Problem readPose(std::size_t at, Pose2D &pose);
     Problem readField(std::size_t at, const char *what, double &value);
-    InputError tooShort(const char *keyword, std::size_t fields) const;
+    InputError notOfLength(const char *keyword, std::size_t fields, std::size_t ranges = 0) const;
+    /// After the last line: angles and longest ranges.
+    void describeScanner();
 
     LineReader lines_;
     CarmenOptions options_;
@@ -151,16 +184,12 @@ private:
 
 } // namespace detail
 
-/// The scans and the odometry of a CARMEN log. A line cut short, a field that is no finite number or binary
-/// data is an error that names `name` and the line (or is counted, with skipDamaged or refusesOdometry); so
-/// is a log without a scan.
+/// The scans and the odometry of a CARMEN log. A line cut short or that goes on behind its message, a field
+/// that is no finite number (of a range: no number) or binary data is an error that names `name` and the line
+/// (or is counted, with skipDamaged or refusesOdometry); so is a log without a scan.
 inline Expected<CarmenLog> readCarmenLog(std::istream &in, std::string name, CarmenOptions options = {}) {
     return detail::CarmenReader(in, std::move(name), options).read();
 }
-
-} // namespace vectorlib
-
-namespace vectorlib {
 
 /// The way of the robot through a log, scan by scan, as its odometry tells it and as far as it can be
 /// believed.
@@ -172,16 +201,17 @@ public:
     static constexpr double longestPause_s = 5; ///< no more of the time counts
     static constexpr std::size_t repeated = 16; ///< a scan is compared with so many before it
 
-    /// The log must outlive this.
-    CarmenDrive(const CarmenLog &log, CarmenOdometryKind kind)
+    /// The log must outlive this. mount: the sensor on the robot.
+    CarmenDrive(const CarmenLog &log, CarmenOdometryKind kind, const Pose2D &mount = {})
         : log_(log)
-        , kind_(kind) {}
+        , kind_(kind)
+        , mount_(mount) {}
 
     /// Goes on to the next scan; there must be one.
     void advance();
     /// Whether the last scan has the stamp and the ranges of one shortly before it.
     bool isRepeated() const { return isRepeated_; }
-    /// The robot at the last scan; nothing where the log does not tell.
+    /// Where the odometry puts the sensor at the last scan; nothing where the log does not tell.
     std::optional<OdometryTrack> odometry() const;
 
     /// Repeated scans so far.
@@ -207,6 +237,7 @@ private:
 
     const CarmenLog &log_;
     CarmenOdometryKind kind_;
+    Pose2D mount_;
     std::vector<Step> steps_;
     std::size_t repeated_ = 0, leaps_ = 0;
     bool isRepeated_ = false;

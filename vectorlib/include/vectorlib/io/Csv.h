@@ -27,6 +27,7 @@ Expected<PairTable> readCsvPairs(std::istream &in, std::string name);
 struct CsvColumns {
     std::vector<std::string> required; ///< in this order where the file has no header
     std::vector<std::string> optional; ///< behind them, in this order
+    bool anyNumbers = false;           ///< inf and nan are no error
 };
 
 /// Rows of numbers from a CSV file: `#` comments, empty lines and one header line are allowed. With a header,

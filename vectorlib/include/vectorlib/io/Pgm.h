@@ -30,14 +30,17 @@ public:
         out << "P5\n" << width_ << ' ' << height_ << "\n255\n";
         out.write(reinterpret_cast<const char *>(cells_.data()), static_cast<std::streamsize>(cells_.size()));
     }
-    /// picture: name of the PGM file as the YAML file shall refer to it.
+    /// picture: name of the PGM file as the YAML file shall refer to it, UTF-8.
     void writeYaml(std::ostream &out, const std::string &picture) const {
-        out << "image: " << picture << "\nresolution: " << Number(resolution_) << "\norigin: ["
+        out << "image: " << yamlText(picture) << "\nresolution: " << Number(resolution_) << "\norigin: ["
             << Number(origin_.x) << ", " << Number(origin_.y)
             << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
     }
 
 private:
+    // Plain where that is unambiguous, else in double quotes.
+    static std::string yamlText(const std::string &text);
+
     static constexpr unsigned char occupiedCell = 0, unknownCell = 205, freeCell = 254;
     static constexpr double margin = 1; // metres around everything drawn
 

@@ -42,8 +42,8 @@ struct Utf8Character {
 /// alone, longer forms than needed, surrogates, and what lies beyond Unicode.
 Utf8Character nextCharacter(const std::string &text, std::size_t at);
 
-/// Lines of a text input, read in blocks; memory stays bounded whatever the input holds. CR LF counts as one
-/// line end.
+/// Lines of a text input, read in blocks; memory stays bounded whatever the input holds. LF, CR LF and CR are
+/// line ends.
 class LineReader {
 public:
     static constexpr std::size_t maxLineLength = 1 << 20;
@@ -60,7 +60,7 @@ public:
     const std::optional<InputError> &error() const { return error_; }
     /// Number of the line that next() gave last, from 1.
     std::size_t number() const { return number_; }
-    /// False when the last line ended with the input instead of a line feed: it may be cut short.
+    /// False when the last line ended with the input instead of a line end: it may be cut short.
     bool terminated() const { return terminated_; }
     const std::string &name() const { return name_; }
     /// An error at the line that was read last.
@@ -92,7 +92,11 @@ inline bool isBlank(char c) {
 /// The text without the blanks at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// A finite number that fills the whole field, in the notation of C whatever the locale; else nothing.
+/// A number that fills the whole field, in the notation of C whatever the locale, inf and nan among them;
+/// else nothing.
+std::optional<double> parseAnyNumber(std::string_view text);
+
+/// The same of finite numbers only.
 std::optional<double> parseNumber(std::string_view text);
 
 /// A non-negative whole number up to `limit`; else nothing.
