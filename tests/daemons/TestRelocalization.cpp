@@ -188,7 +188,7 @@ private Q_SLOTS:
     }
 
     void aLoadedMapWaitsForItsPlace() {
-        call("matcher.start", {{"mode", "mapping"}});
+        beginToMap();
         load(pillars());
         for (int i = 0; i < 12; ++i)
             scan(square(), {0.05 * i, 0.3, 0.2}); // another building
@@ -201,7 +201,7 @@ private Q_SLOTS:
 
     void aPlaceThatIsToldIsTried() {
         set("relocalize_after", 5);
-        call("matcher.start", {{"mode", "mapping"}});
+        beginToMap();
         load(pillars());
         QTRY_VERIFY((scan(pillars(), {1, 0.9, 0}), number("matched") > 1));
         call("pose.set", {{"x", 2}, {"y", 1.5}, {"theta", 0.3}});
@@ -222,7 +222,7 @@ private Q_SLOTS:
     }
 
     void aPersonMayInsistOnAPlace() {
-        call("matcher.start", {{"mode", "mapping"}});
+        beginToMap();
         load(pillars());
         call("pose.set", {{"x", 20}, {"y", 20}, {"theta", 0}, {"confirm", true}});
         for (int i = 0; i < 5; ++i)
@@ -258,7 +258,7 @@ private Q_SLOTS:
 
     void theMapMayGrowOnlyBeforeItHoldsTheScan() {
         load(pillars());
-        call("matcher.start", {{"mode", "mapping"}});
+        beginToMap();
         QTRY_VERIFY(source->hasSubscribers("scan2d"));
         set("relocalize_after", 2);
         call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
@@ -297,6 +297,13 @@ private Q_SLOTS:
     }
 
 private:
+    void beginToMap() {
+        call("matcher.stop");
+        QTRY_VERIFY(!source->hasSubscribers("scan2d"));
+        call("matcher.start", {{"mode", "mapping"}});
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+    }
+
     void load(const Segments &walls) {
         std::vector<vectorlib::MapEdge> map;
         for (const auto &wall : walls)
