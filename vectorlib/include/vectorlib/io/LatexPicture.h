@@ -32,10 +32,6 @@ std::size_t exponentLength(const std::string &text, std::size_t at);
 /// raised. What pdflatex has no sign for stands as its number, [U+4E2D]; bytes that are no UTF-8 as ?.
 std::string latexText(const std::string &text);
 
-} // namespace vectorlib
-
-namespace vectorlib {
-
 /// How large a picture is in a document, and its grid.
 struct LatexFrame {
     double width = 14, height = 17; ///< at most; centimetres, numbers and names of axes not counted

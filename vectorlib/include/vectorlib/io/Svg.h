@@ -130,10 +130,6 @@ private:
     Box box_;
 };
 
-} // namespace vectorlib
-
-namespace vectorlib {
-
 /// Text as it must be written between the tags of XML.
 std::string xmlText(const std::string &text);
 
