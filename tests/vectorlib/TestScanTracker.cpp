@@ -250,6 +250,17 @@ private Q_SLOTS:
         QVERIFY2(isLost || lost == 0, qPrintable(QString::number(lost)));
     }
 
+    void whatContradictedAMapDoesNotStopItsGrowth() {
+        tracker->builder.settings.grow = false;
+        for (int i = 1; i < 30; ++i) // where the walls of the niche are not
+            see({{{-4, -3}, {9, -3}}, {{9, -3}, {9, 6}}, {{9, 6}, {-4, 6}}, {{-4, 6}, {-4, -3}}}, {-2, -1, 0},
+                10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        QVERIFY(tracker->isContradicted());
+        QCOMPARE(tracker->builder.report().outcome, ScanReport::Outcome::Lost);
+        tracker->builder.settings.grow = true;
+        QCOMPARE(see({-2, -1, 0}, 13.1, track({}, 13.1)).outcome, ScanReport::Outcome::Matched);
+    }
+
     void whatIsSoughtIsLostUntilItIsFound() {
         tracker->seek();
         QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);

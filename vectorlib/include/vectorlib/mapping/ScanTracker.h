@@ -106,7 +106,7 @@ public:
     /// What speaks against the pose in a finished map: of the points of the last scans the share that is seen
     /// through walls, and half of the share that lies on none. Less what was known when the place was found,
     /// as the world may have changed. 0 while the map grows.
-    double against() const { return std::max(0.0, against_ - knownAgainst_); }
+    double against() const { return builder.settings.grow ? 0 : std::max(0.0, against_ - knownAgainst_); }
     /// Whether little does.
     bool agrees() const { return against() < 0.5 * settings_.mostAgainst; }
     /// Whether that is too much for the pose to be right: the scan then counts as lost.
