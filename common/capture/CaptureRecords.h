@@ -20,7 +20,7 @@ struct CaptureRecord {
 };
 
 /// The records of a capture, in the order of the file: those that libpcap gives, but for what
-/// ClassicPcap.h tells.
+/// ClassicPcap tells.
 class CaptureRecords {
 public:
     enum class Next { Record, End, Failed };

@@ -86,7 +86,8 @@ void MapCorrector::resume(std::unique_ptr<RememberedDrive> remembered) {
     push(std::move(item));
 }
 
-void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points) {
+void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points,
+                       bool isInterrupted) {
     if (!follows_)
         return;
     if (state().isFull)
@@ -94,7 +95,7 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     const Transformation2D pose(tracker.builder.report().pose);
     Seen seen;
     seen.number = tracker.counts().scans - 1;
-    const bool isResumed = std::exchange(isResumed_, false);
+    const bool isResumed = std::exchange(isResumed_, false) || (isInterrupted && pose_);
     seen.motion = !pose_ ? pose : isResumed ? pose_->inverse() * pose : tracker.tracked(*pose_);
     seen.by = isResumed ? vectorlib::TrackedBy::Placed : tracker.trackedBy();
     seen.trust = tracker.trust();

@@ -74,8 +74,9 @@ public:
     void restart(const vectorlib::ScanTracker &tracker);
     /// The map is that of a drive that was remembered, which goes on with the next scan, wherever that is.
     void resume(std::unique_ptr<RememberedDrive> remembered);
-    /// The scan that the tracker took last.
-    void add(const vectorlib::ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points);
+    /// The scan that the tracker took last; interrupted: it does not follow from the one before.
+    void add(const vectorlib::ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points,
+             bool isInterrupted = false);
     /// The tracker gets the map and goes on where it lies in it. False: it is of another drive, and nothing
     /// happened.
     bool apply(vectorlib::ScanTracker &tracker, Correction &correction);

@@ -92,7 +92,8 @@ void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool
     ++contradicted_;
     contradiction_ =
         QString("the scans contradict the odometry: it tells of %1 in %2 s, they show %3; the wheels "
-                "turn on the spot, or the scans are not this robot's")
+                "turn on the spot, the scans are not this robot's, or sensor.* tells wrongly where the "
+                "sensor is")
             .arg(text(ways.odometry))
             .arg(ways.seconds, 0, 'f', 1)
             .arg(text(ways.scans));

@@ -38,6 +38,8 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     relocalizing_ = true;
     worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
         const Relocalized found = tracker.relocalize(apply);
+        if (apply && found.isFound() && seeks_ != Seeks::Nothing)
+            seeks_ = Seeks::Here;
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing_ = false;
             RelocalizeAnswer answer;
@@ -60,7 +62,10 @@ std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
         seeks_ = Seeks::Here;
     if (found && !found->isFound() && seeks_ == Seeks::AnywhereOrNew) {
         seeks_ = Seeks::Nowhere; // not now: what the scan gave is to be told
-        worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
+        QMetaObject::invokeMethod(this, [this] {
+            if (worker_)
+                worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
+        });
     }
     const bool agrees = tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched &&
                         !tracker.isPlaced() && tracker.agrees();
@@ -72,7 +77,7 @@ std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
     return found;
 }
 
-// Until then scans are not matched.
+// Until it is found or told, scans count as lost.
 void ScanMatcher::seek(vectorlib::ScanTracker &tracker, Seeks what) {
     seeks_ = what;
     tracker.seek();
@@ -134,10 +139,11 @@ void ScanMatcher::updateTrackingHealth() {
         message += "; the scans do not confirm the place that was told: nothing is mapped until they do, or "
                    "pose.set insists with confirm";
     else if (seeks_ != Seeks::Nothing)
-        message += "; the place in the map is sought: until then nothing is mapped";
-    const HealthLevel level = lostInARow_ >= 3 ? HealthLevel::Failed
-                              : isBlind()      ? HealthLevel::Warn
-                                               : HealthLevel::Ok;
+        message +=
+            "; the place in the map is sought: until it is found scans count as lost and nothing is mapped";
+    const HealthLevel level = lostInARow_ >= 3                        ? HealthLevel::Failed
+                              : isBlind() || seeks_ != Seeks::Nothing ? HealthLevel::Warn
+                                                                      : HealthLevel::Ok;
     health().set("tracking", level, message,
                  {{"lost_in_a_row", lostInARow_},
                   {"skipped_in_a_row", skipped_.count},

@@ -48,7 +48,7 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
     if (const auto frame = tracker.odometryFrame())
         result.pose.odometryFrame = frame->pose();
     result.match = {scan.number,
-                    match.accepted,
+                    match.accepted && report.outcome == ScanReport::Outcome::Matched,
                     {},
                     match.reliability,
                     match.ambiguity,
@@ -132,8 +132,10 @@ Result<void> ScanMatcher::start() {
                                                 settings().text("map.journal"));
     worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
         const std::optional<vectorlib::Relocalized> recovery = find(tracker);
-        if (seeks_ == Seeks::Nothing)
-            corrector_->add(tracker, scan.data.points);
+        if (seeks_ != Seeks::Nothing)
+            isInterrupted_ = true;
+        else
+            corrector_->add(tracker, scan.data.points, std::exchange(isInterrupted_, false));
         Outcome outcome = outcomeOf(tracker, scan);
         outcome.result.pose.corrected = std::exchange(corrected_, false);
         outcome.recovery = recovery;
@@ -177,6 +179,8 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
 void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
     worker_->post([this, toMap, closes = closesLoops()](ScanTracker &tracker) {
+        if (toMap && tracker.isContradicted()) // else it would be mapped at a wrong place
+            seek(tracker, Seeks::Anywhere);
         grows_ = toMap;
         if (matchesReplay_)
             setLiveMapAside(tracker);
@@ -254,13 +258,14 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &sc
     o.points = scan.data.points.size();
     o.counts = tracker.counts();
     o.contradiction = tracker.contradiction();
+    o.replayed = scan.replayed;
     o.changes = takeChanges(tracker.builder.map);
     return o;
 }
 
 void ScanMatcher::show(const Outcome &o) {
     if (o.contradiction && o.counts.contradicted > counts_.contradicted)
-        odometry_.contradict(*o.contradiction, !replayed_ && settings().flag("odometry.stop"));
+        odometry_.contradict(*o.contradiction, !o.replayed && settings().flag("odometry.stop"));
     counts_ = o.counts;
     lostInARow_ = o.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
     if (lostInARow_ == 0)

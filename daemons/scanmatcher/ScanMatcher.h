@@ -38,6 +38,7 @@ private:
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
         std::size_t points = 0; ///< of the scan
         std::optional<vectorlib::OdometryCheck::Ways> contradiction;
+        bool replayed = false;
         std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
     };
 
@@ -118,7 +119,8 @@ private:
     /// A place that somebody told counts once scans agree.
     enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Here, Nowhere, Told };
     void seek(vectorlib::ScanTracker &tracker, Seeks what);
-    int agreed_ = 0;                           ///< scans in a row with the place; the worker's
+    int agreed_ = 0;             ///< scans in a row with the place; the worker's
+    bool isInterrupted_ = false; ///< scans were not remembered since the last that was; the worker's
     std::atomic<Seeks> seeks_{Seeks::Nothing}; ///< set by the worker
     bool grows_ = true;                        ///< the map, while no place is sought; the worker's
     Client source_;

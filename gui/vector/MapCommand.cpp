@@ -111,7 +111,6 @@ private:
         run.finish(options.source.path);
         nlohmann::ordered_json json = run.summary();
         json.update(report.summary());
-        tellContradictions(run.localizer.tracker.counts(), json);
         const std::vector<vectorlib::StampedPose> trajectory = run.trajectory();
         if (svgFile)
             vectorlib::drawMap(*svgFile,

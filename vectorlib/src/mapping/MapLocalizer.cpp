@@ -87,6 +87,7 @@ VECTORLIB_BODY void MapLocalizer::confirm() {
     if (off.translation().norm() <= settings.sameXY && std::abs(off.alpha()) <= settings.sameAlpha) {
         ++found_;
         state_ = State::Confirmed;
+        against_ = found.places.front().against;
         traceBack();
         kept_.clear();
     } else {

@@ -1,5 +1,9 @@
 #include "vectorlib/mapping/ScanTracker.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace vectorlib {
 
 VECTORLIB_BODY void ScanTracker::apply(const ScanTrackerSettings &settings) {
@@ -23,10 +27,7 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     scanner.closed = scan.closed;
     builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
     straight_ = locate(scan, begin, end);
-    if (builder.report().outcome == ScanReport::Outcome::Matched && !builder.settings.grow)
-        weigh(scan.points, scan.stamp);
-    if (isContradicted() || isSought_)
-        builder.refuse();
+    judge(scan);
     const ScanReport &report = builder.conclude(scan.points, straight_);
     points_ = scan.points;
     motion_.update(report.pose, scan.stamp);
@@ -46,24 +47,38 @@ VECTORLIB_BODY void ScanTracker::check(const OdometryTrack &track, double stamp)
         check_.add(stamp, track.at(stamp).pose(), builder.report().pose * settings_.sensorOnRobot.inverse());
 }
 
-VECTORLIB_BODY void ScanTracker::weigh(PointSpan<float> points, double stamp) {
+VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan) {
+    if (builder.settings.grow)
+        against_ = knownAgainst_ = weighed_ = 0;
+    else if (builder.report().outcome == ScanReport::Outcome::Matched)
+        weigh(scan);
+    if (isContradicted() || isSought_)
+        builder.refuse();
+}
+
+VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan) {
+    const Pose2D &pose = builder.report().pose;
     const PlaceFit fit =
-        search_.judge(builder.map.slots(), builder.edges(), points, Transformation2D(builder.report().pose));
-    const double since_s = lastStamp_ ? std::max(0.0, stamp - *lastStamp_) : 0;
-    const double share = std::max({least, 1 - std::exp(-since_s / against_s), 1.0 / ++weighed_});
+        search_.judge(builder.map.slots(), builder.edges(), scan.points, Transformation2D(pose));
+    const double since_s = lastStamp_ ? std::max(0.0, scan.stamp - *lastStamp_) : 0;
+    const double share = std::max({leastShare, 1 - std::exp(-since_s / against_s), 1.0 / ++weighed_});
     against_ += share * (fit.against() - against_);
-    knownAgainst_ -= forgotten * knownAgainst_;
+    if (std::hypot(pose.x - weighedAt_.x, pose.y - weighedAt_.y) < forgetting_m)
+        return;
+    knownAgainst_ *= 1 - forgottenShare;
+    weighedAt_ = pose;
 }
 
 VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     isPlaced_ = true;
     isSought_ = false;
-    weighed_ = 0;
+    weighed_ = lostInARow_ = 0;
+    weighedAt_ = pose;
     against_ = knownAgainst_ = against;
     motion_.reset(pose);
     odometry_.reset();
     check_.restart();
-    builder.forgetPrevious();
+    builder.placed();
     lastStamp_.reset();
 }
 
@@ -217,11 +232,11 @@ VECTORLIB_BODY TrackingSettings ScanTracker::poorly(const TrackingSettings &well
 }
 
 VECTORLIB_BODY bool ScanTracker::isSearchDue() const {
+    if (isSought_)
+        return Clock::now() >= nextSearch_;
     // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
     // itself, at a place that may be wrong, and the search would find that.
     const bool holdsTheScan = builder.settings.grow && lostInARow_ >= builder.settings.lostBeforeRestart;
-    if (isSought_)
-        return Clock::now() >= nextSearch_;
     return settings_.relocalizeAfter > 0 && lostInARow_ >= settings_.relocalizeAfter && !holdsTheScan &&
            Clock::now() >= nextSearch_;
 }

@@ -130,7 +130,8 @@ public:
     bool isPassedOver() const { return passedOver_ > 0; }
     /// Whether the map goes on where the last scan was expected, as so many before it were lost, too.
     bool isRestart() const {
-        return report_.outcome == ScanReport::Outcome::Lost && lost_ == settings.lostBeforeRestart;
+        return settings.grow && report_.outcome == ScanReport::Outcome::Lost &&
+               lost_ == settings.lostBeforeRestart;
     }
     const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to candidates() and edges().
@@ -148,6 +149,11 @@ public:
     void forgetPrevious() {
         previousPoints_.clear();
         passedOver_ = 0;
+    }
+    /// The same, and the scans that were lost until now do not count.
+    void placed() {
+        forgetPrevious();
+        lost_ = 0;
     }
     /// Takes a map that was made anew and gives the old one; `moved` tells where in it a pose of the old one
     /// lies.

@@ -75,7 +75,10 @@ public:
     /// Puts the sensor somewhere, standing still. `against`: what is known to speak against the place.
     void place(const Pose2D &pose, double against = 0);
     /// The place in the map is not known: scans count as lost until it is found or told.
-    void seek() { isSought_ = true; }
+    void seek() {
+        isSought_ = true;
+        nextSearch_ = {};
+    }
     /// Whether it was put somewhere since the last scan.
     bool isPlaced() const { return isPlaced_; }
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
@@ -128,9 +131,11 @@ private:
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int mostTries = 3;
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
-    static constexpr double against_s = 0.5; // over which what speaks against a pose is smoothed
-    static constexpr double least = 0.2, forgotten = 0.02; // shares by which the mean follows a scan
-    static constexpr double muchBetter = 1.02;             // a score, where the odometry tells otherwise
+    static constexpr double against_s = 0.5;  // over which what speaks against a pose is smoothed
+    static constexpr double leastShare = 0.2; // by which the mean follows a scan
+    static constexpr double forgetting_m = 0.1,
+                            forgottenShare = 0.1; // of what was known, each so many metres
+    static constexpr double muchBetter = 1.02;    // a score, where the odometry tells otherwise
 
     // Where the sensor is thought to be, how it moves, and how sure that is.
     struct Guess {
@@ -157,10 +162,12 @@ private:
     }
     TwistCorrection::Result twistError(const TimedScan &scan);
     void check(const OdometryTrack &track, double stamp);
-    // The two guesses differ by more than the speed of a robot changes between two scans.
     // What speaks against the pose that was found.
-    void weigh(PointSpan<float> points, double stamp);
+    void weigh(const TimedScan &scan);
+    // A scan that too much speaks against, or whose place is sought, is lost.
+    void judge(const TimedScan &scan);
     double belief() const { return std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0); }
+    // The two guesses differ by more than the speed of a robot changes between two scans.
     static bool leaps(const Guess &a, const Guess &b, double seconds);
     void tellHowSure(const Guess &guess);
     // Searches at least as widely as it is set up.
@@ -191,6 +198,7 @@ private:
     bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false;     // since the last scan, and before it
     int lostInARow_ = 0;
     bool isSought_ = false;
+    Pose2D weighedAt_;                      // what was known is forgotten from there on
     int weighed_ = 0;                       // scans since the sensor was put somewhere
     double against_ = 0, knownAgainst_ = 0; // shares of the last scans, and of them what the search knew of
     Clock::time_point nextSearch_;

@@ -34,7 +34,7 @@ struct PlaceFit {
     double hiddenShare() const { return points > 0 ? (hidden + blocked) / points : 0; }
     /// What speaks against the pose: the share of the points that are seen through walls, and half of that of
     /// those on no wall.
-    double against() const { return hiddenShare() + 0.5 * (1 - explainedShare()); }
+    double against() const { return points > 0 ? hiddenShare() + 0.5 * (1 - explainedShare()) : 0; }
     /// Up to 1: the explained share, less what lies apart and what is seen through walls.
     double score() const { return points > 0 ? std::accumulate(said.begin(), said.end(), 0.0) / points : 0; }
     /// How much higher the score is than that of another place of the same scan, when the object that speaks
