@@ -17,13 +17,14 @@ namespace {
 
 const QString serverSource = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
+constexpr int silent_s = 3; // the system takes up to 7 s for 5
 constexpr std::size_t mostHandshakes = 256; // at the same time, then one of whoever has most of them goes
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
 } // namespace
 
 TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
-    : TcpListener(address, 1, int(longestHandshake.count()), parent)
+    : TcpListener(address, 1, silent_s, parent)
     , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual())) {
     revokedTimer_.setInterval(revokedPeriod);
     connect(&revokedTimer_, &QTimer::timeout, this, [this] {
