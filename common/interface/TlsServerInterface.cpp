@@ -17,7 +17,7 @@ namespace {
 
 const QString serverSource = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
-constexpr int silent_s = 3; // the system takes up to 7 s for 5
+constexpr int silent_s = 3;                 // the system takes up to 7 s for 5
 constexpr std::size_t mostHandshakes = 256; // at the same time, then one of whoever has most of them goes
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
