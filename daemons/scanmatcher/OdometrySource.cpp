@@ -4,6 +4,8 @@
 #include "common/daemon/Health.h"
 #include "protocol/wire/Fields.h"
 
+#include <cmath>
+
 namespace hermes::scanmatcher {
 
 using vectorlib::OdometryBuffer;
@@ -46,6 +48,8 @@ void OdometrySource::close() {
     address_.clear();
     fault_.clear();
     withoutInARow_ = 0;
+    contradiction_.clear();
+    stopFault_.clear();
 }
 
 void OdometrySource::take(const TopicUpdate &update) {
@@ -85,9 +89,11 @@ std::optional<OdometryTrack> OdometrySource::over(double begin, double end) {
 
 void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool stops) {
     const auto text = [](const vectorlib::Pose2D &way) {
-        return QString("%1 m and %2 degrees")
-            .arg(std::hypot(way.x, way.y), 0, 'f', 2)
-            .arg(way.theta * 180 / vectorlib::pi, 0, 'f', 0);
+        const auto rounded = [](double value, double perUnit) {
+            return QString::number(std::round(value * perUnit) / perUnit + 0.0); // never -0
+        };
+        return QString("%1 m ahead, %2 m to the left and %3 degrees")
+            .arg(rounded(way.x, 100), rounded(way.y, 100), rounded(way.theta * 180 / vectorlib::pi, 1));
     };
     ++contradicted_;
     contradiction_ =
@@ -101,7 +107,8 @@ void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool
     if (stops && client_.isConnected())
         client_.call("motor.stop",
                      QJsonObject{{"client", "scanmatcher, as the scans contradict the odometry"}},
-                     [](const auto &answer) {
+                     [this](const auto &answer) {
+                         stopFault_ = answer ? QString() : "; nothing was stopped: " + answer.error().message;
                          if (!answer)
                              logError("odometry", "motor.stop: " + answer.error().message);
                      });
@@ -109,8 +116,8 @@ void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool
 
 QString OdometrySource::pastText() const {
     QString text;
-    if (contradicted_ > 0)
-        text += "; " + contradiction_;
+    if (!contradiction_.isEmpty())
+        text += "; " + contradiction_ + stopFault_;
     if (refused_ > 0)
         text += QString("; refused %1 messages, the last: %2").arg(refused_).arg(lastRefused_);
     if (dropped_ > 0)

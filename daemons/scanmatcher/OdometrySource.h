@@ -41,7 +41,7 @@ private:
     vectorlib::OdometryBuffer buffer_;
     QString lastRefused_;
     PastFaults faults_;
-    QString contradiction_; // the last
+    QString contradiction_, stopFault_; // the last
     quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0,
             contradicted_ = 0, unknown_ = 0;
     int withoutInARow_ = 0;

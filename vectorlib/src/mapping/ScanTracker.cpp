@@ -11,6 +11,7 @@ VECTORLIB_BODY void ScanTracker::apply(const ScanTrackerSettings &settings) {
     builder.settings.matchPrevious = true;
     builder.settings.tracking = settings.tracking;
     odometry_.setMount(settings.sensorOnRobot);
+    check_.restart(); // with another mount the robot is elsewhere
     search_.maxSeconds = settings.relocalizeSeconds;
 }
 
