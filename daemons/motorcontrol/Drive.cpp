@@ -95,6 +95,7 @@ Result<void> Drive::accept(quint64 client, const WheelValues &target, double age
         return renewed;
     target_ = target;
     haltReason_.clear();
+    deposed_ = 0;
     watchdog_.feed(now - std::max(0.0, age_s)); // time on the way counts
     return {};
 }
@@ -106,9 +107,18 @@ void Drive::halt(const QString &reason) {
 }
 
 void Drive::stop(quint64 client, const QString &who) {
-    if (!lease_.isHeldBy(client))
-        lease_.revoke();
+    const quint64 driver = lease_.client();
+    if (driver == 0 && client == deposed_) // its own stop is not why the robot stands
+        return halt(QString(haltReason_));
+    if (driver != client)
+        depose();
     halt("stopped by " + who);
+}
+
+void Drive::depose() {
+    if (lease_.client() != 0)
+        deposed_ = lease_.client();
+    lease_.revoke();
 }
 
 void Drive::emergencyStop(quint64 client, const QString &who, double now) {
@@ -117,7 +127,7 @@ void Drive::emergencyStop(quint64 client, const QString &who, double now) {
     if (isNew)
         stopped_ = lease_.isHeldBy(client) ? 0 : lease_.client();
     pressed_ = now;
-    lease_.revoke();
+    depose();
     halt(latch_.reason(emergencyCause));
 }
 

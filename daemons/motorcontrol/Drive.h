@@ -30,7 +30,7 @@ public:
     /// the time-out is refused, and so is one that comes from a future as far away.
     Result<void> driveTwist(quint64 client, const Twist2D &twist, double age_s, double now);
     Result<void> driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now);
-    /// Anyone may stop. Ends the lease unless the client holds it.
+    /// Anyone may stop. Ends the lease unless the client holds it. Who lost it so does not change the reason.
     void stop(quint64 client, const QString &who);
     /// who: as others are to know it. The client is the one that may release it.
     void emergencyStop(quint64 client, const QString &who, double now);
@@ -81,6 +81,7 @@ private:
     Result<void> mayMove(double age_s) const;
     Result<void> accept(quint64 client, const WheelValues &target, double age_s, double now);
     void halt(const QString &reason);
+    void depose();
 
     Settings settings_;
     CommandWatchdog watchdog_;
@@ -91,7 +92,8 @@ private:
     QString haltReason_;
     /// Of the emergency stop. 0: several pressed it, or nobody that is known; nobody drove.
     quint64 presser_ = 0, stopped_ = 0;
-    double pressed_ = 0; // the last time
+    double pressed_ = 0;  // the last time
+    quint64 deposed_ = 0; // from whom another took the control by a stop
     quint64 resets_ = 0;
     double lastStep_ = 0;
 };

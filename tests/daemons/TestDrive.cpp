@@ -201,6 +201,24 @@ private Q_SLOTS:
     // By rule, not by case: whoever pressed, drove and asks, in each order, is refused unless it alone
     // pressed, or a person has confirmed and it was not driving when another pressed; and nobody is heard
     // within the hold-off.
+    void whoWasStoppedIsNotTheReason() {
+        const std::pair<QString, std::function<void()>> stops[] = {
+            {"stopped by bert", [this] { drive_->stop(bert, "bert"); }},
+            {"emergency stop by bert", [this] { drive_->emergencyStop(bert, "bert", 1); }}};
+        for (const auto &[reason, stop] : stops) {
+            init();
+            QVERIFY(drive_->acquire(anna, "anna", 10, 0).ok());
+            stop();
+            drive_->stop(anna, "anna"); // as a client does at its end
+            QCOMPARE(drive_->haltReason(), reason);
+            QCOMPARE(drive_->setPoint(), WheelValues{});
+        }
+        init();
+        drive_->stop(bert, "bert");
+        drive_->stop(anna, "anna");
+        QCOMPARE(drive_->haltReason(), QString("stopped by anna"));
+    }
+
     void onlyWhoPressedOrAPersonReleases() {
         const std::array clients{anna, bert, carl};
         for (quint64 driver : clients)
