@@ -91,11 +91,24 @@ void ReplayBar::layOut() {
     layout->addLayout(bottom);
 }
 
-/// On a low screen the panel is scrolled.
+/// On a low screen the panel is scrolled, also when it becomes low afterwards.
 void ReplayBar::showEvent(QShowEvent *event) {
     QWidget::showEvent(event);
+    for (QWidget *above = parentWidget(); above; above = above->parentWidget())
+        if (auto *const area = qobject_cast<QScrollArea *>(above))
+            area->viewport()->installEventFilter(this);
+    comeInSight();
+}
+
+bool ReplayBar::eventFilter(QObject *viewport, QEvent *event) {
+    if (event->type() == QEvent::Resize)
+        comeInSight();
+    return QWidget::eventFilter(viewport, event);
+}
+
+void ReplayBar::comeInSight() {
     QTimer::singleShot(0, this, [this] { // when it has its place
-        for (QWidget *above = parentWidget(); above; above = above->parentWidget())
+        for (QWidget *above = parentWidget(); above && isVisible(); above = above->parentWidget())
             if (auto *const area = qobject_cast<QScrollArea *>(above))
                 area->ensureWidgetVisible(this);
     });

@@ -26,8 +26,10 @@ public:
 
 protected:
     void showEvent(QShowEvent *event) override;
+    bool eventFilter(QObject *viewport, QEvent *event) override;
 
 private:
+    void comeInSight();
     void layOut();
     void showProgress(double position_s, double duration_s);
     void showPosition();
