@@ -114,10 +114,12 @@ void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool
                      });
 }
 
-QString OdometrySource::pastText() const {
+QString OdometrySource::pastText(bool isRecent) const {
     QString text;
-    if (!contradiction_.isEmpty())
+    if (!contradiction_.isEmpty() && isRecent)
         text += "; " + contradiction_ + stopFault_;
+    else if (contradicted_ > 0)
+        text += QString("; the scans have contradicted the odometry %1 times").arg(contradicted_);
     if (refused_ > 0)
         text += QString("; refused %1 messages, the last: %2").arg(refused_).arg(lastRefused_);
     if (dropped_ > 0)
@@ -143,9 +145,10 @@ void OdometrySource::report(Health &health) {
         set(HealthLevel::Warn, QString("the last %1 scans found no odometry of their time; their poses were "
                                        "expected from the scans alone")
                                    .arg(withoutInARow_));
-    else
-        set(faults_.level(double(refused_ + dropped_ + contradicted_)),
-            "connected to " + address_ + pastText());
+    else {
+        const HealthLevel level = faults_.level(double(refused_ + dropped_ + contradicted_));
+        set(level, "connected to " + address_ + pastText(level != HealthLevel::Ok));
+    }
 }
 
 OdometryState OdometrySource::state() const {

@@ -3,7 +3,7 @@
 #include "common/client/Client.h"
 #include "common/daemon/PastFaults.h"
 #include "daemons/scanmatcher/MatcherMessages.h"
-#include "vectorlib/motion/OdometryBuffer.h"
+#include "vectorlib/motion/Odometry.h"
 
 namespace hermes::scanmatcher {
 
@@ -32,7 +32,7 @@ public:
 private:
     void take(const TopicUpdate &update);
 
-    QString pastText() const;
+    QString pastText(bool isRecent) const;
 
     Client client_;
     QString address_;

@@ -268,6 +268,23 @@ private Q_SLOTS:
         QCOMPARE(see({-2, -1, 0}, 13.1, track({}, 13.1)).outcome, ScanReport::Outcome::Matched);
     }
 
+    void aCorrectedMountContradictsNothing() {
+        ScanTrackerSettings settings;
+        settings.sensorOnRobot = {0, 0, pi / 2}; // it is not
+        tracker->apply(settings);
+        const auto drive = [this](int from, int to) {
+            for (int i = from; i < to; ++i)
+                see({-2 + 0.05 * i, -1, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
+        };
+        drive(1, 9); // a piece
+        tracker->apply({});
+        drive(9, 23);
+        QCOMPARE(tracker->counts().contradicted, std::uint64_t(0));
+        tracker->apply(settings);
+        drive(23, 40);
+        QVERIFY(tracker->counts().contradicted > 0);
+    }
+
     void whatIsSoughtIsLostUntilItIsFound() {
         tracker->seek();
         QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
