@@ -12,12 +12,6 @@ namespace {
 constexpr double longestGap_s = 1; // between scans that follow each other
 constexpr int mostFiles = 4;       // that may wait to be written, each with its copy of the map
 
-bool isEmpty(const vectorlib::VectorMap &map) {
-    bool empty = true;
-    map.forEach([&](const vectorlib::MapEdge &) { empty = false; });
-    return empty;
-}
-
 } // namespace
 
 void ScanMatcher::declareMapCommands() {
@@ -151,7 +145,7 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
 
 // The one of now is kept, unless it is empty.
 void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map) {
-    if (!isEmpty(tracker.builder.map)) {
+    if (!tracker.builder.map.isEmpty()) {
         replaced_.emplace();
         std::swap(*replaced_, tracker.builder.map);
     }
@@ -184,7 +178,7 @@ void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
     live_.emplace();
     live_->pose = tracker.builder.report().pose;
     live_->number = mapNumber_;
-    if (isEmpty(tracker.builder.map))
+    if (tracker.builder.map.isEmpty())
         return;
     std::swap(live_->map, tracker.builder.map);
     mapNumber_ = ++mapsBegun_;
@@ -202,7 +196,7 @@ void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
     LiveMap live = std::move(*live_);
     live_.reset();
     keepsLiveMap_ = false;
-    const bool isSought = !isEmpty(live.map);
+    const bool isSought = !live.map.isEmpty();
     seeks_ = Seeks::Nothing;
     replace(tracker, std::move(live.map));
     mapNumber_ = live.number;
@@ -228,7 +222,7 @@ void ScanMatcher::followReplay(const Scan &scan) {
     if (!isJump)
         return;
     worker_->post([this](vectorlib::ScanTracker &tracker) {
-        if (isEmpty(tracker.builder.map))
+        if (tracker.builder.map.isEmpty())
             return;
         tracker.place(tracker.builder.report().pose); // it stands still
         seek(tracker,

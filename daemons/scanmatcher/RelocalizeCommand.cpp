@@ -39,7 +39,7 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
         const Relocalized found = tracker.relocalize(apply);
         if (apply && found.isFound() && seeks_ != Seeks::Nothing)
-            seeks_ = Seeks::Here;
+            seeks_ = Seeks::Found;
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing_ = false;
             RelocalizeAnswer answer;
@@ -59,7 +59,7 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
 std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
     const std::optional<Relocalized> found = tracker.recover();
     if (found && found->isFound() && seeks_ != Seeks::Nothing)
-        seeks_ = Seeks::Here;
+        seeks_ = Seeks::Found;
     if (found && !found->isFound() && seeks_ == Seeks::AnywhereOrNew) {
         seeks_ = Seeks::Nowhere; // not now: what the scan gave is to be told
         QMetaObject::invokeMethod(this, [this] {
@@ -70,7 +70,7 @@ std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
     const bool agrees = tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched &&
                         !tracker.isPlaced() && tracker.agrees();
     agreed_ = agrees ? agreed_ + 1 : 0;
-    if ((seeks_ == Seeks::Here && agreed_ >= 1) || (seeks_ == Seeks::Told && agreed_ >= enoughToAgree)) {
+    if ((seeks_ == Seeks::Found && agreed_ >= 1) || (seeks_ == Seeks::Told && agreed_ >= enoughToAgree)) {
         seeks_ = Seeks::Nothing;
         setGrowth(tracker);
     }

@@ -113,11 +113,9 @@ private:
     std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
     bool replayed_ = false;                 ///< the last scan
     double replayStamp_ = -1;               ///< of the last scan that was replayed
-    /// A map that was loaded goes on once its place is found: with the first scan in the whole map, then
-    /// where the sensor stood last. A replay that was sought to a place that its map does not have (Nowhere)
-    /// gets a new map.
-    /// A place that somebody told counts once scans agree.
-    enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Here, Nowhere, Told };
+    /// A map that was loaded goes on once its place is found in the whole map, or told, and scans agree with
+    /// it. A replay that was sought to a place that its map does not have (Nowhere) gets a new map.
+    enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Found, Nowhere, Told };
     void seek(vectorlib::ScanTracker &tracker, Seeks what);
     int agreed_ = 0;             ///< scans in a row with the place; the worker's
     bool isInterrupted_ = false; ///< scans were not remembered since the last that was; the worker's

@@ -2,6 +2,7 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "vectorlib/io/CarmenDrive.h"
 #include "vectorlib/io/Number.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "tests/support/RealData.h"
 
-#include <vectorlib/io/CarmenLog.h>
+#include <vectorlib/io/CarmenDrive.h>
 
 using namespace vectorlib;
 

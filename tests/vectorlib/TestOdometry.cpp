@@ -1,7 +1,7 @@
 // The odometry on its way to a scan: the buffer, what a pose is expected from it.
 #include <vectorlib/mapping/TimedScan.h>
 #include <vectorlib/motion/MotionModel.h>
-#include <vectorlib/motion/OdometryBuffer.h>
+#include <vectorlib/motion/Odometry.h>
 
 using namespace vectorlib;
 using Outcome = OdometryBuffer::Outcome;
@@ -64,6 +64,16 @@ private Q_SLOTS:
         if (isContradicted)
             QVERIFY2(steps <= 14 && check.contradiction()->odometry.x > 0.59,
                      qPrintable(QString::number(steps)));
+    }
+
+    void clocksThatStepContradictNothing() {
+        const double nan = std::nan("");
+        for (const double step_s : {-1.0, -1e9, 1e9, nan}) {
+            OdometryCheck check;
+            for (int i = 0; i < 40; ++i)
+                QVERIFY(!check.add((i < 20 ? 0 : step_s) + 0.1 * i, {0.05 * i, 0, 0}, {0.05 * i, 0, 0}));
+            QVERIFY(!check.add(1e10, {nan, 0, 0}, {0, 0, 0}));
+        }
     }
 
     void oneWrongPoseContradictsNothing() {

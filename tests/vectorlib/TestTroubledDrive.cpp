@@ -2,7 +2,7 @@
 // is wrong, no edge may enter the map that is no wall.
 #include <vectorlib/mapping/ScanTracker.h>
 #include <vectorlib/motion/MotionModel.h>
-#include <vectorlib/motion/OdometryBuffer.h>
+#include <vectorlib/motion/Odometry.h>
 #include <vectorlib/observation/Observer.h>
 
 using namespace vectorlib;

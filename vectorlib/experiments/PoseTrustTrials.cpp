@@ -4,7 +4,7 @@
 #include "vectorlib/experiments/DrawnDrive.h"
 #include "vectorlib/experiments/LogisticFit.h"
 #include "vectorlib/experiments/PairsExperiment.h"
-#include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/CarmenDrive.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/mapping/ScanTracker.h"
 

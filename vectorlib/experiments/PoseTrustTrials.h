@@ -2,7 +2,7 @@
 
 #include "gui/vector/ProgressParts.h"
 #include "vectorlib/io/CarmenLog.h"
-#include "vectorlib/mapping/ScanPairMatcher.h"
+#include "vectorlib/mapping/ScanTracker.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,4 @@
 #include "vectorlib/places/WallTiles.h"
-#include "vectorlib/places/PlaceIndex.h"
 
 namespace vectorlib {
 

@@ -4,7 +4,7 @@
 #include "vectorlib/geometry/Angle.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Vector2D.h"
-#include "vectorlib/motion/OdometryBuffer.h"
+#include "vectorlib/motion/Odometry.h"
 
 #include <algorithm>
 #include <vector>

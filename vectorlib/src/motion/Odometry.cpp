@@ -1,4 +1,4 @@
-#include "vectorlib/motion/OdometryBuffer.h"
+#include "vectorlib/motion/Odometry.h"
 #include "vectorlib/geometry/SmallMatrix.h"
 
 #include <utility>

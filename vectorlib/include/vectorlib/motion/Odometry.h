@@ -184,4 +184,4 @@ private:
 
 } // namespace vectorlib
 
-#include VECTORLIB_BODIES("vectorlib/src/motion/OdometryBuffer.cpp")
+#include VECTORLIB_BODIES("vectorlib/src/motion/Odometry.cpp")
