@@ -70,7 +70,6 @@ void ScanMatcher::declareMapCommands() {
                        worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
                            replace(tracker, {});
                            corrector_->restart(tracker);
-                           seeks_ = Seeks::Nothing;
                            showNewMap(tracker, reply, QJsonValue());
                        });
                    }));
@@ -114,7 +113,7 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
             map.add(edge, edge.observations);
         replace(tracker, std::move(map));
         corrector_->restart(tracker);
-        seek(tracker, Seeks::Anywhere); // else what it maps lies anywhere in it
+        seek(tracker); // else what it maps lies anywhere in it
         showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}));
     });
 }
@@ -135,7 +134,7 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
     drive.review(builder.map, poses);
     replace(tracker, std::move(builder.map));
     tracker.place(poses.back());
-    seek(tracker, Seeks::Anywhere);
+    seek(tracker);
     LoadedMap answer{0, drive.loops.scans(), drive.loops.keys().size(), drive.loops.counts().closed,
                      quint64(remembered->leftOut)};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
@@ -150,6 +149,7 @@ void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap 
         std::swap(*replaced_, tracker.builder.map);
     }
     tracker.clear();
+    newMap_ = NewMap::No;
     std::swap(tracker.builder.map, map);
     mapNumber_ = ++mapsBegun_;
 }
@@ -164,7 +164,7 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
     replace(tracker, std::move(back));
     tracker.place(pose);
     corrector_->restart(tracker);
-    seek(tracker, Seeks::Anywhere);
+    seek(tracker);
     LoadedMap answer;
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
     showNewMap(tracker, reply, asJson(answer));
@@ -185,7 +185,6 @@ void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
     keepsLiveMap_ = true;
     tracker.clear();
     corrector_->follow(false, tracker); // its journal is of the live drive
-    seeks_ = Seeks::Nothing;
     showNewMap(tracker, std::nullopt, QJsonValue());
 }
 
@@ -197,12 +196,11 @@ void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
     live_.reset();
     keepsLiveMap_ = false;
     const bool isSought = !live.map.isEmpty();
-    seeks_ = Seeks::Nothing;
     replace(tracker, std::move(live.map));
     mapNumber_ = live.number;
     tracker.place(live.pose);
     if (isSought)
-        seek(tracker, Seeks::Anywhere);
+        seek(tracker);
     corrector_->restart(tracker);
     QMetaObject::invokeMethod(this, [this] { // whether it closes loops is known there
         if (worker_)
@@ -224,24 +222,23 @@ void ScanMatcher::followReplay(const Scan &scan) {
     worker_->post([this](vectorlib::ScanTracker &tracker) {
         if (tracker.builder.map.isEmpty())
             return;
-        tracker.place(tracker.builder.report().pose); // it stands still
-        seek(tracker,
-             live_ ? Seeks::AnywhereOrNew : Seeks::Anywhere); // with live_ the map is the replay's own
+        tracker.place(tracker.builder.report().pose);            // it stands still
+        seek(tracker, live_ ? NewMap::WhenNowhere : NewMap::No); // with live_ the map is the replay's own
     });
 }
 
 void ScanMatcher::beginReplayAnew(vectorlib::ScanTracker &tracker) {
-    if (seeks_ != Seeks::Nowhere)
+    if (newMap_ != NewMap::Due)
         return; // another map was loaded meanwhile
     replace(tracker, {});
     corrector_->restart(tracker);
-    seeks_ = Seeks::Nothing;
     showNewMap(tracker, std::nullopt, QJsonValue());
 }
 
 void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
                              const QJsonValue &answer) {
-    setGrowth(tracker);
+    tracker.grow(grows_);
+    place_ = tracker.placeState();
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(

@@ -79,11 +79,8 @@ void ScanMatcher::declareMatcherCommands() {
                        const Pose2D pose = toPose(call.params);
                        worker_->post([this, pose, isSure = call.flag("confirm"),
                                       reply](vectorlib::ScanTracker &tracker) {
-                           tracker.place(pose, isSure ? 1 : 0);
-                           seeks_ = isSure || !grows_ || tracker.builder.map.isEmpty() ? Seeks::Nothing
-                                                                                       : Seeks::Told;
-                           agreed_ = 0;
-                           setGrowth(tracker);
+                           isSure ? tracker.place(pose, 1) : tracker.claim(pose);
+                           place_ = tracker.placeState();
                            reply.result(QJsonValue());
                        });
                    }));

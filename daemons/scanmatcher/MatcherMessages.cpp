@@ -123,6 +123,11 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
             .add("active", &S::active, "Scans are taken")
             .add("mode", &S::mode, "mapping: the map grows; localization: it stays")
             .choices({"mapping", "localization"})
+            .add("place", &S::place,
+                 "In the map: known; found by a search and not yet confirmed by a second one; told, and not "
+                 "yet "
+                 "confirmed by the scans; sought. While it is not known nothing is mapped")
+            .choices({"known", "found", "told", "sought"})
             .add("scans", &S::scans, "Since the map is the one it is")
             .add("matched", &S::matched, "Of them")
             .add("lost", &S::lost, "Of them: no match was good enough")

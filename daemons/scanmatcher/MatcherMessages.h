@@ -40,7 +40,7 @@ struct OdometryState {
 /// What matcher.state gives.
 struct MatcherState {
     bool active = false;
-    QString mode;
+    QString mode, place;
     quint64 scans = 0, matched = 0, lost = 0, skipped = 0, doubted = 0, restarts = 0;
     quint64 waiting = 0, dropped = 0, droppedBySource = 0, refused = 0, unknownFields = 0;
     quint64 recoveries = 0, recovered = 0, byOdometry = 0;

@@ -6,11 +6,11 @@
 namespace hermes::scanmatcher {
 
 using vectorlib::Relocalized;
+using PlaceState = vectorlib::ScanTracker::PlaceState;
 
 namespace {
 
 constexpr double longestBlindness_s = 3;
-constexpr int enoughToAgree = 5; // scans with a place that was told
 
 QString text(const Pose2D &pose) {
     return QString("x %1 m, y %2 m, theta %3 rad")
@@ -38,8 +38,7 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     relocalizing_ = true;
     worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
         const Relocalized found = tracker.relocalize(apply);
-        if (apply && found.isFound() && seeks_ != Seeks::Nothing)
-            seeks_ = Seeks::Found;
+        place_ = tracker.placeState();
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing_ = false;
             RelocalizeAnswer answer;
@@ -58,34 +57,22 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
 // After a scan; searches the whole map when it is time to. What waits for a place goes on when it is found.
 std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
     const std::optional<Relocalized> found = tracker.recover();
-    if (found && found->isFound() && seeks_ != Seeks::Nothing)
-        seeks_ = Seeks::Found;
-    if (found && !found->isFound() && seeks_ == Seeks::AnywhereOrNew) {
-        seeks_ = Seeks::Nowhere; // not now: what the scan gave is to be told
+    place_ = tracker.placeState();
+    if (found && !found->isFound() && newMap_ == NewMap::WhenNowhere) {
+        newMap_ = NewMap::Due; // not now: what the scan gave is to be told
         QMetaObject::invokeMethod(this, [this] {
             if (worker_)
                 worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
         });
     }
-    const bool agrees = tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched &&
-                        !tracker.isPlaced() && tracker.agrees();
-    agreed_ = agrees ? agreed_ + 1 : 0;
-    if ((seeks_ == Seeks::Found && agreed_ >= 1) || (seeks_ == Seeks::Told && agreed_ >= enoughToAgree)) {
-        seeks_ = Seeks::Nothing;
-        setGrowth(tracker);
-    }
     return found;
 }
 
 // Until it is found or told, scans count as lost.
-void ScanMatcher::seek(vectorlib::ScanTracker &tracker, Seeks what) {
-    seeks_ = what;
+void ScanMatcher::seek(vectorlib::ScanTracker &tracker, NewMap newMap) {
+    newMap_ = newMap;
     tracker.seek();
-    setGrowth(tracker);
-}
-
-void ScanMatcher::setGrowth(vectorlib::ScanTracker &tracker) const {
-    tracker.builder.settings.grow = grows_ && seeks_ == Seeks::Nothing;
+    place_ = tracker.placeState();
 }
 
 void ScanMatcher::showRecovery(const Relocalized &recovery) {
@@ -135,15 +122,21 @@ void ScanMatcher::updateTrackingHealth() {
                                       : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
-    if (seeks_ == Seeks::Told)
+    const PlaceState place = place_;
+    if (place == PlaceState::Told)
         message += "; the scans do not confirm the place that was told: nothing is mapped until they do, or "
                    "pose.set insists with confirm";
-    else if (seeks_ != Seeks::Nothing)
-        message +=
-            "; the place in the map is sought: until it is found scans count as lost and nothing is mapped";
-    const HealthLevel level = lostInARow_ >= 3                        ? HealthLevel::Failed
-                              : isBlind() || seeks_ != Seeks::Nothing ? HealthLevel::Warn
-                                                                      : HealthLevel::Ok;
+    else if (place == PlaceState::Found && mapping_)
+        message += "; the place was found in the map: nothing is mapped until a second search, a metre on, "
+                   "agrees";
+    else if (place == PlaceState::Sought)
+        message += "; the place in the map is sought: until it is found scans count as lost and nothing is "
+                   "mapped. Drive to where the map shows the same, or tell the place with pose.set";
+    const HealthLevel level =
+        lostInARow_ >= 3 ? HealthLevel::Failed
+        : isBlind() || (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
+            ? HealthLevel::Warn
+            : HealthLevel::Ok;
     health().set("tracking", level, message,
                  {{"lost_in_a_row", lostInARow_},
                   {"skipped_in_a_row", skipped_.count},

@@ -21,6 +21,20 @@ QString toText(ScanReport::Outcome outcome) {
     return QString(texts[int(outcome)]); // in the order of the enumeration
 }
 
+QString toText(ScanTracker::PlaceState place) {
+    switch (place) {
+    case ScanTracker::PlaceState::Found:
+        return "found";
+    case ScanTracker::PlaceState::Told:
+        return "told";
+    case ScanTracker::PlaceState::Sought:
+        return "sought";
+    case ScanTracker::PlaceState::Known:
+        break;
+    }
+    return "known";
+}
+
 // Nothing where the pairs leave a direction open.
 std::optional<Covariance> covariance(const vectorlib::Match &match) {
     const Eigen::FullPivLU<Eigen::Matrix3d> lu(match.information);
@@ -132,7 +146,7 @@ Result<void> ScanMatcher::start() {
                                                 settings().text("map.journal"));
     worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
         const std::optional<vectorlib::Relocalized> recovery = find(tracker);
-        if (seeks_ != Seeks::Nothing)
+        if (place_ != ScanTracker::PlaceState::Known)
             isInterrupted_ = true;
         else
             corrector_->add(tracker, scan.data.points, std::exchange(isInterrupted_, false));
@@ -180,11 +194,11 @@ void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
     worker_->post([this, toMap, closes = closesLoops()](ScanTracker &tracker) {
         if (toMap && tracker.isContradicted()) // else it would be mapped at a wrong place
-            seek(tracker, Seeks::Anywhere);
+            seek(tracker);
         grows_ = toMap;
         if (matchesReplay_)
             setLiveMapAside(tracker);
-        setGrowth(tracker);
+        tracker.grow(grows_);
         corrector_->follow(closes && !keepsLiveMap_, tracker); // of the live drive
     });
     active_ = true;
@@ -384,6 +398,7 @@ MatcherState ScanMatcher::matcherState() const {
     MatcherState state;
     state.active = active_;
     state.mode = mapping_ ? "mapping" : "localization";
+    state.place = toText(place_);
     state.scans = quint64(counts_.scans);
     state.matched = quint64(counts_.matched);
     state.lost = quint64(counts_.lost);

@@ -76,7 +76,6 @@ private:
     void updateMemoryHealth();
     void updateJournalHealth();
     std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
-    void setGrowth(vectorlib::ScanTracker &tracker) const;
 
     vectorlib::ScanTrackerSettings trackerSettings() const;
     void saveMap(const QString &format, const Call &call, const Reply &reply);
@@ -113,14 +112,14 @@ private:
     std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
     bool replayed_ = false;                 ///< the last scan
     double replayStamp_ = -1;               ///< of the last scan that was replayed
-    /// A map that was loaded goes on once its place is found in the whole map, or told, and scans agree with
-    /// it. A replay that was sought to a place that its map does not have (Nowhere) gets a new map.
-    enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Found, Nowhere, Told };
-    void seek(vectorlib::ScanTracker &tracker, Seeks what);
-    int agreed_ = 0;             ///< scans in a row with the place; the worker's
+    /// A replay that was sought to a place that its map does not have gets a new map.
+    enum class NewMap { No, WhenNowhere, Due };
+    NewMap newMap_ = NewMap::No; ///< the worker's
+    void seek(vectorlib::ScanTracker &tracker, NewMap newMap = NewMap::No);
     bool isInterrupted_ = false; ///< scans were not remembered since the last that was; the worker's
-    std::atomic<Seeks> seeks_{Seeks::Nothing}; ///< set by the worker
-    bool grows_ = true;                        ///< the map, while no place is sought; the worker's
+    std::atomic<vectorlib::ScanTracker::PlaceState> place_{
+        vectorlib::ScanTracker::PlaceState::Known}; ///< set by the worker
+    bool grows_ = true;                             ///< the map, while the place is known; the worker's
     Client source_;
     int subscription_ = 0;
     OdometrySource odometry_;

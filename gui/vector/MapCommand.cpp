@@ -145,6 +145,7 @@ private:
     void apply(Tracker &tracker) const {
         vectorlib::ScanTrackerSettings settings;
         settings.useOdometry = options.odometry == "use";
+        settings.seekWhereContradicted = false; // the parts of a log are joined later
         tracker.apply(settings);
         setUp(tracker);
     }

@@ -59,7 +59,7 @@ private Q_SLOTS:
         QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0);
         const double end = distance(poseOf(poses.rbegin()->second), way.back());
         qInfo("end %.3f m off", end);
-        QVERIFY2(end > 0.08, qPrintable(QString::number(end)));
+        QVERIFY2(end > 0.05, qPrintable(QString::number(end)));
         for (const auto &[number, pose] : poses)
             QVERIFY(!pose["corrected"].toBool());
     }

@@ -59,6 +59,7 @@ public:
             way.goTo(corner);
         return way.poses();
     }
+    const std::vector<vectorlib::LineSegment2D<double>> &walls() const { return walls_; }
     /// As ScanWorld sees: the rays from right to left; what is out of reach has no point.
     ScanWorld::Points scan(const vectorlib::Transformation2D &pose, const ScanWorld::Scanner &scanner) {
         std::normal_distribution<double> noise;

@@ -136,6 +136,9 @@ private Q_SLOTS:
         const ScanWorld::Scanner scanner{361, 1.5 * pi, 0.02, 20};
         Mapping mapping;
         mapping.live = live;
+        ScanTrackerSettings settings;
+        settings.seekWhereContradicted = live; // else the map bends until the end
+        mapping.tracker.apply(settings);
         mapping.tracker.place(way[0]);
         Transformation2D wheels(way[0]);
         std::vector<double> medians;

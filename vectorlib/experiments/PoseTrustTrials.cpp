@@ -64,6 +64,7 @@ void follow(const CarmenLog &log, std::size_t every, bool useOdometry, const Pos
     const auto judge = std::make_unique<Judge>();
     vectorlib::ScanTrackerSettings settings;
     settings.useOdometry = useOdometry;
+    settings.seekWhereContradicted = false; // each pose is judged
     judge->tracker.apply(settings);
     vectorlib::CarmenDrive drive(log, corrected);
     for (std::size_t i = 0; i < log.scans.size(); ++i) {

@@ -48,7 +48,20 @@ VECTORLIB_BODY const ScanPairMatch &ScanPairMatcher::operator()(PointSpan<float>
     match_.accepted = isAcceptable() && !(settings.searchAnywhere && isOutvoted());
     if (settings.searchAnywhere && !match_.accepted)
         takeBestOfAnywhere();
+    if (settings.leavesOpen && !settings.searchAnywhere && !match_.linesSuffice)
+        leaveOpen();
     return match_;
+}
+
+VECTORLIB_BODY void ScanPairMatcher::leaveOpen() {
+    const double share = match_.agreement.weakestShare();
+    const double kept =
+        std::clamp((share - settings.unknownShare) / (settings.knownShare - settings.unknownShare), 0.0, 1.0);
+    const Vector2D<double> along = match_.agreement.weakest();
+    const Vector2D<double> off = match_.pose.translation() - expected_.pose.translation();
+    match_.pose =
+        Transformation2D(match_.pose.x() - (1 - kept) * along.dot(off) * along.x,
+                         match_.pose.y() - (1 - kept) * along.dot(off) * along.y, match_.pose.alpha());
 }
 
 VECTORLIB_BODY bool ScanPairMatcher::isFoundAnywhere(PointSpan<float> fixed, PointSpan<float> moving) {

@@ -47,7 +47,10 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
     scanner.closed = scan.closed;
     builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
+    const Pose2D before = builder.report().pose;
     straight_ = locate(scan, begin, end);
+    const Pose2D way = before.inverse() * builder.expected().pose();
+    isNear_ = isWellExpected_ && std::hypot(way.x, way.y) < near_m && std::abs(way.theta) < near_rad;
     judge(scan);
     const ScanReport &report = builder.conclude(scan.points, straight_);
     points_ = scan.points;
@@ -56,9 +59,20 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
         odometry_.update(report.pose, *scan.odometry, scan.stamp);
     if (scan.odometry && report.outcome == ScanReport::Outcome::Matched)
         check(*scan.odometry, scan.stamp);
+    followOpen(scan);
     lastStamp_ = scan.stamp;
     count(report);
+    settle();
     return report;
+}
+
+VECTORLIB_BODY void ScanTracker::followOpen(const TimedScan &scan) {
+    if (wasPlaced_)
+        open_.place();
+    const bool isOpen = builder.report().outcome != ScanReport::Outcome::Matched ||
+                        builder.match().reliability < openReliability;
+    open_.follow(Transformation2D(builder.report().pose), isOpen, byOdometry_, scan.odometry, scan.stamp,
+                 Transformation2D(settings_.sensorOnRobot));
 }
 
 VECTORLIB_BODY void ScanTracker::check(const OdometryTrack &track, double stamp) {
@@ -69,12 +83,47 @@ VECTORLIB_BODY void ScanTracker::check(const OdometryTrack &track, double stamp)
 }
 
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan) {
+    const bool isMatched = builder.report().outcome == ScanReport::Outcome::Matched;
     if (builder.settings.grow)
-        against_ = knownAgainst_ = weighed_ = 0;
-    else if (builder.report().outcome == ScanReport::Outcome::Matched)
+        judgeBreak(scan);
+    else if (isMatched)
         weigh(scan);
-    if (isContradicted() || isSought_)
+    if (isContradicted() || place_ == PlaceState::Sought)
         builder.refuse();
+}
+
+// The sensor may have been carried.
+VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
+    against_ = knownAgainst_ = weighed_ = 0;
+    const ScanReport::Outcome outcome = builder.report().outcome;
+    const bool isLast = lostInARow_ + 1 >= builder.settings.lostBeforeRestart;
+    const bool isFollowed =
+        builder.isFollowed() &&
+        (!builder.isExpectedByScan() || builder.pairMatch().agreement.explained() >= fewExplained);
+    if (wasPlaced_)
+        isInsisted_ = true;
+    if (outcome == ScanReport::Outcome::Matched && !wasPlaced_)
+        isInsisted_ = false;
+    if (isInsisted_ || builder.map.isEmpty())
+        isSuspect_ = false;
+    else if (isNear_ && (!isFollowed || outcome == ScanReport::Outcome::Lost))
+        isSuspect_ = true;
+    if (!settings_.seekWhereContradicted || !isSuspect_ || outcome == ScanReport::Outcome::Skipped)
+        return;
+    search_.fit.shortest = shortestWall_m; // people were drawn, too
+    const PlaceFit fit = search_.judge(builder.map.slots(), builder.edges(), scan.points,
+                                       Transformation2D(builder.report().pose));
+    search_.fit.shortest = 0;
+    const bool isUnknown = !byOdometry_ && fit.explainedShare() < fewKnown;
+    if (fit.hiddenShare() <= settings_.mostHidden && !isUnknown) {
+        isSuspect_ = outcome == ScanReport::Outcome::Lost;
+        return;
+    }
+    builder.refuse();
+    if (!isLast)
+        return;
+    seek();
+    isBent_ = true;
 }
 
 VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan) {
@@ -90,9 +139,51 @@ VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan) {
     weighedAt_ = pose;
 }
 
+VECTORLIB_BODY void ScanTracker::setPlace(PlaceState place) {
+    place_ = place;
+    builder.settings.grow = grows_ && place == PlaceState::Known;
+}
+
+VECTORLIB_BODY void ScanTracker::seek() {
+    setPlace(PlaceState::Sought);
+    isBent_ = false;
+    nextSearch_ = {};
+}
+
+VECTORLIB_BODY void ScanTracker::settle() {
+    const bool isMatched = builder.report().outcome == ScanReport::Outcome::Matched;
+    agreed_ = isMatched && agrees() ? agreed_ + 1 : 0;
+    if (place_ == PlaceState::Told && agreed_ >= enoughToAgree)
+        setPlace(PlaceState::Known);
+    if (place_ == PlaceState::Found && agreed_ > 0)
+        isBent_ ? setPlace(PlaceState::Known) : confirm();
+}
+
+VECTORLIB_BODY void ScanTracker::confirm() {
+    const Transformation2D pose(builder.report().pose), way = foundAt_.inverse() * pose;
+    if (way.translation().norm() < confirmed_m && std::abs(way.alpha()) < confirmed_rad)
+        return;
+    foundAt_ = pose;
+    const Relocalized &again = search_(builder.map.slots(), builder.edges(), points_);
+    if (!again.isFound())
+        return;
+    const Transformation2D off = pose.inverse() * Transformation2D(again.places.front().pose);
+    if (off.translation().norm() < same_m && std::abs(off.alpha()) < same_rad)
+        setPlace(PlaceState::Known);
+    else
+        seek();
+}
+
+VECTORLIB_BODY void ScanTracker::claim(const Pose2D &pose) {
+    place(pose);
+    if (grows_ && !builder.map.isEmpty())
+        setPlace(PlaceState::Told);
+}
+
 VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     isPlaced_ = true;
-    isSought_ = false;
+    setPlace(PlaceState::Known);
+    agreed_ = 0;
     weighed_ = lostInARow_ = 0;
     weighedAt_ = pose;
     against_ = knownAgainst_ = against;
@@ -106,9 +197,16 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
 VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
     if (counts_.scans == 0)
         return {};
+    const Transformation2D expected(builder.report().pose);
     const Relocalized &result = search_(builder.map.slots(), builder.edges(), points_);
     if (apply && result.isFound())
         place(result.places.front().pose, result.places.front().against);
+    if (apply && result.isFound() && grows_) {
+        foundAt_ = Transformation2D(result.places.front().pose);
+        const Transformation2D off = expected.inverse() * foundAt_;
+        isBent_ = isBent_ && off.translation().norm() < bend_m && std::abs(off.alpha()) < bend_rad;
+        setPlace(PlaceState::Found);
+    }
     return result;
 }
 
@@ -127,6 +225,7 @@ VECTORLIB_BODY void ScanTracker::correct(VectorMap &map, const Transformation2D 
     motion_.move(moved);
     odometry_.move(moved);
     check_.restart();
+    open_.place();
 }
 
 VECTORLIB_BODY void ScanTracker::clear() {
@@ -151,7 +250,11 @@ VECTORLIB_BODY std::optional<PoseTrust::Features> ScanTracker::trustFeatures() c
     const Match &m = builder.match();
     if (builder.report().outcome != ScanReport::Outcome::Matched || !(m.visibleLength > 0))
         return std::nullopt;
-    return PoseTrust::features(m, builder.expected(), builder.track.settings.finalDistance);
+    PoseTrust::Features f = PoseTrust::features(m, builder.expected(), builder.track.settings.finalDistance);
+    const double covered = std::clamp((f[5] - fewMatched) / (1 - fewMatched), 0.0, 1.0);
+    if (byOdometry_ && f[1] < openReliability)
+        f[1] = std::max(f[1], coveredReliability * covered * open_.belief());
+    return f;
 }
 
 VECTORLIB_BODY bool ScanTracker::locate(TimedScan &scan, double begin, double end) {
@@ -233,12 +336,11 @@ VECTORLIB_BODY void ScanTracker::tellHowSure(const Guess &guess) {
     track = guess.well ? settings_.tracking : poorly(settings_.tracking);
     ScanPairSettings &pair = builder.matchPair.settings;
     pair = guess.well ? ScanPairSettings() : ScanPairSettings::forPoorExpectation();
+    pair.leavesOpen = guess.byOdometry;
     if (!guess.deviations)
         return;
     track.expectedDeviationXY = guess.deviations->xy;
     track.expectedDeviationAlpha = guess.deviations->alpha;
-    pair.deviationXY = std::min(pair.deviationXY, guess.deviations->xy);
-    pair.deviationAlpha = std::min(pair.deviationAlpha, guess.deviations->alpha);
 }
 
 VECTORLIB_BODY TrackingSettings ScanTracker::poorly(const TrackingSettings &well) {
@@ -253,7 +355,7 @@ VECTORLIB_BODY TrackingSettings ScanTracker::poorly(const TrackingSettings &well
 }
 
 VECTORLIB_BODY bool ScanTracker::isSearchDue() const {
-    if (isSought_)
+    if (place_ == PlaceState::Sought)
         return Clock::now() >= nextSearch_;
     // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
     // itself, at a place that may be wrong, and the search would find that.

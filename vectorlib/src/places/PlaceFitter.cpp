@@ -128,7 +128,7 @@ VECTORLIB_BODY double PlaceFitter::seenBehind(const WallTiles &tiles, Vector sen
             if (a * b >= 0 || std::min(std::abs(a), std::abs(b)) < clearly)
                 return;
             const double at = a / (a - b), along = wall.along(sensor + way * at);
-            if (along > beyondEnd && along < wall.length() - beyondEnd)
+            if (wall.length() >= shortest && along > beyondEnd && along < wall.length() - beyondEnd)
                 behind = std::max(behind, 1 - at);
         });
     return behind;

@@ -64,15 +64,22 @@ VECTORLIB_BODY void ScanIndex::findDirections() {
 }
 
 VECTORLIB_BODY void ScanIndex::findNormals() {
-    constexpr int reach = 4;
+    constexpr int reach = 4, farthest = 20;
     constexpr float gap = 0.15f, gapByRange = 0.06f; // metres, and metres for each metre of range
+    constexpr float least =
+        0.12f * 0.12f; // squared metres: of nearer points the noise tells more than the wall
     normals_.resize(static_cast<std::size_t>(size_));
     for (int i = 0; i < size_; ++i) {
         const float limit = std::max(gap * gap, gapByRange * gapByRange * point(i).squaredNorm());
+        const auto isNeighbour = [&](int end, int next) {
+            const int steps = std::abs(next - i);
+            return next >= 0 && next < size_ && (point(next) - point(end)).squaredNorm() < limit &&
+                   (steps <= reach || (steps <= farthest && (point(end) - point(i)).squaredNorm() < least));
+        };
         int from = i, to = i;
-        while (from > 0 && i - from < reach && (point(from - 1) - point(from)).squaredNorm() < limit)
+        while (isNeighbour(from, from - 1))
             --from;
-        while (to + 1 < size_ && to - i < reach && (point(to + 1) - point(to)).squaredNorm() < limit)
+        while (isNeighbour(to, to + 1))
             ++to;
         normals_[static_cast<std::size_t>(i)] = (point(to) - point(from)).normalized().left();
     }

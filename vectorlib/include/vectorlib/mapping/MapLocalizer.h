@@ -53,7 +53,7 @@ public:
     void apply(ScanTrackerSettings of) {
         of.relocalizeSeconds = 1e6;
         tracker.apply(of);
-        tracker.builder.settings.grow = false;
+        tracker.grow(false);
     }
 
     /// The next scan of the drive.

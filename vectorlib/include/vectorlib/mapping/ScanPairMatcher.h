@@ -35,6 +35,10 @@ struct ScanPairSettings {
     double surprising = 4;
     /// Below this reliability of the paired lines the points decide alone; thesis appendices.
     double lineReliability = 0.1;
+    /// Shares of the walls that face a direction: with less the expected motion stands there, with more the
+    /// scans tell it alone.
+    double unknownShare = 0.03, knownShare = 0.12;
+    bool leavesOpen = true;      ///< false: the scans tell it all, as nothing else does
     bool searchAnywhere = false; ///< at first, whatever is expected; see GlobalPairMatcher
 
     /// For an expected motion that is hardly more than a guess: without odometry.
@@ -69,7 +73,12 @@ public:
                                     PointSpan<float> moving, const std::vector<EdgeRaw2D> &movingEdges,
                                     const Transformation2D &expected);
 
+    /// The last one.
+    const ScanPairMatch &match() const { return match_; }
+
 private:
+    // In the direction of which the walls tell too little the expected motion stands.
+    void leaveOpen();
     bool isFoundAnywhere(PointSpan<float> fixed, PointSpan<float> moving);
     // Found near a poor expectation, while more speaks for a place elsewhere.
     bool isOutvoted() const;

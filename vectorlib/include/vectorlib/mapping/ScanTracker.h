@@ -13,6 +13,7 @@
 #include "vectorlib/mapping/VectorMap.h"
 #include "vectorlib/motion/MotionModel.h"
 #include "vectorlib/motion/Odometry.h"
+#include "vectorlib/motion/OpenDirection.h"
 #include "vectorlib/places/PlaceSearch.h"
 #include "vectorlib/places/Relocalized.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
@@ -58,6 +59,11 @@ struct ScanTrackerSettings {
     double moment = 0.5;
     /// How much of the last scans may speak against a pose in a finished map; see ScanTracker::against.
     double mostAgainst = 0.35;
+    /// The share of a scan's points that may lie behind walls of a growing map, where the scan before does
+    /// not show what this one does.
+    double mostHidden = 0.15;
+    /// Where more do, the place is sought; else a growing map goes on there after lost scans.
+    bool seekWhereContradicted = true;
     std::int64_t relocalizeAfter = 10; ///< lost scans in a row; 0: never by itself
     double relocalizeSeconds = 3;      ///< longest search
 };
@@ -96,13 +102,26 @@ public:
     /// moment, the middle of its time, and its stamp this moment, to which the pose refers.
     const ScanReport &process(TimedScan &scan);
 
-    /// Puts the sensor somewhere, standing still. `against`: what is known to speak against the place.
-    void place(const Pose2D &pose, double against = 0);
-    /// The place in the map is not known: scans count as lost until it is found or told.
-    void seek() {
-        isSought_ = true;
-        nextSearch_ = {};
+    /// Whether the map grows while the place in it is known.
+    void grow(bool grows) {
+        grows_ = grows;
+        setPlace(place_);
     }
+    /// Puts the sensor somewhere, standing still: the place is known. `against`: what is known to speak
+    /// against it.
+    void place(const Pose2D &pose, double against = 0);
+    /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree.
+    void claim(const Pose2D &pose);
+    /// The place in the map is not known: scans count as lost until it is found or told.
+    void seek();
+    /// What is known of the place in the map. Nothing is mapped but where it is Known.
+    enum class PlaceState {
+        Known,
+        Found, ///< by a search: a second one, some way on, makes it known; nearby, the next scan that agrees
+        Told,  ///< by somebody
+        Sought
+    };
+    PlaceState placeState() const { return place_; }
     /// Whether it was put somewhere since the last scan.
     bool isPlaced() const { return isPlaced_; }
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
@@ -128,7 +147,9 @@ public:
     /// or skipped, or that the map had nothing to compare with.
     double trust() const {
         const auto features = trustFeatures();
-        return features ? poseTrust(*features) * belief() : 0;
+        return features
+                   ? poseTrust(*features) * belief() * (grows_ && place_ != PlaceState::Known ? claimed : 1)
+                   : 0;
     }
     /// What speaks against the pose in a finished map: of the points of the last scans the share that is seen
     /// through walls, and half of the share that lies on none. Less what was known when the place was found,
@@ -153,7 +174,18 @@ private:
     using Clock = std::chrono::steady_clock;
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
-    static constexpr int mostTries = 3;
+    static constexpr int mostTries = 3, enoughToAgree = 5;
+    static constexpr double claimed = 0.5; // trust of a place that is not known yet, for that of one that is
+    // Below that reliability the walls leave a direction open; that of a pose that the odometry tells there.
+    static constexpr double openReliability = 0.1, coveredReliability = 0.7;
+    static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
+    // Two scans so close together must show about the same: less than this share of the points is suspicious.
+    static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
+    static constexpr double shortestWall_m = 0.5; // that speaks against a pose: people are drawn, too
+    static constexpr double fewKnown = 0.6;       // of the points, where no odometry tells the pose
+    // Between the searches that make a place known, and how well they must agree.
+    static constexpr double confirmed_m = 1, confirmed_rad = 0.6, same_m = 0.5, same_rad = 0.17;
+    static constexpr double bend_m = 2, bend_rad = 0.5; // so far a growing map may bend
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
     static constexpr double against_s = 0.5;  // over which what speaks against a pose is smoothed
     static constexpr double leastShare = 0.2; // by which the mean follows a scan
@@ -190,7 +222,18 @@ private:
     void weigh(const TimedScan &scan);
     // A scan that too much speaks against, or whose place is sought, is lost.
     void judge(const TimedScan &scan);
-    double belief() const { return std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0); }
+    // In a growing map: a scan that the one before does not show, where the two were taken close together.
+    void judgeBreak(const TimedScan &scan);
+    void followOpen(const TimedScan &scan);
+    void setPlace(PlaceState place);
+    // A place that was found or told becomes known when scans agree with it.
+    void settle();
+    // What is found in a map that is not complete may lie outside of it: a second search, some way on,
+    // decides.
+    void confirm();
+    double belief() const {
+        return std::min(open_.belief(), std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0));
+    }
     // The two guesses differ by more than the speed of a robot changes between two scans.
     static bool leaps(const Guess &a, const Guess &b, double seconds);
     void tellHowSure(const Guess &guess);
@@ -221,9 +264,17 @@ private:
     bool byOdometry_ = false, straight_ = true, isWellExpected_ = false; // the last scan
     bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false;     // since the last scan, and before it
     int lostInARow_ = 0;
-    bool isSought_ = false;
-    Pose2D weighedAt_;                      // what was known is forgotten from there on
-    int weighed_ = 0;                       // scans since the sensor was put somewhere
+    PlaceState place_ = PlaceState::Known;
+    bool grows_ = true;
+    bool isNear_ = true;     // the last scan was expected near the one before, which must show about the same
+    bool isSuspect_ = false; // a scan since the last one that agreed was not followed
+    bool isInsisted_ = false; // the sensor was put there, and nothing was matched since
+    OpenDirection open_;
+    bool isBent_ = false;      // what contradicts the place may be the growing map itself: it is found nearby
+    int agreed_ = 0;           // scans in a row with the place
+    Transformation2D foundAt_; // where it was searched last
+    Pose2D weighedAt_;         // what was known is forgotten from there on
+    int weighed_ = 0;          // scans since the sensor was put somewhere
     double against_ = 0, knownAgainst_ = 0; // shares of the last scans, and of them what the search knew of
     Clock::time_point nextSearch_;
 };

@@ -59,6 +59,7 @@ public:
     double sameFacing = 0.8; ///< least cosine between the directions of a point's wall and the map's
     double beyondEnd = 0.1;  ///< that a point may lie beyond the end of its wall; metres
     double scale = 0.5;      ///< a residual of this share of the gate weighs a quarter
+    double shortest = 0;     ///< of the walls that hide; metres
     double clearly = 0.2;    ///< a wall hides a point when it and the sensor are farther from it; metres
 
     /// Gauss-Newton steps on the points' distances from their walls, while the gate narrows; every

@@ -102,6 +102,17 @@ public:
         const double sum = xx_ + yy_;
         return sum > 0 ? 2 * std::sqrt(std::max(0.0, xx_ * yy_ - xy_ * xy_)) / sum : 0;
     }
+    /// The direction in which the walls say least, of unit length, in the frame of the last scan that was
+    /// judged against.
+    Vector2D<double> weakest() const {
+        const double angle = 0.5 * std::atan2(2 * xy_, xx_ - yy_) + pi / 2;
+        return {std::cos(angle), std::sin(angle)};
+    }
+    /// The share of the walls that face that way, in [0, 0.5].
+    double weakestShare() const {
+        const double sum = xx_ + yy_, apart = std::hypot(xx_ - yy_, 2 * xy_);
+        return sum > 0 ? 0.5 * (1 - apart / sum) : 0;
+    }
 
 private:
     double points_ = 0, explained_ = 0, contradicted_ = 0;

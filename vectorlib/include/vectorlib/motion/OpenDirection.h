@@ -1,0 +1,50 @@
+#pragma once
+
+#include "vectorlib/Body.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/motion/Odometry.h"
+
+#include <cmath>
+#include <optional>
+
+namespace vectorlib {
+
+/// How well a pose is known along a direction that the walls leave open, as along a corridor: there it goes
+/// by the odometry, or by the motion so far. Learns from the drive by how much the odometry errs.
+class OpenDirection {
+public:
+    /// A scan was taken at a pose (map frame). `isOpen`: the walls left a direction open, or showed nothing.
+    /// The odometry is that of the robot during the scan, where there was any; `mount` the sensor's pose on
+    /// it.
+    void follow(const Transformation2D &pose, bool isOpen, bool isByOdometry,
+                const std::optional<OdometryTrack> &odometry, double stamp, const Transformation2D &mount);
+    /// The sensor was put somewhere, or the map was made anew: nothing is open there.
+    void place() {
+        deviation_ = 0;
+        last_.reset();
+        from_.reset();
+    }
+    /// How probable it is that the pose is right within 0.3 m.
+    double belief() const { return deviation_ > 0 ? std::erf(right_m / (std::sqrt(2.0) * deviation_)) : 1; }
+
+private:
+    static constexpr double right_m = 0.3;
+    /// The share of the way by which the motion so far errs, the odometry at the least, and at first.
+    static constexpr double unguided = 0.6, leastSlip = 0.02, firstSlip = 0.03;
+    static constexpr double piece_m = 1,
+                            kept = 0.7; // of the way that is compared; of what was learned before
+
+    struct From {
+        std::uint64_t epoch;
+        Transformation2D sensor, pose; // by the odometry, and by the scans
+    };
+    void learn(const Transformation2D &pose, std::uint64_t epoch, const Transformation2D &sensor);
+
+    std::optional<Transformation2D> last_; // pose
+    std::optional<From> from_;
+    double deviation_ = 0, slip_ = firstSlip;
+};
+
+} // namespace vectorlib
+
+#include VECTORLIB_BODIES("vectorlib/src/motion/OpenDirection.cpp")
