@@ -340,7 +340,7 @@ class TestDoubt : public QObject {
 private Q_SLOTS:
     // About one drive in sixty fails, and one right pose in twenty is doubted: so much is not reached yet.
     void aWrongPoseIsDoubted() {
-        constexpr int mostFailed = 33, mostDoubted = 12;
+        constexpr int mostFailed = 33, mostDoubted = 12, few = 2;
         const int asked = qEnvironmentVariableIntValue("HERMES_CASES"), cases = asked > 0 ? asked : 50;
         const unsigned first = asked > 0 ? newSeed() : 1;
         std::vector<Figures> kinds(troubles.size());
@@ -359,8 +359,7 @@ private Q_SLOTS:
             all.add(kinds[i]);
         }
         tell("all", all);
-        QVERIFY2(all.failed * mostFailed <= std::max(cases, mostFailed),
-                 qPrintable(QString::number(all.failed)));
+        QVERIFY2(all.failed <= std::max(few, cases / mostFailed), qPrintable(QString::number(all.failed)));
         QVERIFY2(all.doubted * mostDoubted <= all.right, qPrintable(QString::number(all.doubted)));
     }
 

@@ -47,10 +47,7 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
     scanner.closed = scan.closed;
     builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
-    const Pose2D before = builder.report().pose;
     straight_ = locate(scan, begin, end);
-    const Pose2D way = before.inverse() * builder.expected().pose();
-    isNear_ = isWellExpected_ && std::hypot(way.x, way.y) < near_m && std::abs(way.theta) < near_rad;
     judge(scan);
     const ScanReport &report = builder.conclude(scan.points, straight_);
     points_ = scan.points;
@@ -97,25 +94,33 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     against_ = knownAgainst_ = weighed_ = 0;
     const ScanReport::Outcome outcome = builder.report().outcome;
     const bool isLast = lostInARow_ + 1 >= builder.settings.lostBeforeRestart;
+    const Transformation2D off = guessed_.inverse() * Transformation2D(builder.report().pose);
     const bool isFollowed =
-        builder.isFollowed() &&
+        builder.isFollowed() && !(byOdometry_ && isFar(off, surprising_m, surprising_rad)) &&
         (!builder.isExpectedByScan() || builder.pairMatch().agreement.explained() >= fewExplained);
+    const bool isNear = isWellExpected_ && !isFar(guessedWay_, near_m, near_rad);
     if (wasPlaced_)
         isInsisted_ = true;
     if (outcome == ScanReport::Outcome::Matched && !wasPlaced_)
         isInsisted_ = false;
     if (isInsisted_ || builder.map.isEmpty())
         isSuspect_ = false;
-    else if (isNear_ && (!isFollowed || outcome == ScanReport::Outcome::Lost))
+    else if (!isSuspect_ && isNear && (!isFollowed || outcome == ScanReport::Outcome::Lost)) {
         isSuspect_ = true;
-    if (!settings_.seekWhereContradicted || !isSuspect_ || outcome == ScanReport::Outcome::Skipped)
+        knownHidden_ = hidden_;
+    }
+    const bool isJudged = settings_.seekWhereContradicted && outcome != ScanReport::Outcome::Skipped;
+    if (!isJudged)
         return;
     search_.fit.shortest = shortestWall_m; // people were drawn, too
     const PlaceFit fit = search_.judge(builder.map.slots(), builder.edges(), scan.points,
                                        Transformation2D(builder.report().pose));
     search_.fit.shortest = 0;
+    hidden_ = fit.hiddenShare();
     const bool isUnknown = !byOdometry_ && fit.explainedShare() < fewKnown;
-    if (fit.hiddenShare() <= settings_.mostHidden && !isUnknown) {
+    if (!isSuspect_)
+        return;
+    if (hidden_ - knownHidden_ <= settings_.mostHidden && !isUnknown) {
         isSuspect_ = outcome == ScanReport::Outcome::Lost;
         return;
     }
@@ -156,7 +161,7 @@ VECTORLIB_BODY void ScanTracker::settle() {
     if (place_ == PlaceState::Told && agreed_ >= enoughToAgree)
         setPlace(PlaceState::Known);
     if (place_ == PlaceState::Found && agreed_ > 0)
-        isBent_ ? setPlace(PlaceState::Known) : confirm();
+        isBent_ || agreed_ >= enoughToConfirm ? setPlace(PlaceState::Known) : confirm();
 }
 
 VECTORLIB_BODY void ScanTracker::confirm() {
@@ -204,7 +209,7 @@ VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
     if (apply && result.isFound() && grows_) {
         foundAt_ = Transformation2D(result.places.front().pose);
         const Transformation2D off = expected.inverse() * foundAt_;
-        isBent_ = isBent_ && off.translation().norm() < bend_m && std::abs(off.alpha()) < bend_rad;
+        isBent_ = isBent_ && !isFar(off, bend_m, bend_rad);
         setPlace(PlaceState::Found);
     }
     return result;
@@ -269,6 +274,8 @@ VECTORLIB_BODY bool ScanTracker::locate(TimedScan &scan, double begin, double en
         if (const auto expected = odometry_.expect(*scan.odometry, scan.stamp))
             guess = {expected->pose, guess.twist, true, true, expected->deviations};
     }
+    guessed_ = Transformation2D(guess.pose);
+    guessedWay_ = Transformation2D(builder.report().pose).inverse() * guessed_;
     byOdometry_ = false;
     isWellExpected_ = lastStamp_ && scan.stamp > *lastStamp_ && scan.stamp - *lastStamp_ <= followed_s;
     Found found = find(scan, guess);

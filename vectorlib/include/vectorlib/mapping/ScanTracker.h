@@ -59,8 +59,8 @@ struct ScanTrackerSettings {
     double moment = 0.5;
     /// How much of the last scans may speak against a pose in a finished map; see ScanTracker::against.
     double mostAgainst = 0.35;
-    /// The share of a scan's points that may lie behind walls of a growing map, where the scan before does
-    /// not show what this one does.
+    /// By how much more of a scan may lie behind walls of a growing map than before the drive broke, as a
+    /// share of its points.
     double mostHidden = 0.15;
     /// Where more do, the place is sought; else a growing map goes on there after lost scans.
     bool seekWhereContradicted = true;
@@ -174,13 +174,14 @@ private:
     using Clock = std::chrono::steady_clock;
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
-    static constexpr int mostTries = 3, enoughToAgree = 5;
+    static constexpr int mostTries = 3, enoughToAgree = 5, enoughToConfirm = 20;
     static constexpr double claimed = 0.5; // trust of a place that is not known yet, for that of one that is
     // Below that reliability the walls leave a direction open; that of a pose that the odometry tells there.
     static constexpr double openReliability = 0.1, coveredReliability = 0.7;
     static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
     // Two scans so close together must show about the same: less than this share of the points is suspicious.
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
+    static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
     static constexpr double shortestWall_m = 0.5; // that speaks against a pose: people are drawn, too
     static constexpr double fewKnown = 0.6;       // of the points, where no odometry tells the pose
     // Between the searches that make a place known, and how well they must agree.
@@ -234,6 +235,9 @@ private:
     double belief() const {
         return std::min(open_.belief(), std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0));
     }
+    static bool isFar(const Transformation2D &way, double metres, double radians) {
+        return way.translation().norm() > metres || std::abs(way.alpha()) > radians;
+    }
     // The two guesses differ by more than the speed of a robot changes between two scans.
     static bool leaps(const Guess &a, const Guess &b, double seconds);
     void tellHowSure(const Guess &guess);
@@ -266,9 +270,10 @@ private:
     int lostInARow_ = 0;
     PlaceState place_ = PlaceState::Known;
     bool grows_ = true;
-    bool isNear_ = true;     // the last scan was expected near the one before, which must show about the same
-    bool isSuspect_ = false; // a scan since the last one that agreed was not followed
-    bool isInsisted_ = false; // the sensor was put there, and nothing was matched since
+    Transformation2D guessed_, guessedWay_; // the last scan, and from the one before
+    double hidden_ = 0, knownHidden_ = 0;   // share of the last scan behind walls, and before the drive broke
+    bool isSuspect_ = false;                // a scan since the last one that agreed was not followed
+    bool isInsisted_ = false;               // the sensor was put there, and nothing was matched since
     OpenDirection open_;
     bool isBent_ = false;      // what contradicts the place may be the growing map itself: it is found nearby
     int agreed_ = 0;           // scans in a row with the place
