@@ -109,8 +109,8 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
         isSuspect_ = true;
         knownHidden_ = hidden_;
     }
-    const bool isJudged = settings_.seekWhereContradicted && outcome != ScanReport::Outcome::Skipped;
-    if (!isJudged)
+    const bool isDue = isSuspect_ || counts_.scans % eachNth == 0; // else it would cost half a match more
+    if (!settings_.seekWhereContradicted || outcome == ScanReport::Outcome::Skipped || !isDue)
         return;
     search_.fit.shortest = shortestWall_m; // people were drawn, too
     const PlaceFit fit = search_.judge(builder.map.slots(), builder.edges(), scan.points,

@@ -181,6 +181,7 @@ private:
     static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
     // Two scans so close together must show about the same: less than this share of the points is suspicious.
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
+    static constexpr std::uint64_t eachNth = 5;                        // scan of a growing map is judged
     static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
     static constexpr double shortestWall_m = 0.5; // that speaks against a pose: people are drawn, too
     static constexpr double fewKnown = 0.6;       // of the points, where no odometry tells the pose
@@ -271,9 +272,9 @@ private:
     PlaceState place_ = PlaceState::Known;
     bool grows_ = true;
     Transformation2D guessed_, guessedWay_; // the last scan, and from the one before
-    double hidden_ = 0, knownHidden_ = 0;   // share of the last scan behind walls, and before the drive broke
-    bool isSuspect_ = false;                // a scan since the last one that agreed was not followed
-    bool isInsisted_ = false;               // the sensor was put there, and nothing was matched since
+    double hidden_ = 0, knownHidden_ = 0; // share of a scan behind walls, the last one, and before the break
+    bool isSuspect_ = false;              // a scan since the last one that agreed was not followed
+    bool isInsisted_ = false;             // the sensor was put there, and nothing was matched since
     OpenDirection open_;
     bool isBent_ = false;      // what contradicts the place may be the growing map itself: it is found nearby
     int agreed_ = 0;           // scans in a row with the place
