@@ -14,8 +14,6 @@ using vectorlib::ScanTracker;
 
 namespace {
 
-constexpr double longestSilence_s = 3;
-
 QString toText(ScanReport::Outcome outcome) {
     static constexpr const char *texts[] = {"matched", "lost", "skipped"};
     return QString(texts[int(outcome)]); // in the order of the enumeration
@@ -78,15 +76,6 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
         result.segments.push_back({s.begin().x, s.begin().y, s.end().x, s.end().y});
     }
     return result;
-}
-
-// What of a source's messages is no message at all, as one with a number that is not finite.
-QString unreadable(const Client::Rejected &rejected) {
-    if (rejected.unreadable == 0)
-        return {};
-    return QString("; %1 messages could not be read, the last: %2")
-        .arg(rejected.unreadable)
-        .arg(rejected.last);
 }
 
 } // namespace
@@ -330,68 +319,6 @@ void ScanMatcher::showGraph(GraphMessage more) {
         return publish("graph", graph_.grow(std::move(more)));
     graph_.replace(std::move(more));
     publishSnapshot("graph");
-}
-
-void ScanMatcher::updateHealth() {
-    const QString address = settings().text("source.address");
-    if (!active_)
-        health().set("source", HealthLevel::Ok, "not matching");
-    else if (source_.isBeginning())
-        health().set("source", HealthLevel::Ok, "connecting to " + address);
-    else if (!source_.isConnected())
-        health().set("source", HealthLevel::Failed,
-                     QString("no connection to %1: %2")
-                         .arg(address, sourceFault_.isEmpty() ? source_.problem() : sourceFault_));
-    else if (!sourceFault_.isEmpty())
-        health().set("source", HealthLevel::Failed,
-                     QString("no scans from %1: %2").arg(address, sourceFault_));
-    else if (const double silent_s = monotonicNow() - lastScan_; silent_s > longestSilence_s)
-        health().set("source", HealthLevel::Warn,
-                     QString("no scan from %1 for %2 s").arg(address).arg(silent_s, 0, 'f', 0) +
-                         unreadable(source_.rejected()));
-    else if (badScans_ > 0)
-        health().set("source", pastBadScans_.level(double(badScans_)),
-                     QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));
-    else
-        health().set("source", HealthLevel::Ok, "connected to " + address);
-    health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
-                 !replayed_ ? QString("live scans are matched")
-                 : keepsLiveMap_
-                     ? QString("a replay is matched, in a map of its own; the live map is kept until "
-                               "live scans come")
-                     : QString("a replay is matched"));
-    odometry_.report(health());
-    const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
-    health().set("queue", pastDrops_.level(double(dropped)),
-                 dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
-                 asJson(matcherState()).toObject());
-    updateTrackingHealth();
-    updateMemoryHealth();
-    updateJournalHealth();
-}
-
-void ScanMatcher::updateMemoryHealth() {
-    const MatcherState state = matcherState();
-    const QString message =
-        QString("the drive takes %1 of %2 MB")
-            .arg(state.rememberedMb, 0, 'f', 1)
-            .arg(settings().number("matcher.remember_mb"), 0, 'f', 1) +
-        (state.memoryFull ? ": what is driven now is not remembered and no loop is closed; "
-                            "matcher.close_loops off and on begins another drive in this map"
-                          : "");
-    health().set("memory", state.memoryFull ? HealthLevel::Warn : HealthLevel::Ok, message,
-                 {{"remembered_mb", state.rememberedMb}});
-}
-
-void ScanMatcher::updateJournalHealth() {
-    const JournalState journal = corrector_ ? corrector_->state().journal : JournalState();
-    if (settings().text("map.journal").isEmpty())
-        return health().set("journal", HealthLevel::Ok, "no journal is kept");
-    const QString message = !journal.fault.isEmpty() ? journal.fault
-                            : journal.path.isEmpty() ? QString("nothing to write yet")
-                                                     : "written to " + journal.path;
-    health().set("journal", journal.fault.isEmpty() ? HealthLevel::Ok : HealthLevel::Warn, message,
-                 {{"path", journal.path}, {"bytes", journal.bytes}, {"scans", qint64(journal.scans)}});
 }
 
 MatcherState ScanMatcher::matcherState() const {

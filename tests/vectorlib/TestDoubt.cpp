@@ -241,9 +241,8 @@ private:
                         isToldApart(world, real, (drift_.inverse() * Transformation2D(report.pose)).pose()));
         const bool isBelieved =
             report.outcome == ScanReport::Outcome::Matched && tracker_.trust() >= believed;
-        lost_ = report.outcome == ScanReport::Outcome::Lost ? lost_ + 1 : 0;
-        if (++scans_ % 5 == 0 && (tracker_.placeState() == ScanTracker::PlaceState::Sought || lost_ >= 10))
-            tracker_.relocalize(true); // as recover() does by the clock
+        if (++scans_ % 5 == 0 && tracker_.wantsSearch())
+            tracker_.search(); // as recover() does by the clock
         figures_.right += !isWrong;
         figures_.doubted += !isWrong && !isBelieved && scans_ > 1;
         figures_.wrong += isWrong;
@@ -322,7 +321,7 @@ private:
     ScanTracker tracker_;
     OdometryBuffer odometry_;
     Figures figures_;
-    int scans_ = 0, lost_ = 0;             // in a row
+    int scans_ = 0;
     std::optional<Transformation2D> last_; // error, as a motion of the map
     Transformation2D drift_;               // of the map, where the robot is
     double bent_ = 0;                      // the farthest of it; metres

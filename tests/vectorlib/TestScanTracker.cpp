@@ -296,6 +296,43 @@ private Q_SLOTS:
         QVERIFY(tracker->agrees());
     }
 
+    // A second look from the same spot tells nothing new, however long it takes.
+    void whatIsFoundIsKnownSomeWayOn() {
+        tracker->seek();
+        see({-2, -1, 0}, 10.1);
+        QVERIFY(tracker->search().isFound());
+        for (int i = 2; i < 60; ++i)
+            see({-2, -1, 0}, 10 + 0.1 * i);
+        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Found && !tracker->wantsSearch());
+        VectorMap corrected = tracker->builder.map;
+        tracker->correct(corrected, {}); // moves no place
+        QVERIFY(!tracker->wantsSearch());
+        QVERIFY(tracker->trust() < 0.5);
+        int i = 60;
+        for (; !tracker->wantsSearch() && i < 80; ++i)
+            see({-2 + 0.1 * (i - 60), -1, 0}, 10 + 0.1 * i);
+        QVERIFY(i >= 70 && tracker->wantsToConfirm());
+        tracker->search();
+        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Known);
+    }
+
+    // The odometry knows nothing of it, and the map does not have the place.
+    void whoIsCarriedMapsNothing() {
+        const std::vector<LineSegment2D<float>> other{{{0, 0}, {2, 0}},    {{2, 0}, {2, 9}},
+                                                      {{2, 9}, {0.5f, 9}}, {{0.5f, 9}, {0.5f, 7}},
+                                                      {{0.5f, 7}, {0, 7}}, {{0, 7}, {0, 0}}};
+        for (int i = 1; i < 6; ++i)
+            see({-2, -1, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        const std::size_t walls = tracker->builder.map.size();
+        for (int i = 6; i < 40; ++i) {
+            see(other, {1, 3, 0.4}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+            QVERIFY(tracker->trust() < 0.5);
+        }
+        QCOMPARE(tracker->builder.map.size(), walls);
+        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Sought);
+        QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
+    }
+
     void trustIsAProbabilityWhateverComes() {
         const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
         const double hostile[] = {0, 1, -1, 1e300, -1e300, nan, infinite, -infinite};

@@ -64,8 +64,6 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
 }
 
 VECTORLIB_BODY void ScanTracker::followOpen(const TimedScan &scan) {
-    if (wasPlaced_)
-        open_.place();
     const bool isOpen = builder.report().outcome != ScanReport::Outcome::Matched ||
                         builder.match().reliability < openReliability;
     open_.follow(Transformation2D(builder.report().pose), isOpen, byOdometry_, scan.odometry, scan.stamp,
@@ -92,40 +90,26 @@ VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan) {
 // The sensor may have been carried.
 VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     against_ = knownAgainst_ = weighed_ = 0;
-    const ScanReport::Outcome outcome = builder.report().outcome;
-    const bool isLast = lostInARow_ + 1 >= builder.settings.lostBeforeRestart;
-    const Transformation2D off = guessed_.inverse() * Transformation2D(builder.report().pose);
-    const bool isFollowed =
-        builder.isFollowed() && !(byOdometry_ && isFar(off, surprising_m, surprising_rad)) &&
-        (!builder.isExpectedByScan() || builder.pairMatch().agreement.explained() >= fewExplained);
-    const bool isNear = isWellExpected_ && !isFar(guessedWay_, near_m, near_rad);
-    if (wasPlaced_)
-        isInsisted_ = true;
-    if (outcome == ScanReport::Outcome::Matched && !wasPlaced_)
-        isInsisted_ = false;
-    if (isInsisted_ || builder.map.isEmpty())
-        isSuspect_ = false;
-    else if (!isSuspect_ && isNear && (!isFollowed || outcome == ScanReport::Outcome::Lost)) {
-        isSuspect_ = true;
-        knownHidden_ = hidden_;
-    }
-    const bool isDue = isSuspect_ || counts_.scans % eachNth == 0; // else it would cost half a match more
-    if (!settings_.seekWhereContradicted || outcome == ScanReport::Outcome::Skipped || !isDue)
+    const ScanReport &report = builder.report();
+    if (!settings_.seekWhereContradicted || builder.map.isEmpty())
         return;
-    search_.fit.shortest = shortestWall_m; // people were drawn, too
-    const PlaceFit fit = search_.judge(builder.map.slots(), builder.edges(), scan.points,
-                                       Transformation2D(builder.report().pose));
-    search_.fit.shortest = 0;
-    hidden_ = fit.hiddenShare();
+    const Transformation2D pose(report.pose);
+    const bool isSurprising = byOdometry_ && isFar(guessed_.inverse() * pose, surprising_m, surprising_rad);
+    const bool isShown =
+        builder.isFollowed() &&
+        (!builder.isExpectedByScan() || builder.matchPair.match().agreement.explained() >= fewExplained);
+    break_.take(report.outcome, isWellExpected_ && !isFar(guessedWay_, near_m, near_rad),
+                isShown && !isSurprising);
+    const bool isDue = break_.isSuspect() || counts_.scans % eachNth == 0; // else it would cost half a match
+    if (report.outcome == ScanReport::Outcome::Skipped || !isDue)
+        return;
+    const PlaceFit fit =
+        search_.judge(builder.map.slots(), builder.edges(), scan.points, pose, withoutPeople_);
     const bool isUnknown = !byOdometry_ && fit.explainedShare() < fewKnown;
-    if (!isSuspect_)
+    if (!break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown))
         return;
-    if (hidden_ - knownHidden_ <= settings_.mostHidden && !isUnknown) {
-        isSuspect_ = outcome == ScanReport::Outcome::Lost;
-        return;
-    }
     builder.refuse();
-    if (!isLast)
+    if (lostInARow_ + 1 < builder.settings.lostBeforeRestart)
         return;
     seek();
     isBent_ = true;
@@ -134,7 +118,7 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
 VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan) {
     const Pose2D &pose = builder.report().pose;
     const PlaceFit fit =
-        search_.judge(builder.map.slots(), builder.edges(), scan.points, Transformation2D(pose));
+        search_.judge(builder.map.slots(), builder.edges(), scan.points, Transformation2D(pose), search_.fit);
     const double since_s = lastStamp_ ? std::max(0.0, scan.stamp - *lastStamp_) : 0;
     const double share = std::max({leastShare, 1 - std::exp(-since_s / against_s), 1.0 / ++weighed_});
     against_ += share * (fit.against() - against_);
@@ -158,25 +142,24 @@ VECTORLIB_BODY void ScanTracker::seek() {
 VECTORLIB_BODY void ScanTracker::settle() {
     const bool isMatched = builder.report().outcome == ScanReport::Outcome::Matched;
     agreed_ = isMatched && agrees() ? agreed_ + 1 : 0;
-    if (place_ == PlaceState::Told && agreed_ >= enoughToAgree)
+    if ((place_ == PlaceState::Told && agreed_ >= enoughToAgree) ||
+        (place_ == PlaceState::Found && isBent_ && agreed_ > 0))
         setPlace(PlaceState::Known);
-    if (place_ == PlaceState::Found && agreed_ > 0)
-        isBent_ || agreed_ >= enoughToConfirm ? setPlace(PlaceState::Known) : confirm();
 }
 
-VECTORLIB_BODY void ScanTracker::confirm() {
-    const Transformation2D pose(builder.report().pose), way = foundAt_.inverse() * pose;
-    if (way.translation().norm() < confirmed_m && std::abs(way.alpha()) < confirmed_rad)
-        return;
-    foundAt_ = pose;
-    const Relocalized &again = search_(builder.map.slots(), builder.edges(), points_);
+VECTORLIB_BODY bool ScanTracker::wantsToConfirm() const {
+    return place_ == PlaceState::Found && agreed_ > 0 && !isPlaced_ &&
+           isFar(foundAt_.inverse() * Transformation2D(builder.report().pose), confirmed_m, confirmed_rad);
+}
+
+VECTORLIB_BODY void ScanTracker::confirm(const Relocalized &again) {
+    foundAt_ = Transformation2D(builder.report().pose);
     if (!again.isFound())
         return;
-    const Transformation2D off = pose.inverse() * Transformation2D(again.places.front().pose);
-    if (off.translation().norm() < same_m && std::abs(off.alpha()) < same_rad)
-        setPlace(PlaceState::Known);
-    else
+    if (isFar(foundAt_.inverse() * Transformation2D(again.places.front().pose), same_m, same_rad))
         seek();
+    else
+        setPlace(PlaceState::Known);
 }
 
 VECTORLIB_BODY void ScanTracker::claim(const Pose2D &pose) {
@@ -195,6 +178,8 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     motion_.reset(pose);
     odometry_.reset();
     check_.restart();
+    open_.place();
+    break_.place();
     builder.placed();
     lastStamp_.reset();
 }
@@ -204,21 +189,37 @@ VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
         return {};
     const Transformation2D expected(builder.report().pose);
     const Relocalized &result = search_(builder.map.slots(), builder.edges(), points_);
-    if (apply && result.isFound())
-        place(result.places.front().pose, result.places.front().against);
-    if (apply && result.isFound() && grows_) {
-        foundAt_ = Transformation2D(result.places.front().pose);
-        const Transformation2D off = expected.inverse() * foundAt_;
-        isBent_ = isBent_ && !isFar(off, bend_m, bend_rad);
-        setPlace(PlaceState::Found);
-    }
+    if (!apply || !result.isFound())
+        return result;
+    place(result.places.front().pose, result.places.front().against);
+    if (!grows_)
+        return result;
+    setPlace(PlaceState::Found);
+    foundAt_ = Transformation2D(result.places.front().pose);
+    isBent_ = isBent_ && !isFar(expected.inverse() * foundAt_, bend_m, bend_rad);
     return result;
 }
 
+VECTORLIB_BODY bool ScanTracker::wantsSearch() const {
+    // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
+    // itself, at a place that may be wrong, and the search would find that.
+    const bool holdsTheScan = builder.settings.grow && lostInARow_ >= builder.settings.lostBeforeRestart;
+    const bool isLost = settings_.relocalizeAfter > 0 && lostInARow_ >= settings_.relocalizeAfter;
+    return place_ == PlaceState::Sought || wantsToConfirm() || (isLost && !holdsTheScan);
+}
+
+VECTORLIB_BODY Relocalized ScanTracker::search() {
+    if (!wantsToConfirm())
+        return relocalize(true);
+    const Relocalized again = relocalize(false);
+    confirm(again);
+    return again;
+}
+
 VECTORLIB_BODY std::optional<Relocalized> ScanTracker::recover() {
-    if (!isSearchDue())
+    if (!wantsSearch() || Clock::now() < nextSearch_)
         return std::nullopt;
-    const Relocalized result = relocalize(true);
+    const Relocalized result = search();
     const std::chrono::duration<double, std::milli> pause(std::max(1000.0, 10 * result.ms));
     nextSearch_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
     return result;
@@ -231,6 +232,8 @@ VECTORLIB_BODY void ScanTracker::correct(VectorMap &map, const Transformation2D 
     odometry_.move(moved);
     check_.restart();
     open_.place();
+    break_.correct();
+    foundAt_ = moved * foundAt_;
 }
 
 VECTORLIB_BODY void ScanTracker::clear() {
@@ -359,16 +362,6 @@ VECTORLIB_BODY TrackingSettings ScanTracker::poorly(const TrackingSettings &well
     s.expectedDeviationAlpha = std::max(s.expectedDeviationAlpha, poor.expectedDeviationAlpha);
     s.minMatchedShare = std::max(s.minMatchedShare, poor.minMatchedShare);
     return s;
-}
-
-VECTORLIB_BODY bool ScanTracker::isSearchDue() const {
-    if (place_ == PlaceState::Sought)
-        return Clock::now() >= nextSearch_;
-    // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
-    // itself, at a place that may be wrong, and the search would find that.
-    const bool holdsTheScan = builder.settings.grow && lostInARow_ >= builder.settings.lostBeforeRestart;
-    return settings_.relocalizeAfter > 0 && lostInARow_ >= settings_.relocalizeAfter && !holdsTheScan &&
-           Clock::now() >= nextSearch_;
 }
 
 VECTORLIB_BODY void ScanTracker::count(const ScanReport &report) {

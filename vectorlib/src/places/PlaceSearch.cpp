@@ -130,10 +130,10 @@ VECTORLIB_BODY const Relocalized &PlaceSearch::operator()(const std::vector<MapE
 
 VECTORLIB_BODY PlaceFit PlaceSearch::judge(const std::vector<MapEdge> &slots,
                                            const std::vector<EdgeRaw2D> &edges, PointSpan<float> points,
-                                           const Transformation2D &pose) {
+                                           const Transformation2D &pose, const PlaceFitter &by) {
     scan.take(edges, points);
     index_.follow(slots);
-    return fit.judge(index_.tiles(), scan.points(), pose, 1, true, scan.wallOfPoint());
+    return by.judge(index_.tiles(), scan.points(), pose, 1, true, scan.wallOfPoint());
 }
 
 template <typename IsLate>

@@ -91,8 +91,6 @@ public:
                lost_ == settings.lostBeforeRestart;
     }
     const ScanReport &report() const { return report_; }
-    /// The last match with a scan before.
-    const ScanPairMatch &pairMatch() const { return matchPair.match(); }
     /// The match of the last scan; pairs refer to candidates() and edges().
     const Match &match() const { return match_; }
     /// Where the last scan was expected: by its match with the scan before, else as it was told.

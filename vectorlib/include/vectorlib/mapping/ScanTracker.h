@@ -7,6 +7,7 @@
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/mapping/DriveBreak.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/TimedScan.h"
@@ -34,7 +35,7 @@ struct PoseTrust {
     using Features = std::array<double, 6>;
 
     /// Of the features. Fitted to one half of tracked drives, of logs and drawn at random, by
-    /// hermes-vector experiment pose-trust (docs/algorithms.md tells how well they do on the other).
+    /// hermes-vector experiment pose-trust (docs/trust.md tells how well they do on the other).
     Features weights{-9.22, 4.48, -6.21, 0.617, -0.960, 3.57};
 
     /// What tells of a match whether its pose is right: a constant 1, how reliable it is, how far the paired
@@ -59,10 +60,8 @@ struct ScanTrackerSettings {
     double moment = 0.5;
     /// How much of the last scans may speak against a pose in a finished map; see ScanTracker::against.
     double mostAgainst = 0.35;
-    /// By how much more of a scan may lie behind walls of a growing map than before the drive broke, as a
-    /// share of its points.
-    double mostHidden = 0.15;
-    /// Where more do, the place is sought; else a growing map goes on there after lost scans.
+    /// The place is sought where a growing map contradicts it, see DriveBreak; else the map goes on there
+    /// after lost scans.
     bool seekWhereContradicted = true;
     std::int64_t relocalizeAfter = 10; ///< lost scans in a row; 0: never by itself
     double relocalizeSeconds = 3;      ///< longest search
@@ -93,7 +92,10 @@ public:
     /// What segmentation settings become that follow from a scan's scanner; nothing: they stay.
     std::function<EarSettings(const EarSettings &)> segmentation;
 
-    ScanTracker() { apply(ScanTrackerSettings()); }
+    ScanTracker() {
+        withoutPeople_.shortest = 0.5;
+        apply(ScanTrackerSettings());
+    }
 
     /// Takes new settings; map and pose stay.
     void apply(const ScanTrackerSettings &settings);
@@ -122,12 +124,17 @@ public:
         Sought
     };
     PlaceState placeState() const { return place_; }
-    /// Whether it was put somewhere since the last scan.
-    bool isPlaced() const { return isPlaced_; }
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
     Relocalized relocalize(bool apply);
-    /// The same by itself, to be called after each scan: when enough scans in a row were lost or the place is
-    /// sought, and for at most about a tenth of the time; else nothing.
+    /// Whether a search of the whole map would help: enough scans in a row were lost, the place is sought, or
+    /// was found and is to be confirmed some way on.
+    bool wantsSearch() const;
+    /// Whether that search is to confirm a place that was found before.
+    bool wantsToConfirm() const;
+    /// Searches, whatever the time: relocalizes, or confirms.
+    Relocalized search();
+    /// The same by itself, to be called after each scan: when a search is wanted, and for at most about a
+    /// tenth of the time; else nothing.
     std::optional<Relocalized> recover();
     /// The map was made anew: takes it, and gives the old one. `moved` tells where in it a pose of the old
     /// one lies; tracking goes on from there.
@@ -174,7 +181,7 @@ private:
     using Clock = std::chrono::steady_clock;
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
-    static constexpr int mostTries = 3, enoughToAgree = 5, enoughToConfirm = 20;
+    static constexpr int mostTries = 3, enoughToAgree = 5;
     static constexpr double claimed = 0.5; // trust of a place that is not known yet, for that of one that is
     // Below that reliability the walls leave a direction open; that of a pose that the odometry tells there.
     static constexpr double openReliability = 0.1, coveredReliability = 0.7;
@@ -183,8 +190,7 @@ private:
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
     static constexpr std::uint64_t eachNth = 5;                        // scan of a growing map is judged
     static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
-    static constexpr double shortestWall_m = 0.5; // that speaks against a pose: people are drawn, too
-    static constexpr double fewKnown = 0.6;       // of the points, where no odometry tells the pose
+    static constexpr double fewKnown = 0.6; // of the points, where no odometry tells the pose
     // Between the searches that make a place known, and how well they must agree.
     static constexpr double confirmed_m = 1, confirmed_rad = 0.6, same_m = 0.5, same_rad = 0.17;
     static constexpr double bend_m = 2, bend_rad = 0.5; // so far a growing map may bend
@@ -228,11 +234,11 @@ private:
     void judgeBreak(const TimedScan &scan);
     void followOpen(const TimedScan &scan);
     void setPlace(PlaceState place);
-    // A place that was found or told becomes known when scans agree with it.
+    // A place that was told, or found nearby, becomes known when scans agree with it.
     void settle();
     // What is found in a map that is not complete may lie outside of it: a second search, some way on,
     // decides.
-    void confirm();
+    void confirm(const Relocalized &again);
     double belief() const {
         return std::min(open_.belief(), std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0));
     }
@@ -250,7 +256,6 @@ private:
     bool isMomentAgo(double before, double stamp) const {
         return stamp > before && stamp - before <= settings_.moment;
     }
-    bool isSearchDue() const;
     void count(const ScanReport &report);
 
     ScanTrackerSettings settings_;
@@ -272,9 +277,8 @@ private:
     PlaceState place_ = PlaceState::Known;
     bool grows_ = true;
     Transformation2D guessed_, guessedWay_; // the last scan, and from the one before
-    double hidden_ = 0, knownHidden_ = 0; // share of a scan behind walls, the last one, and before the break
-    bool isSuspect_ = false;              // a scan since the last one that agreed was not followed
-    bool isInsisted_ = false;             // the sensor was put there, and nothing was matched since
+    DriveBreak break_;
+    PlaceFitter withoutPeople_; // they are drawn, too: short walls do not speak against a pose
     OpenDirection open_;
     bool isBent_ = false;      // what contradicts the place may be the growing map itself: it is found nearby
     int agreed_ = 0;           // scans in a row with the place

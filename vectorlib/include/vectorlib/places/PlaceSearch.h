@@ -123,9 +123,9 @@ public:
     /// counter-clockwise. Without points the edges stand for them. Valid until the next call.
     const Relocalized &operator()(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
                                   PointSpan<float> points);
-    /// How the scan lies in the map at a pose, whatever other places there are.
+    /// How the scan lies in the map at a pose, whatever other places there are, by the measure `by`.
     PlaceFit judge(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
-                   PointSpan<float> points, const Transformation2D &pose);
+                   PointSpan<float> points, const Transformation2D &pose, const PlaceFitter &by);
     PlaceIndex &index() { return index_; }
 
 private:

@@ -1,0 +1,141 @@
+#include "common/Time.h"
+#include "daemons/scanmatcher/ScanMatcher.h"
+#include "protocol/wire/Fields.h"
+
+namespace hermes::scanmatcher {
+
+using PlaceState = vectorlib::ScanTracker::PlaceState;
+
+namespace {
+
+constexpr double longestSilence_s = 3, longestBlindness_s = 3;
+
+// What of a source's messages is no message at all, as one with a number that is not finite.
+QString unreadable(const Client::Rejected &rejected) {
+    if (rejected.unreadable == 0)
+        return {};
+    return QString("; %1 messages could not be read, the last: %2")
+        .arg(rejected.unreadable)
+        .arg(rejected.last);
+}
+
+} // namespace
+
+void ScanMatcher::updateHealth() {
+    const QString address = settings().text("source.address");
+    if (!active_)
+        health().set("source", HealthLevel::Ok, "not matching");
+    else if (source_.isBeginning())
+        health().set("source", HealthLevel::Ok, "connecting to " + address);
+    else if (!source_.isConnected())
+        health().set("source", HealthLevel::Failed,
+                     QString("no connection to %1: %2")
+                         .arg(address, sourceFault_.isEmpty() ? source_.problem() : sourceFault_));
+    else if (!sourceFault_.isEmpty())
+        health().set("source", HealthLevel::Failed,
+                     QString("no scans from %1: %2").arg(address, sourceFault_));
+    else if (const double silent_s = monotonicNow() - lastScan_; silent_s > longestSilence_s)
+        health().set("source", HealthLevel::Warn,
+                     QString("no scan from %1 for %2 s").arg(address).arg(silent_s, 0, 'f', 0) +
+                         unreadable(source_.rejected()));
+    else if (badScans_ > 0)
+        health().set("source", pastBadScans_.level(double(badScans_)),
+                     QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));
+    else
+        health().set("source", HealthLevel::Ok, "connected to " + address);
+    health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
+                 !replayed_ ? QString("live scans are matched")
+                 : keepsLiveMap_
+                     ? QString("a replay is matched, in a map of its own; the live map is kept until "
+                               "live scans come")
+                     : QString("a replay is matched"));
+    odometry_.report(health());
+    const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
+    health().set("queue", pastDrops_.level(double(dropped)),
+                 dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
+                 asJson(matcherState()).toObject());
+    updateTrackingHealth();
+    updateMemoryHealth();
+    updateJournalHealth();
+}
+
+void ScanMatcher::updateMemoryHealth() {
+    const MatcherState state = matcherState();
+    const QString message =
+        QString("the drive takes %1 of %2 MB")
+            .arg(state.rememberedMb, 0, 'f', 1)
+            .arg(settings().number("matcher.remember_mb"), 0, 'f', 1) +
+        (state.memoryFull ? ": what is driven now is not remembered and no loop is closed; "
+                            "matcher.close_loops off and on begins another drive in this map"
+                          : "");
+    health().set("memory", state.memoryFull ? HealthLevel::Warn : HealthLevel::Ok, message,
+                 {{"remembered_mb", state.rememberedMb}});
+}
+
+void ScanMatcher::updateJournalHealth() {
+    const JournalState journal = corrector_ ? corrector_->state().journal : JournalState();
+    if (settings().text("map.journal").isEmpty())
+        return health().set("journal", HealthLevel::Ok, "no journal is kept");
+    const QString message = !journal.fault.isEmpty() ? journal.fault
+                            : journal.path.isEmpty() ? QString("nothing to write yet")
+                                                     : "written to " + journal.path;
+    health().set("journal", journal.fault.isEmpty() ? HealthLevel::Ok : HealthLevel::Warn, message,
+                 {{"path", journal.path}, {"bytes", journal.bytes}, {"scans", qint64(journal.scans)}});
+}
+
+void ScanMatcher::noteSkipped(const Outcome &outcome) {
+    if (outcome.outcome != vectorlib::ScanReport::Outcome::Skipped) {
+        skipped_ = {};
+        return;
+    }
+    if (skipped_.count++ == 0)
+        skipped_.since = monotonicNow();
+    skipped_.segments = outcome.result.segments.size();
+    skipped_.points = outcome.points;
+}
+
+bool ScanMatcher::isBlind() const {
+    return skipped_.count > 0 && monotonicNow() - skipped_.since > longestBlindness_s;
+}
+
+QString ScanMatcher::blindText() const {
+    return QString("nothing to match for %1 s: %2 scans in a row were skipped, the last one shows %3 line "
+                   "segments in %4 points, expected are %5 at least; the pose goes by %6")
+        .arg(monotonicNow() - skipped_.since, 0, 'f', 0)
+        .arg(skipped_.count)
+        .arg(skipped_.segments)
+        .arg(skipped_.points)
+        .arg(vectorlib::MapBuilderSettings().minEdges)
+        .arg(odometry_.state().connected ? "the odometry alone"
+                                         : "the motion before that, there is no odometry");
+}
+
+void ScanMatcher::updateTrackingHealth() {
+    QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
+                      : isBlind()     ? blindText()
+                                      : QString("on track");
+    if (lastRecovery_)
+        message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
+    const PlaceState place = place_;
+    if (place == PlaceState::Told)
+        message += "; the scans do not confirm the place that was told: nothing is mapped until they do, or "
+                   "pose.set insists with confirm";
+    else if (place == PlaceState::Found && mapping_)
+        message += "; the place was found in the map: nothing is mapped until a second search, a metre on, "
+                   "agrees";
+    else if (place == PlaceState::Sought)
+        message += "; the place in the map is sought: until it is found scans count as lost and nothing is "
+                   "mapped. Drive to where the map shows the same, or tell the place with pose.set";
+    const HealthLevel level =
+        lostInARow_ >= 3 ? HealthLevel::Failed
+        : isBlind() || (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
+            ? HealthLevel::Warn
+            : HealthLevel::Ok;
+    health().set("tracking", level, message,
+                 {{"lost_in_a_row", lostInARow_},
+                  {"skipped_in_a_row", skipped_.count},
+                  {"recoveries", qint64(recoveries_)},
+                  {"recovered", qint64(recovered_)}});
+}
+
+} // namespace hermes::scanmatcher
