@@ -53,14 +53,16 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
     result.stamp = scan.data.stamp;
     result.pose.pose = report.pose;
     result.pose.twist = tracker.motion().twist();
-    result.pose.covariance = covariance(match);
+    const bool isMatched = report.outcome == ScanReport::Outcome::Matched;
+    if (isMatched) // else the match does not count
+        result.pose.covariance = covariance(match);
     result.pose.outcome = toText(report.outcome);
     result.pose.scan = scan.number;
     result.pose.trust = tracker.trust();
     if (const auto frame = tracker.odometryFrame())
         result.pose.odometryFrame = frame->pose();
     result.match = {scan.number,
-                    match.accepted && report.outcome == ScanReport::Outcome::Matched,
+                    match.accepted && isMatched,
                     {},
                     match.reliability,
                     match.ambiguity,

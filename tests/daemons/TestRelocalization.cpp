@@ -206,6 +206,14 @@ private Q_SLOTS:
     void aPlaceThatIsToldIsTried() {
         set("relocalize_after", 5);
         beginToMap();
+        int doubtful = 0, sure = 0; // poses of lost scans
+        client_->subscribe("pose", {}, [&](const TopicUpdate &update) {
+            const QJsonObject pose = update.json().toObject();
+            const bool isLost = pose["outcome"] == "lost";
+            doubtful += isLost && pose["covariance"].isNull() && pose["trust"].toDouble(1) == 0;
+            sure += isLost && pose["covariance"].isArray();
+        });
+        QTRY_VERIFY(matcher->hasSubscribers("pose"));
         load(pillars());
         QTRY_VERIFY((scan(pillars(), {1, 0.9, 0}), number("matched") > 1));
         call("pose.set", {{"x", 2}, {"y", 1.5}, {"theta", 0.3}});
@@ -223,6 +231,8 @@ private Q_SLOTS:
         for (int i = 0; i < 6; ++i)
             scan(pillars(), {1, 0.9, 0});
         QCOMPARE(healthItem("tracking")["message"].toString(), QString("on track"));
+        QTRY_VERIFY(doubtful > 0);
+        QCOMPARE(sure, 0);
     }
 
     void aPersonMayInsistOnAPlace() {

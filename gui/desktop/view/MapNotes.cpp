@@ -75,9 +75,10 @@ QStringList MapPainter::matchLines() const {
     if (size_.height() < low)
         return lines;
     lines.append(model_.covariance() ? uncertaintyText(*model_.covariance()) : QObject::tr("± unknown"));
-    lines.append(QObject::tr("reliability %1, ambiguity %2 m²")
-                     .arg(qBound(0.0, model_.reliability(), 1.0), 0, 'f', 2)
-                     .arg(model_.ambiguity(), 0, 'g', 2));
+    if (model_.outcome() == "matched")
+        lines.append(QObject::tr("reliability %1, ambiguity %2 m²")
+                         .arg(qBound(0.0, model_.reliability(), 1.0), 0, 'f', 2)
+                         .arg(model_.ambiguity(), 0, 'g', 2));
     return lines;
 }
 
@@ -85,12 +86,14 @@ QStringList MapPainter::matchLines() const {
 void MapPainter::paintMatch(QPainter &painter) const {
     constexpr int outcomeLine = 1;
     const bool isLost = model_.outcome() == "lost";
-    const double reliability = qBound(0.0, model_.reliability(), 1.0);
+    constexpr double doubtful = 0.5, unreliable = 0.1; // trust; reliability, of a matcher that tells no trust
+    const double sure = isLost ? 0 : qBound(0.0, model_.trust().value_or(model_.reliability()), 1.0);
+    const bool isDoubtful = sure < (model_.trust() ? doubtful : unreliable);
     const Freshness &age = model_.poseAge();
-    const Condition condition = !age.isFresh()      ? Condition::Unreachable
-                                : isLost            ? Condition::Fault
-                                : reliability < 0.1 ? Condition::Warning
-                                                    : Condition::Ready;
+    const Condition condition = !age.isFresh() ? Condition::Unreachable
+                                : isLost       ? Condition::Fault
+                                : isDoubtful   ? Condition::Warning
+                                               : Condition::Ready;
     QStringList lines = matchLines();
     const int struck = age.state() == Freshness::State::Silent ? lines.size() : 0; // what held once
     if (struck > 0)
@@ -107,7 +110,7 @@ void MapPainter::paintMatch(QPainter &painter) const {
     painter.setBrush(mapColours().grid);
     painter.drawRect(bar);
     painter.setBrush(theme::colour(condition));
-    painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * reliability, bar.height())));
+    painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * sure, bar.height())));
     painter.setBrush(Qt::NoBrush);
     for (int i = 0; i < lines.size(); ++i) {
         painter.setPen(!age.isFresh() || (isLost && i == outcomeLine) ? theme::colour(condition)
