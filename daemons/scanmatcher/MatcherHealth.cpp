@@ -55,8 +55,24 @@ void ScanMatcher::updateHealth() {
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  asJson(matcherState()).toObject());
     updateTrackingHealth();
+    updateSensorHealth();
     updateMemoryHealth();
     updateJournalHealth();
+}
+
+void ScanMatcher::updateSensorHealth() {
+    QString message = "nothing contradicts how the sensor is said to be mounted";
+    const auto turned = scanner_.turned();
+    if (scanner_.isMirrored())
+        message =
+            "the scans turn the other way than the odometry: their angles count clockwise, or the sensor "
+            "hangs upside down";
+    else if (turned)
+        message =
+            QString(
+                "the scans do not go where the odometry leads: expected is a sensor.theta_rad of about %1")
+                .arg(vectorlib::wrapAngle(settings().number("sensor.theta_rad") + *turned), 0, 'f', 2);
+    health().set("sensor", scanner_.isMirrored() || turned ? HealthLevel::Warn : HealthLevel::Ok, message);
 }
 
 void ScanMatcher::updateMemoryHealth() {

@@ -263,6 +263,7 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &sc
     o.points = scan.data.points.size();
     o.counts = tracker.counts();
     o.contradiction = tracker.contradiction();
+    o.scanner = tracker.scanner();
     o.replayed = scan.replayed;
     o.changes = takeChanges(tracker.builder.map);
     return o;
@@ -272,6 +273,7 @@ void ScanMatcher::show(const Outcome &o) {
     if (o.contradiction && o.counts.contradicted > counts_.contradicted)
         odometry_.contradict(*o.contradiction, !o.replayed && settings().flag("odometry.stop"));
     counts_ = o.counts;
+    scanner_ = o.scanner;
     lostInARow_ = o.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
     if (lostInARow_ == 0)
         lastRecovery_.reset();

@@ -38,6 +38,7 @@ private:
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
         std::size_t points = 0; ///< of the scan
         std::optional<vectorlib::OdometryCheck::Ways> contradiction;
+        vectorlib::ScannerCheck scanner;
         bool replayed = false;
         std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
     };
@@ -73,6 +74,7 @@ private:
     void noteSkipped(const Outcome &outcome);
     bool isBlind() const;
     QString blindText() const;
+    void updateSensorHealth();
     void updateMemoryHealth();
     void updateJournalHealth();
     std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
@@ -129,6 +131,7 @@ private:
     GraphMirror graph_;
     vectorlib::ScanTrackerCounts counts_;
     int lostInARow_ = 0;
+    vectorlib::ScannerCheck scanner_;
     SkippedScans skipped_;
     bool relocalizing_ = false; ///< for a command
     quint64 recoveries_ = 0,

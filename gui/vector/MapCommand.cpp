@@ -85,6 +85,7 @@ private:
         warnOfLost(run.tracker.counts());
         tellContradictions(run.tracker.counts(), json);
         run.warnOfBreaks(std::cerr);
+        run.warnOfScanner(std::cerr, report.mount);
         conclude(json, begin, summaryFile);
         files.commit();
     }

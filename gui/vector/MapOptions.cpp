@@ -99,6 +99,15 @@ void MapOptions::addWays(CLI::App &command) {
         .add_option("--max-range", source.maxRange, "No return of a CARMEN log from this range on, metres")
         ->check(between(0.01, 1000))
         ->type_name("M");
+    command
+        .add_option("--seconds-per-turn", source.secondsPerTurn,
+                    "Time in which the scanner of a CARMEN log makes a full turn, below 0 for clockwise; 0: "
+                    "each scan "
+                    "is of one moment. Else the turns of the robot tell it")
+        ->check(between(-10, 10))
+        ->type_name("S");
+    command.add_flag("--mirrored", source.mirrored,
+                     "The angles of a CARMEN log count clockwise, as of a scanner that hangs upside down");
     command.add_option("--every", source.every, "Take every N-th scan only")
         ->transform(wholeNumber(1, 1e9))
         ->type_name("N")

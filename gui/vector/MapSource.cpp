@@ -4,6 +4,8 @@
 #include "gui/vector/Input.h"
 #include "vectorlib/io/CarmenDrive.h"
 #include "vectorlib/io/Number.h"
+#include "vectorlib/mapping/ScanPairMatcher.h"
+#include "vectorlib/motion/ScannerCheck.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -27,30 +29,77 @@ std::string orderOf(const std::string &name) {
     return key;
 }
 
+// secondsPerTurn: 0 where all points are of one moment; else the middle ray is measured at the stamp.
+void takeLogged(const vectorlib::CarmenScan &source, double secondsPerTurn, vectorlib::TimedScan &scan) {
+    scan.points.clear();
+    source.appendPoints(scan.points);
+    scan.seconds.clear();
+    const double perRay = secondsPerTurn * source.angleStep / (2 * vectorlib::pi);
+    const double middle = double(source.ranges.size() - 1) / 2;
+    for (std::size_t i = 0; secondsPerTurn != 0 && i < source.ranges.size(); ++i)
+        if (source.isReturn(i))
+            scan.seconds.push_back(float((double(i) - middle) * perRay));
+    scan.stamp = source.stamp;
+    scan.rays = source.ranges.size();
+    scan.fieldOfView = source.angleStep * double(source.ranges.size());
+    scan.closed = scan.fieldOfView > 2 * vectorlib::pi - 1e-3;
+}
+
+// How long the scanner takes for a turn, by how the scans turn against the odometry; 0 where they do not
+// tell.
+double findSecondsPerTurn(const vectorlib::CarmenLog &log, vectorlib::CarmenOdometryKind kind,
+                          const vectorlib::Pose2D &mount) {
+    constexpr double least_rad = 0.02, most_rad = 0.5, longest_s = 1; // between two scans
+    constexpr std::size_t enough = 2000;                              // pairs of scans
+    vectorlib::ScannerCheck check;
+    vectorlib::ScanPairMatcher match;
+    match.settings.leavesOpen = false;
+    vectorlib::CarmenDrive drive(log, kind, mount);
+    vectorlib::TimedScan before, scan;
+    for (std::size_t i = 0, pairs = 0; i < log.scans.size() && pairs < enough; ++i) {
+        drive.advance();
+        const auto last = scan.odometry;
+        scan.odometry = drive.odometry();
+        if (!last || !scan.odometry || last->epoch() != scan.odometry->epoch())
+            continue;
+        const double stamp = log.scans[i].stamp, stampBefore = log.scans[i - 1].stamp;
+        const vectorlib::Transformation2D motion = last->at(stampBefore).inverse() * scan.odometry->at(stamp);
+        const double turn = std::abs(motion.alpha()), seconds = stamp - stampBefore;
+        if (turn < least_rad || turn > most_rad || !(seconds > 0) || seconds > longest_s)
+            continue;
+        takeLogged(log.scans[i - 1], 0, before);
+        takeLogged(log.scans[i], 0, scan);
+        match.extract.segment.settings = vectorlib::EarSettings::forScanner(scan.fieldOfView, scan.rays);
+        match.extract.segment.settings.closed = scan.closed;
+        const vectorlib::ScanPairMatch &found = match(before.points, scan.points, motion);
+        ++pairs;
+        if (found.accepted && found.linesSuffice)
+            check.add(motion, found.pose, seconds);
+    }
+    return check.secondsPerTurn().value_or(0);
+}
+
 MapSourceReport readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
     const vectorlib::CarmenLog log = valueOrFail(vectorlib::readCarmenLog(
-        input.stream(), input.name(), {options.skipDamaged, kind, options.fieldOfView, options.maxRange}));
+        input.stream(), input.name(),
+        {options.skipDamaged, kind, options.fieldOfView, options.maxRange, options.mirrored}));
     const vectorlib::Pose2D mount = options.mount.value_or(log.sensorOnRobot(kind));
     const std::size_t total = (log.scans.size() + options.every - 1) / options.every;
+    const double perTurn =
+        options.secondsPerTurn ? *options.secondsPerTurn : findSecondsPerTurn(log, kind, mount);
     MapScan scan;
     vectorlib::CarmenDrive drive(log, kind, mount);
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
         drive.advance();
         if (i % options.every != 0)
             continue;
-        const vectorlib::CarmenScan &source = log.scans[i];
-        scan.points.clear();
-        source.appendPoints(scan.points);
-        scan.stamp = source.stamp;
+        takeLogged(log.scans[i], perTurn, scan);
         scan.odometry = drive.odometry();
         scan.fault = drive.isRepeated() ? MapScan::Fault::Repeated : MapScan::Fault::None;
         if (options.corrected)
-            scan.reference = source.laserPose;
-        scan.rays = source.ranges.size();
-        scan.fieldOfView = source.angleStep * double(source.ranges.size());
-        scan.closed = scan.fieldOfView > 2 * vectorlib::pi - 1e-3;
+            scan.reference = log.scans[i].laserPose;
         sink(scan, i / options.every, total);
     }
     MapSourceReport report;
@@ -60,6 +109,8 @@ MapSourceReport readLog(Input &input, const MapSourceOptions &options, const Map
     report.noReturn = log.noReturn;
     report.assumedRays = log.assumedRays;
     report.mount = mount;
+    report.secondsPerTurn = perTurn;
+    report.isTurnTold = options.secondsPerTurn.has_value();
     if (log.firstDamage)
         report.firstDamage = log.firstDamage->message();
     return report;
@@ -126,7 +177,9 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
           std::tuple("--skip-damaged", "CARMEN log", !isLog && options.skipDamaged),
           std::tuple("--sensor", "CARMEN log", !isLog && options.mount),
           std::tuple("--field-of-view", "CARMEN log", !isLog && options.fieldOfView),
-          std::tuple("--max-range", "CARMEN log", !isLog && options.maxRange)})
+          std::tuple("--max-range", "CARMEN log", !isLog && options.maxRange),
+          std::tuple("--seconds-per-turn", "CARMEN log", !isLog && options.secondsPerTurn),
+          std::tuple("--mirrored", "CARMEN log", !isLog && options.mirrored)})
         if (isUnused)
             throw CLI::ValidationError(option, std::string("only of a ") + what + ", and " + options.path +
                                                    " is none");
@@ -176,6 +229,8 @@ nlohmann::ordered_json MapSourceReport::summary() const {
             json[key] = count;
     if (mount.x != 0 || mount.y != 0 || mount.theta != 0)
         json["sensor"] = {vectorlib::micrometres(mount.x), vectorlib::micrometres(mount.y), mount.theta};
+    if (secondsPerTurn != 0)
+        json["seconds_per_turn"] = secondsPerTurn;
     return json;
 }
 
@@ -198,6 +253,10 @@ void MapSourceReport::warn(std::ostream &out) const {
     if (assumedRays > 0)
         out << "hermes-vector: FLASER with " << assumedRays
             << " rays does not tell its field of view: 180 degrees are assumed (--field-of-view DEG)\n";
+    if (secondsPerTurn != 0 && !isTurnTold)
+        out << "hermes-vector: a turn of the scanner takes "
+            << vectorlib::Number(vectorlib::rounded(secondsPerTurn, 3))
+            << " s, as the turns of the robot tell: each point gets its time (--seconds-per-turn S)\n";
     if (!otherSensors.empty())
         out << "hermes-vector: " << otherSensors << '\n';
 }

@@ -35,7 +35,10 @@ struct MapSourceOptions {
     /// Of a CARMEN log, instead of what it tells: the sensor's pose on the robot; degrees, metres.
     std::optional<vectorlib::Pose2D> mount;
     std::optional<double> fieldOfView, maxRange;
-    SensorOptions sensor; ///< of a capture
+    /// Of its scanner, below 0 when it turns clockwise; 0: a scan is of one moment. Nothing: the drive tells.
+    std::optional<double> secondsPerTurn;
+    bool mirrored = false; ///< its angles count clockwise
+    SensorOptions sensor;  ///< of a capture
 };
 
 /// What was met beside the scans.
@@ -49,6 +52,8 @@ struct MapSourceReport {
     std::optional<vectorlib::RepeatedRange> noReturn;   ///< as of CarmenLog
     std::size_t assumedRays = 0;                        ///< as of CarmenLog
     vectorlib::Pose2D mount;                            ///< of the sensor on the robot, by a log or an option
+    double secondsPerTurn = 0; ///< of the scanner of a log; 0: its points are of one moment
+    bool isTurnTold = false;   ///< by an option
 
     /// For the summary: what there was none of is left out.
     nlohmann::ordered_json summary() const;

@@ -84,6 +84,34 @@ private Q_SLOTS:
         QTRY_COMPARE(healthItem("odometry")["level"].toString(), QString("ok"));
     }
 
+    void aSensorThatIsMountedOtherwiseIsTold_data() {
+        const Rows<double, bool, QString> row("theta", "isMirrored", "told");
+        row("as it is said", 0, false, "nothing contradicts");
+        row("turned", 1.5, false, "a sensor.theta_rad of about 0.0");
+        row("backward", -3.1, false, "a sensor.theta_rad of about 0.0");
+        row("mirrored", 0, true, "the other way than the odometry");
+    }
+    void aSensorThatIsMountedOtherwiseIsTold() {
+        FETCH(double, theta, bool, isMirrored, QString, told);
+        const auto step = [&](const Pose2D &from, const Pose2D &to) {
+            Pose2D motion = from.inverse() * to;
+            motion.theta *= isMirrored ? -1 : 1;
+            motion.y *= isMirrored ? -1 : 1;
+            return Transformation2D(motion);
+        };
+        call("settings.set", {{"values", QJsonObject{{"sensor", QJsonObject{{"theta_rad", theta}}}}}});
+        connectOdometry();
+        for (int i = 0; i < 25; ++i) {
+            advance(i > 0 ? step(onTheWay(i - 1), onTheWay(i)) : Transformation2D(), i);
+            source->publish("scan2d", roomScan(onTheWay(i), 1 + scanPeriod * i), 1 + scanPeriod * i);
+            QTRY_COMPARE(call("matcher.state")["scans"].toInt(), i + 1);
+        }
+        QTRY_COMPARE(healthItem("sensor")["level"].toString(),
+                     QString(theta != 0 || isMirrored ? "warn" : "ok"));
+        const QString message = healthItem("sensor")["message"].toString().remove('-');
+        QVERIFY2(message.contains(told), qPrintable(message));
+    }
+
     void isShownOnlyWhereThereIsOne() {
         QVERIFY(healthItem("odometry").isEmpty());
         connectOdometry();

@@ -24,7 +24,17 @@ VECTORLIB_BODY std::optional<OdometryTrack> CarmenDrive::odometry() const {
     if (!step.isKnown)
         return std::nullopt;
     return OdometryTrack(step.epoch,
-                         {{log_.scans[steps_.size() - 1].stamp, step.robot.pose() * mount_, {}, {}}});
+                         {{log_.scans[steps_.size() - 1].stamp, step.robot.pose() * mount_, twist(), {}}});
+}
+
+VECTORLIB_BODY Twist2D CarmenDrive::twist() const {
+    const std::size_t i = steps_.size() - 1;
+    const std::size_t from = i > 0 ? i - 1 : i, to = std::min(i + 1, log_.scans.size() - 1);
+    const double seconds = log_.scans[to].stamp - log_.scans[from].stamp;
+    const auto motion = log_.odometryMotion(from, to, kind_);
+    if (!motion || !(seconds > 0) || seconds > longestPause_s || leaps(*motion, seconds))
+        return {};
+    return Twist2D::between(mount_.inverse() * motion->pose() * mount_, seconds);
 }
 
 VECTORLIB_BODY CarmenDrive::Step CarmenDrive::stepTo(std::size_t i) {

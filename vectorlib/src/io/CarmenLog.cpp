@@ -157,12 +157,19 @@ VECTORLIB_BODY void detail::CarmenReader::describeScanner() {
         if (isFrontLaser && told.maxRange)
             scan.maxRange = *told.maxRange;
         scan.maxRange = options_.maxRange.value_or(scan.maxRange);
+        if (options_.mirrored)
+            mirror(scan);
     }
     if (!options_.maxRange)
         log_.noReturn = findRepeatedRange(log_.scans);
     const double repeated = log_.noReturn ? log_.noReturn->from : farthest, guessed = log_.guessMaxRange();
     for (CarmenScan &scan : log_.scans)
         scan.maxRange = std::min({std::isinf(scan.maxRange) ? guessed : scan.maxRange, repeated, farthest});
+}
+
+VECTORLIB_BODY void detail::CarmenReader::mirror(CarmenScan &scan) {
+    scan.startAngle = -(scan.startAngle + scan.angleStep * (static_cast<double>(scan.ranges.size()) - 1));
+    std::reverse(scan.ranges.begin(), scan.ranges.end());
 }
 
 VECTORLIB_BODY detail::CarmenReader::Problem detail::CarmenReader::readLine(std::string_view line) {

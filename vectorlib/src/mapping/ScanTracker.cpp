@@ -32,6 +32,7 @@ VECTORLIB_BODY void ScanTracker::apply(const ScanTrackerSettings &settings) {
     builder.settings.tracking = settings.tracking;
     odometry_.setMount(settings.sensorOnRobot);
     check_.restart(); // with another mount the robot is elsewhere
+    scanner_ = ScannerCheck();
     search_.maxSeconds = settings.relocalizeSeconds;
 }
 
@@ -44,10 +45,12 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     raw_ = scan.points;
     wasPlaced_ = std::exchange(isPlaced_, false);
     wasMatched_ = builder.report().outcome == ScanReport::Outcome::Matched;
+    const Transformation2D before(builder.report().pose);
     EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
     scanner.closed = scan.closed;
     builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
     straight_ = locate(scan, begin, end);
+    checkScanner(before, scan.stamp);
     judge(scan);
     const ScanReport &report = builder.conclude(scan.points, straight_);
     points_ = scan.points;
@@ -75,6 +78,12 @@ VECTORLIB_BODY void ScanTracker::check(const OdometryTrack &track, double stamp)
         check_.restart();
     counts_.contradicted +=
         check_.add(stamp, track.at(stamp).pose(), builder.report().pose * settings_.sensorOnRobot.inverse());
+}
+
+VECTORLIB_BODY void ScanTracker::checkScanner(const Transformation2D &before, double stamp) {
+    if (isOdometryGuess_ && lastStamp_ && wasMatched_ && builder.isExpectedByScan() &&
+        builder.matchPair.match().linesSuffice)
+        scanner_.add(guessedWay_, before.inverse() * builder.expected(), stamp - *lastStamp_);
 }
 
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan) {
@@ -279,6 +288,7 @@ VECTORLIB_BODY bool ScanTracker::locate(TimedScan &scan, double begin, double en
     }
     guessed_ = Transformation2D(guess.pose);
     guessedWay_ = Transformation2D(builder.report().pose).inverse() * guessed_;
+    isOdometryGuess_ = guess.byOdometry;
     byOdometry_ = false;
     isWellExpected_ = lastStamp_ && scan.stamp > *lastStamp_ && scan.stamp - *lastStamp_ <= followed_s;
     Found found = find(scan, guess);

@@ -30,7 +30,8 @@ public:
     void advance();
     /// Whether the last scan has the stamp and the ranges of one shortly before it.
     bool isRepeated() const { return isRepeated_; }
-    /// Where the odometry puts the sensor at the last scan; nothing where the log does not tell.
+    /// Where the odometry puts the sensor at the last scan, and how fast it moves from the scan before to the
+    /// next one; nothing where the log does not tell.
     std::optional<OdometryTrack> odometry() const;
 
     /// Repeated scans so far.
@@ -51,6 +52,7 @@ private:
         return a.stamp == b.stamp && a.ranges == b.ranges;
     }
     Step stepTo(std::size_t i);
+    Twist2D twist() const;
     // The clock of a log may stand, or be set back: then it was any pause.
     static bool leaps(const Transformation2D &motion, double seconds);
 

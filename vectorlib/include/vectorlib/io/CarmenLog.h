@@ -94,6 +94,7 @@ struct CarmenOptions {
     std::optional<CarmenOdometryKind> refusesOdometry;
     /// Whatever the log says; degrees, metres.
     std::optional<double> fieldOfView, maxRange;
+    bool mirrored = false; ///< the angles count clockwise
 };
 
 /// A robot's log in CARMEN's text format.
@@ -171,6 +172,7 @@ private:
     InputError notOfLength(const char *keyword, std::size_t fields, std::size_t ranges = 0) const;
     /// After the last line: angles and longest ranges.
     void describeScanner();
+    static void mirror(CarmenScan &scan);
 
     LineReader lines_;
     CarmenOptions options_;

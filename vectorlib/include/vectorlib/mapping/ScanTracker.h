@@ -15,6 +15,7 @@
 #include "vectorlib/motion/MotionModel.h"
 #include "vectorlib/motion/Odometry.h"
 #include "vectorlib/motion/OpenDirection.h"
+#include "vectorlib/motion/ScannerCheck.h"
 #include "vectorlib/places/PlaceSearch.h"
 #include "vectorlib/places/Relocalized.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
@@ -172,6 +173,8 @@ public:
     std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
     /// The way by the scans that were matched and by the odometry, while the two contradict each other.
     const std::optional<OdometryCheck::Ways> &contradiction() const { return check_.contradiction(); }
+    /// What the drive tells of the scanner.
+    const ScannerCheck &scanner() const { return scanner_; }
     /// Whether the last scan is straight; else it is in doubt and stays out of the map.
     bool isStraight() const { return straight_; }
     const MotionModel &motion() const { return motion_; }
@@ -226,6 +229,8 @@ private:
     }
     TwistCorrection::Result twistError(const TimedScan &scan);
     void check(const OdometryTrack &track, double stamp);
+    // The motion since a pose, where the odometry and the scan before tell it, each on its own.
+    void checkScanner(const Transformation2D &before, double stamp);
     // What speaks against the pose that was found.
     void weigh(const TimedScan &scan);
     // A scan that too much speaks against, or whose place is sought, is lost.
@@ -265,6 +270,7 @@ private:
     MotionModel motion_;
     OdometryModel odometry_;
     OdometryCheck check_;
+    ScannerCheck scanner_;
     std::uint64_t epoch_ = 0; // of the odometry that is checked
     ScanTrackerCounts counts_;
     PlaceSearch search_;
@@ -277,6 +283,7 @@ private:
     PlaceState place_ = PlaceState::Known;
     bool grows_ = true;
     Transformation2D guessed_, guessedWay_; // the last scan, and from the one before
+    bool isOdometryGuess_ = false;
     DriveBreak break_;
     PlaceFitter withoutPeople_; // they are drawn, too: short walls do not speak against a pose
     OpenDirection open_;
