@@ -148,6 +148,20 @@ private Q_SLOTS:
         QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
     }
 
+    void anglesBeyondATurnAreRefused() {
+        const QJsonObject scan = roomScan({0, 0, 0}, 0), there{{"x", 0}, {"y", 0}, {"theta", 90}};
+        const std::pair<const char *, QJsonObject> calls[] = {
+            {"pose.set", there},
+            {"matcher.match", {{"reference", scan}, {"current", scan}, {"expected", there}}},
+            {"settings.set", {{"values", QJsonObject{{"sensor", QJsonObject{{"theta_rad", 90}}}}}}}};
+        for (const auto &[method, params] : calls) {
+            const Error error = failure(method, params);
+            QVERIFY2(error.message.contains("did you mean 1.571 rad (90 degrees)?"),
+                     qPrintable(method + (": " + error.message)));
+        }
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 2 * vectorlib::pi}});
+    }
+
     void undoBringsTheMapBack() {
         QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
         call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
