@@ -44,7 +44,7 @@ void ScanMatcher::declareMapCommands() {
                        "a journal")
                    .needs(Role::Engineer)
                    .param(path)
-                   .with("x-destructive", "the map; map.undo brings it back")
+                   .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
                    .gives<LoadedMap>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { loadMap(call, reply); }));
     addCommand(Command("map.list", "The maps and journals below map.folder, the newest first")
@@ -64,12 +64,12 @@ void ScanMatcher::declareMapCommands() {
                 worker_->post([this, reply](vectorlib::ScanTracker &tracker) { undo(tracker, reply); });
             }));
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
-                   .with("x-destructive", "the map; map.undo brings it back")
+                   .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
                    .returnsNull()
                    .asyncHandler([this](const Call &, const Reply &reply) {
                        worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
                            replace(tracker, {});
-                           corrector_->restart(tracker);
+                           forgetDrive();
                            showNewMap(tracker, reply, QJsonValue());
                        });
                    }));
@@ -91,10 +91,14 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
         *map = {"Map of " + std::to_string(counts_.scans) + " scans", {}, mirror_.trajectory(), {}};
     const auto write = [this, map, format, file = mapPath(call), force = call.flag("force"), reply] {
         const Result<SavedMap> saved = writeMapFile(file, format, force, *map);
+        if (!saved && format == "csv")
+            QMetaObject::invokeMethod(this, [this] { mirror_.setSaved(false); });
         reply.give(saved ? Result<QJsonValue>(asJson(*saved)) : saved.error());
         --filesUnderWay_;
     };
-    worker_->post([this, map, write](vectorlib::ScanTracker &tracker) {
+    worker_->post([this, map, write, isSaved = format == "csv"](vectorlib::ScanTracker &tracker) {
+        if (isSaved) // as soon as what the scans before gave is shown
+            QMetaObject::invokeMethod(this, [this] { mirror_.setSaved(true); });
         tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { map->segments.push_back(edge); });
         files_.start(write);
     });
@@ -112,13 +116,15 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
         for (const vectorlib::MapEdge &edge : *loaded)
             map.add(edge, edge.observations);
         replace(tracker, std::move(map));
-        corrector_->restart(tracker);
+        forgetDrive();
         seek(tracker); // else what it maps lies anywhere in it
-        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}));
+        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}), true);
     });
 }
 
 void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply) {
+    if (keepsLiveMap_)
+        return reply.error({ErrorCode::NotReady, "a drive goes on with live scans: end the replay first"});
     auto loaded = readJournalFile(file);
     if (!loaded)
         return reply.error(loaded.error());
@@ -163,52 +169,101 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
     replaced_.reset();
     replace(tracker, std::move(back));
     tracker.place(pose);
-    corrector_->restart(tracker);
+    forgetDrive();
     seek(tracker);
     LoadedMap answer;
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
     showNewMap(tracker, reply, asJson(answer));
 }
 
+void ScanMatcher::setUp(vectorlib::ScanTracker &tracker) {
+    tracker.apply(setup_.tracking);
+    tracker.builder.extract.vectorize.settings.sigma = setup_.sigma;
+    tracker.grow(grows_);
+}
+
+// That of the live map, which rests while a replay is mapped.
+void ScanMatcher::followDrive() {
+    if (!keepsLiveMap_)
+        corrector_->follow(setup_.closesLoops, worker_->tracker());
+}
+
+void ScanMatcher::forgetDrive() {
+    if (!keepsLiveMap_)
+        corrector_->restart(worker_->tracker());
+}
+
 // What was recorded elsewhere or before is not to grow into the map of now. Where nothing is mapped it does
 // not, and an empty map has nothing to keep.
-void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
+void ScanMatcher::setLiveMapAside() {
     if (!grows_ || live_)
         return;
     live_.emplace();
-    live_->pose = tracker.builder.report().pose;
+    live_->pose = worker_->tracker().builder.report().pose;
     live_->number = mapNumber_;
-    if (tracker.builder.map.isEmpty())
+    if (worker_->tracker().builder.map.isEmpty())
         return;
-    std::swap(live_->map, tracker.builder.map);
-    mapNumber_ = ++mapsBegun_;
     keepsLiveMap_ = true;
-    tracker.clear();
-    corrector_->follow(false, tracker); // its journal is of the live drive
-    showNewMap(tracker, std::nullopt, QJsonValue());
+    live_->tracker = worker_->exchange(std::make_unique<vectorlib::ScanTracker>());
+    setUp(worker_->tracker());
+    newMap_ = NewMap::No;
+    mapNumber_ = ++mapsBegun_;
+    QMetaObject::invokeMethod(this, [this] {
+        liveView_.emplace();
+        swapLiveView();
+        logInfo("replay", "a replay is mapped apart; the live map and its drive are kept");
+    });
+    showNewMap(worker_->tracker(), std::nullopt, QJsonValue());
 }
 
 // The map of the replay can be brought back by map.undo.
-void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
+void ScanMatcher::bringLiveMapBack() {
     if (!live_)
         return;
-    LiveMap live = std::move(*live_);
+    LiveDrive live = std::move(*live_);
     live_.reset();
+    if (!live.tracker) {
+        replace(worker_->tracker(), {});
+        worker_->tracker().place(live.pose);
+        mapNumber_ = live.number;
+        forgetDrive();
+        return showNewMap(worker_->tracker(), std::nullopt, QJsonValue());
+    }
+    const auto replayed = worker_->exchange(std::move(live.tracker));
+    vectorlib::ScanTracker &tracker = worker_->tracker();
+    if (!replayed->builder.map.isEmpty())
+        replaced_ = std::move(replayed->builder.map);
     keepsLiveMap_ = false;
-    const bool isSought = !live.map.isEmpty();
-    replace(tracker, std::move(live.map));
+    setUp(tracker);
     mapNumber_ = live.number;
-    tracker.place(live.pose);
-    if (isSought)
+    if (tracker.odometryFrame()) { // it knows the way since then
+        tracker.doubt();
+        place_ = tracker.placeState();
+    } else {
+        tracker.place(live.pose); // it stands still
         seek(tracker);
-    corrector_->restart(tracker);
-    QMetaObject::invokeMethod(this, [this] { // whether it closes loops is known there
-        if (worker_)
-            worker_->post([this, closes = closesLoops()](vectorlib::ScanTracker &now) {
-                corrector_->follow(closes, now);
-            });
-    });
-    showNewMap(tracker, std::nullopt, QJsonValue());
+    }
+    isInterrupted_ = true;
+    followDrive();
+    QMetaObject::invokeMethod(this, [this, counts = tracker.counts()] { showMapAgain(counts); });
+    if (live.correction)
+        applyCorrection(tracker, live.correction);
+}
+
+void ScanMatcher::swapLiveView() {
+    mirror_.swap(liveView_->map);
+    graph_.swap(liveView_->graph);
+    publishSnapshot("graph");
+}
+
+void ScanMatcher::showMapAgain(const vectorlib::ScanTrackerCounts &counts) {
+    swapLiveView();
+    liveView_.reset();
+    publishSnapshot("map");
+    counts_ = counts;
+    lostInARow_ = 0;
+    lastRecovery_.reset();
+    logInfo("replay", "the live map and its drive are back; map.undo brings back the map of the replay");
 }
 
 // One that was sought goes on elsewhere in its map, or where nobody was as yet: to expect it where the last
@@ -231,30 +286,31 @@ void ScanMatcher::beginReplayAnew(vectorlib::ScanTracker &tracker) {
     if (newMap_ != NewMap::Due)
         return; // another map was loaded meanwhile
     replace(tracker, {});
-    corrector_->restart(tracker);
+    forgetDrive();
     showNewMap(tracker, std::nullopt, QJsonValue());
 }
 
 void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
-                             const QJsonValue &answer) {
+                             const QJsonValue &answer, bool isSaved) {
     tracker.grow(grows_);
     place_ = tracker.placeState();
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(
         [&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
-    QMetaObject::invokeMethod(this,
-                              [this, edges = std::move(edges), number = mapNumber_, reply, answer]() mutable {
-                                  counts_ = vectorlib::ScanTrackerCounts();
-                                  lostInARow_ = 0;
-                                  lastRecovery_.reset();
-                                  mirror_.replace(*edges, number);
-                                  if (worker_) // where the old map is freed, which takes its time too
-                                      worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
-                                  publishSnapshot("map");
-                                  if (reply)
-                                      reply->result(answer);
-                              });
+    QMetaObject::invokeMethod(
+        this, [this, edges = std::move(edges), number = mapNumber_, reply, answer, isSaved]() mutable {
+            counts_ = vectorlib::ScanTrackerCounts();
+            lostInARow_ = 0;
+            lastRecovery_.reset();
+            mirror_.replace(*edges, number);
+            mirror_.setSaved(isSaved);
+            if (worker_) // where the old map is freed, which takes its time too
+                worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
+            publishSnapshot("map");
+            if (reply)
+                reply->result(answer);
+        });
 }
 
 } // namespace hermes::scanmatcher

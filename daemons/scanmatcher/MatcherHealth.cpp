@@ -46,8 +46,8 @@ void ScanMatcher::updateHealth() {
     health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
                  !replayed_ ? QString("live scans are matched")
                  : keepsLiveMap_
-                     ? QString("a replay is matched, in a map of its own; the live map is kept until "
-                               "live scans come")
+                     ? QString("a replay is matched, in a map of its own; the live map is kept, with its "
+                               "drive, until live scans come")
                      : QString("a replay is matched"));
     odometry_.report(health());
     const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
@@ -57,6 +57,24 @@ void ScanMatcher::updateHealth() {
     updateTrackingHealth();
     updateMemoryHealth();
     updateJournalHealth();
+    updateMapHealth();
+}
+
+// What would be gone if this program ended now; empty: nothing.
+QString ScanMatcher::unsavedText() const {
+    const MapMirror &map = liveView_ ? liveView_->map : mirror_;
+    if (map.isSaved())
+        return {};
+    const JournalState journal = corrector_ ? corrector_->state().journal : JournalState();
+    return QString("the map of %1 segments is in no file").arg(map.size()) +
+           (journal.path.isEmpty() ? QString() : "; its drive is in " + journal.path);
+}
+
+void ScanMatcher::updateMapHealth() {
+    const QString unsaved = unsavedText();
+    health().set("map", HealthLevel::Ok,
+                 unsaved.isEmpty() ? QString("nothing to save") : unsaved + "; map.save writes it",
+                 {{"segments", qint64(mirror_.size())}, {"saved", unsaved.isEmpty()}});
 }
 
 void ScanMatcher::updateMemoryHealth() {

@@ -75,6 +75,8 @@ private:
     QString blindText() const;
     void updateMemoryHealth();
     void updateJournalHealth();
+    void updateMapHealth();
+    QString unsavedText() const;
     std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
 
     vectorlib::ScanTrackerSettings trackerSettings() const;
@@ -84,13 +86,18 @@ private:
     // In the worker's thread:
     void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map);
     void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
-    void setLiveMapAside(vectorlib::ScanTracker &tracker);
-    void bringLiveMapBack(vectorlib::ScanTracker &tracker);
+    void setUp(vectorlib::ScanTracker &tracker);
+    void followDrive();
+    void forgetDrive();
+    void setLiveMapAside();
+    void bringLiveMapBack();
     void followReplay(const Scan &scan);
     void beginReplayAnew(vectorlib::ScanTracker &tracker);
     /// When the map is another one: hands it over to the main thread, then answers.
     void showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
-                    const QJsonValue &answer);
+                    const QJsonValue &answer, bool isSaved = false);
+    void showMapAgain(const vectorlib::ScanTrackerCounts &counts);
+    void swapLiveView();
     void matchTwo(const Call &call, const Reply &reply);
     MapPath mapPath(const Call &call);
     MatcherState matcherState() const;
@@ -101,17 +108,32 @@ private:
     std::unique_ptr<MapCorrector> corrector_;
     bool corrected_ = false;                       ///< since the last scan; the worker's
     std::optional<vectorlib::VectorMap> replaced_; ///< by the last map that was loaded or begun; the worker's
-    struct LiveMap {
-        vectorlib::VectorMap map;
+    /// What live scans go on with after a replay. Its drive rests meanwhile.
+    struct LiveDrive {
+        std::unique_ptr<vectorlib::ScanTracker> tracker; ///< none: its map was empty
         vectorlib::Pose2D pose;
-        qint64 number = 0;
+        qint64 number = 0;                      ///< of the map
+        std::shared_ptr<Correction> correction; ///< not applied yet
+    };
+    /// The same for the main thread.
+    struct LiveView {
+        MapMirror map;
+        GraphMirror graph;
+    };
+    /// How a tracker is set up.
+    struct Setup {
+        vectorlib::ScanTrackerSettings tracking;
+        double sigma = 0;
+        bool closesLoops = false;
     };
     qint64 mapNumber_ = 0, mapsBegun_ = 0;  ///< the worker's
     bool matchesReplay_ = false;            ///< the worker's
-    std::optional<LiveMap> live_;           ///< while a replay is mapped; the worker's
-    std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
-    bool replayed_ = false;                 ///< the last scan
-    double replayStamp_ = -1;               ///< of the last scan that was replayed
+    Setup setup_;                           ///< the worker's
+    std::optional<LiveDrive> live_;         ///< while a replay is mapped; the worker's
+    std::atomic<bool> keepsLiveMap_{false}; ///< it has a tracker
+    std::optional<LiveView> liveView_;
+    bool replayed_ = false;   ///< the last scan
+    double replayStamp_ = -1; ///< of the last scan that was replayed
     /// A replay that was sought to a place that its map does not have gets a new map.
     enum class NewMap { No, WhenNowhere, Due };
     NewMap newMap_ = NewMap::No; ///< the worker's
