@@ -9,8 +9,9 @@ namespace hermes::scanmatcher {
 
 namespace {
 
-constexpr double longestGap_s = 1; // between scans that follow each other
-constexpr int mostFiles = 4;       // that may wait to be written, each with its copy of the map
+constexpr double longestGap_s = 1;   // between scans that follow each other
+constexpr std::size_t mostSteps = 8; // that can be undone
+constexpr int mostFiles = 4;         // that may wait to be written, each with its copy of the map
 
 } // namespace
 
@@ -55,20 +56,23 @@ void ScanMatcher::declareMapCommands() {
                            reply.result(asJson(listMaps(folder)));
                        });
                    }));
-    addCommand(
-        Command("map.undo", "Brings back the map that the last map.clear or map.load replaced, and keeps "
-                            "the one of now for the next map.undo. The pose is sought in it; its drive is "
-                            "not remembered")
-            .gives<LoadedMap>()
-            .asyncHandler([this](const Call &, const Reply &reply) {
-                worker_->post([this, reply](vectorlib::ScanTracker &tracker) { undo(tracker, reply); });
-            }));
+    addCommand(Command("map.undo",
+                       "Undoes the last map.clear, map.load, pose.set, pose.relocalize or replay: its map "
+                       "or pose is back, then that of the one before. What was mapped since the sensor was "
+                       "put elsewhere goes, too. Where a map is back the pose is sought in it, unless it "
+                       "is known; its drive is not remembered")
+                   .param(Field::boolean("redo", "Carry out again what was undone last").byDefault(false))
+                   .gives<BroughtBack>()
+                   .asyncHandler([this](const Call &call, const Reply &reply) {
+                       worker_->post([this, again = call.flag("redo"), reply](
+                                         vectorlib::ScanTracker &tracker) { undo(tracker, again, reply); });
+                   }));
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
                    .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
                    .returnsNull()
                    .asyncHandler([this](const Call &, const Reply &reply) {
                        worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
-                           replace(tracker, {});
+                           replace(tracker, {}, "map.clear");
                            forgetDrive();
                            showNewMap(tracker, reply, QJsonValue());
                        });
@@ -115,7 +119,7 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
         vectorlib::VectorMap map;
         for (const vectorlib::MapEdge &edge : *loaded)
             map.add(edge, edge.observations);
-        replace(tracker, std::move(map));
+        replace(tracker, std::move(map), "map.load");
         forgetDrive();
         seek(tracker); // else what it maps lies anywhere in it
         showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}), true);
@@ -138,7 +142,7 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
     const std::vector<vectorlib::Pose2D> poses = drive.loops.poses();
     drive.rebuild(builder, poses);
     drive.review(builder.map, poses);
-    replace(tracker, std::move(builder.map));
+    replace(tracker, std::move(builder.map), "map.load");
     tracker.place(poses.back());
     seek(tracker);
     LoadedMap answer{0, drive.loops.scans(), drive.loops.keys().size(), drive.loops.counts().closed,
@@ -149,30 +153,88 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
 }
 
 // The one of now is kept, unless it is empty.
-void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map) {
-    if (!tracker.builder.map.isEmpty()) {
-        replaced_.emplace();
-        std::swap(*replaced_, tracker.builder.map);
-    }
+void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command) {
+    if (!tracker.builder.map.isEmpty())
+        remember({command, std::move(tracker.builder.map), false, {}, {}, false});
     tracker.clear();
     newMap_ = NewMap::No;
-    std::swap(tracker.builder.map, map);
+    tracker.builder.map = std::move(map);
     mapNumber_ = ++mapsBegun_;
 }
 
-void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
-    if (!replaced_)
-        return reply.error(
-            {ErrorCode::NotReady, "there is no map to bring back: none was replaced, or it is back already"});
-    const vectorlib::Pose2D pose = tracker.builder.report().pose;
-    vectorlib::VectorMap back = std::move(*replaced_);
-    replaced_.reset();
-    replace(tracker, std::move(back));
-    tracker.place(pose);
-    forgetDrive();
-    seek(tracker);
-    LoadedMap answer;
+void ScanMatcher::remember(UndoStep step) {
+    history_.undone.push_back(std::move(step));
+    if (history_.undone.size() > mostSteps)
+        history_.undone.erase(history_.undone.begin());
+    history_.redone.clear();
+    tellSteps();
+}
+
+void ScanMatcher::rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought) {
+    remember({command, std::nullopt, true, before, worker_->tracker().motion().pose(), wasSought});
+    keepMapOfStep(worker_->tracker());
+}
+
+// Before anything is mapped from where the sensor was put.
+void ScanMatcher::keepMapOfStep(const vectorlib::ScanTracker &tracker) {
+    if (history_.undone.empty() || !grows_ ||
+        tracker.placeState() != vectorlib::ScanTracker::PlaceState::Known)
+        return;
+    UndoStep &last = history_.undone.back();
+    if (!last.map)
+        last.map = tracker.builder.map;
+}
+
+// The map that they are of was corrected.
+void ScanMatcher::moveSteps(const vectorlib::Transformation2D &moved) {
+    for (std::vector<UndoStep> *steps : {&history_.undone, &history_.redone})
+        for (auto step = steps->rbegin(); step != steps->rend() && !step->map; ++step) {
+            step->before = (moved * vectorlib::Transformation2D(step->before)).pose();
+            step->told = (moved * vectorlib::Transformation2D(step->told)).pose();
+        }
+}
+
+void ScanMatcher::tellSteps() {
+    const auto next = [](const std::vector<UndoStep> &steps) {
+        return steps.empty() ? QString() : steps.back().command;
+    };
+    QMetaObject::invokeMethod(this, [this, undoes = next(history_.undone), redoes = next(history_.redone)] {
+        undoes_ = undoes;
+        redoes_ = redoes;
+    });
+}
+
+void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply) {
+    std::vector<UndoStep> &from = again ? history_.redone : history_.undone,
+                          &to = again ? history_.undone : history_.redone;
+    if (from.empty())
+        return reply.error({ErrorCode::NotReady, again ? "nothing was undone since the last command"
+                                                       : "there is nothing to undo: no command has replaced "
+                                                         "the map or put the sensor elsewhere"});
+    UndoStep step = std::move(from.back());
+    from.pop_back();
+    const vectorlib::Pose2D now = tracker.motion().pose();
+    const vectorlib::Pose2D target = step.isPose ? step.before * step.told.inverse() * now : now;
+    UndoStep back{step.command, std::nullopt, step.isPose,
+                  now,          target,       place_ == vectorlib::ScanTracker::PlaceState::Sought};
+    if (step.map) {
+        back.map = std::move(tracker.builder.map);
+        tracker.clear();
+        tracker.builder.map = std::move(*step.map);
+        newMap_ = NewMap::No;
+        mapNumber_ = ++mapsBegun_;
+    }
+    to.push_back(std::move(back));
+    tellSteps();
+    tracker.claim(target);
+    if (!tracker.builder.map.isEmpty() && (step.isPose ? step.wasSought : true))
+        seek(tracker);
+    place_ = tracker.placeState();
+    BroughtBack answer{step.command, step.map.has_value(), step.isPose && !step.wasSought, 0, target};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
+    if (!step.map)
+        return reply.result(asJson(answer));
+    forgetDrive();
     showNewMap(tracker, reply, asJson(answer));
 }
 
@@ -206,6 +268,8 @@ void ScanMatcher::setLiveMapAside() {
     keepsLiveMap_ = true;
     live_->tracker = worker_->exchange(std::make_unique<vectorlib::ScanTracker>());
     setUp(worker_->tracker());
+    live_->history = std::exchange(history_, {});
+    tellSteps();
     newMap_ = NewMap::No;
     mapNumber_ = ++mapsBegun_;
     QMetaObject::invokeMethod(this, [this] {
@@ -223,7 +287,7 @@ void ScanMatcher::bringLiveMapBack() {
     LiveDrive live = std::move(*live_);
     live_.reset();
     if (!live.tracker) {
-        replace(worker_->tracker(), {});
+        replace(worker_->tracker(), {}, "replay");
         worker_->tracker().place(live.pose);
         mapNumber_ = live.number;
         forgetDrive();
@@ -231,8 +295,10 @@ void ScanMatcher::bringLiveMapBack() {
     }
     const auto replayed = worker_->exchange(std::move(live.tracker));
     vectorlib::ScanTracker &tracker = worker_->tracker();
+    history_ = std::move(live.history);
     if (!replayed->builder.map.isEmpty())
-        replaced_ = std::move(replayed->builder.map);
+        remember({"replay", std::move(replayed->builder.map), false, {}, {}, false});
+    tellSteps();
     keepsLiveMap_ = false;
     setUp(tracker);
     mapNumber_ = live.number;
@@ -285,7 +351,7 @@ void ScanMatcher::followReplay(const Scan &scan) {
 void ScanMatcher::beginReplayAnew(vectorlib::ScanTracker &tracker) {
     if (newMap_ != NewMap::Due)
         return; // another map was loaded meanwhile
-    replace(tracker, {});
+    replace(tracker, {}, "replay");
     forgetDrive();
     showNewMap(tracker, std::nullopt, QJsonValue());
 }

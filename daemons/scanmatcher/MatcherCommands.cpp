@@ -87,8 +87,11 @@ void ScanMatcher::declareMatcherCommands() {
                        const Pose2D pose = toPose(call.params);
                        worker_->post([this, pose, isSure = call.flag("confirm"),
                                       reply](vectorlib::ScanTracker &tracker) {
+                           const Pose2D before = tracker.motion().pose();
+                           const bool wasSought = place_ == vectorlib::ScanTracker::PlaceState::Sought;
                            isSure ? tracker.place(pose, 1) : tracker.claim(pose);
                            place_ = tracker.placeState();
+                           rememberPose("pose.set", before, wasSought);
                            reply.result(QJsonValue());
                        });
                    }));

@@ -128,6 +128,8 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
                  "yet "
                  "confirmed by the scans; sought. While it is not known nothing is mapped")
             .choices({"known", "found", "told", "sought"})
+            .add("undoes", &S::undoes, "The command that map.undo would undo; empty: none")
+            .add("redoes", &S::redoes, "That it would carry out again with redo; empty: none")
             .add("scans", &S::scans, "Since the map is the one it is")
             .add("matched", &S::matched, "Of them")
             .add("lost", &S::lost, "Of them: no match was good enough")
@@ -221,6 +223,21 @@ const Fields<SavedMap> &fieldsOf(Of<SavedMap>) {
                                    .add("path", &SavedMap::path, "Of the file")
                                    .add("segments", &SavedMap::segments, "Edges written")
                                    .add("bytes", &SavedMap::bytes, "Size of the file", "byte");
+    return fields;
+}
+
+const Fields<BroughtBack> &fieldsOf(Of<BroughtBack>) {
+    using B = BroughtBack;
+    static const auto fields =
+        Fields<B>()
+            .add("command", &B::command,
+                 "That was undone, or carried out again: map.clear, map.load, pose.set, "
+                 "pose.relocalize or replay")
+            .add("map", &B::map, "Another map is back")
+            .add("pose", &B::pose,
+                 "The sensor is back at its place, moved by the way since; else it is sought")
+            .add("segments", &B::segments, "Edges of the map")
+            .add("at", &B::at, "Where the sensor is now expected");
     return fields;
 }
 

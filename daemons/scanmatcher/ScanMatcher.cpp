@@ -141,6 +141,7 @@ Result<void> ScanMatcher::start() {
             isInterrupted_ = true;
         else if (!keepsLiveMap_) // else the drive is that of the live map
             corrector_->add(tracker, scan.data.points, std::exchange(isInterrupted_, false));
+        keepMapOfStep(tracker);
         Outcome outcome = outcomeOf(tracker, scan);
         outcome.result.pose.corrected = std::exchange(corrected_, false);
         outcome.recovery = recovery;
@@ -195,6 +196,7 @@ void ScanMatcher::begin(bool toMap) {
         if (matchesReplay_)
             setLiveMapAside();
         worker_->tracker().grow(grows_);
+        keepMapOfStep(worker_->tracker());
         followDrive();
     });
     active_ = true;
@@ -303,7 +305,9 @@ void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Co
         live_->correction = correction;
         return;
     }
+    const vectorlib::Transformation2D before(tracker.motion().pose());
     if (corrector_->apply(tracker, *correction)) {
+        moveSteps(vectorlib::Transformation2D(tracker.motion().pose()) * before.inverse());
         corrected_ = true;
         QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
             showCorrection(correction, since);
@@ -341,6 +345,8 @@ MatcherState ScanMatcher::matcherState() const {
     state.active = active_;
     state.mode = mapping_ ? "mapping" : "localization";
     state.place = toText(place_);
+    state.undoes = undoes_;
+    state.redoes = redoes_;
     state.scans = quint64(counts_.scans);
     state.matched = quint64(counts_.matched);
     state.lost = quint64(counts_.lost);

@@ -49,6 +49,18 @@ private:
         std::size_t segments = 0, points = 0; ///< of the last
     };
 
+    /// What a command that changed map or pose did away with.
+    struct UndoStep {
+        QString command;
+        std::optional<vectorlib::VectorMap> map; ///< none: it is still the same
+        bool isPose = false;                     ///< the sensor was put elsewhere
+        vectorlib::Pose2D before, told;          ///< of the sensor, then and instead of that
+        bool wasSought = false;                  ///< the place before
+    };
+    struct History {
+        std::vector<UndoStep> undone, redone; ///< what can be; the last is the next
+    };
+
     void declareSettings();
     void declareTopics();
     void declareMatcherCommands();
@@ -84,8 +96,13 @@ private:
     void loadMap(const Call &call, const Reply &reply);
     void loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply);
     // In the worker's thread:
-    void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map);
-    void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
+    void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command);
+    void undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply);
+    void remember(UndoStep step);
+    void rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought);
+    void keepMapOfStep(const vectorlib::ScanTracker &tracker);
+    void moveSteps(const vectorlib::Transformation2D &moved);
+    void tellSteps();
     void setUp(vectorlib::ScanTracker &tracker);
     void followDrive();
     void forgetDrive();
@@ -106,14 +123,16 @@ private:
     QThreadPool files_; ///< one thread, which writes maps: a disk may take its time
     std::unique_ptr<Worker> worker_;
     std::unique_ptr<MapCorrector> corrector_;
-    bool corrected_ = false;                       ///< since the last scan; the worker's
-    std::optional<vectorlib::VectorMap> replaced_; ///< by the last map that was loaded or begun; the worker's
+    bool corrected_ = false;  ///< since the last scan; the worker's
+    History history_;         ///< the worker's
+    QString undoes_, redoes_; ///< the commands that map.undo would undo, and carry out again; empty: none
     /// What live scans go on with after a replay. Its drive rests meanwhile.
     struct LiveDrive {
         std::unique_ptr<vectorlib::ScanTracker> tracker; ///< none: its map was empty
         vectorlib::Pose2D pose;
         qint64 number = 0;                      ///< of the map
         std::shared_ptr<Correction> correction; ///< not applied yet
+        History history;
     };
     /// The same for the main thread.
     struct LiveView {

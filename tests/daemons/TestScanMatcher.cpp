@@ -72,7 +72,7 @@ private Q_SLOTS:
         matcher->shutDown();
         const std::vector<LogMessage> log = Log::instance().tail(10);
         QVERIFY(std::any_of(log.begin(), log.end(), [](const LogMessage &one) {
-            return one.source == "map" && one.text.contains("segments is in no file; its drive is in ");
+            return one.source == "map" && one.text.contains("segments is in no file");
         }));
     }
 
@@ -200,11 +200,74 @@ private Q_SLOTS:
         for (int i = 0; i < back.size(); ++i)
             for (const char *member : {"x1", "y1", "x2", "y2", "n", "observations"})
                 QCOMPARE(back[i].toObject()[member], before[i].toObject()[member]);
-        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        QCOMPARE(call("matcher.state")["redoes"].toString(), QString("map.clear"));
+        QCOMPARE(call("map.undo", {{"redo", true}})["segments"].toInt(), 0);
+        QCOMPARE(call("map.undo")["command"].toString(), QString("map.clear"));
         QVERIFY(failure("map.load", {{"path", "none.csv"}}).is(ErrorCode::InputOutput)); // replaces nothing
-        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        QCOMPARE(call("matcher.state")["undoes"].toString(), QString("pose.set"));
         drive(0, 10); // it is found in it, and the map stays the same room
         QCOMPARE(call("map.get")["size"].toInt(), before.size());
+    }
+
+    void undoBringsThePoseBack_data() {
+        const Rows<bool> row("confirm");
+        row("a place that nothing agrees with", false);
+        row("a place that somebody insists on", true);
+    }
+
+    void undoBringsThePoseBack() {
+        QFETCH(bool, confirm);
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 20);
+        const QJsonArray before = call("map.get")["edges"].toArray();
+        QJsonObject pose = call("map.undo", {{"redo", false}}); // the first pose.set: the frame is another
+        QVERIFY(pose["map"].toBool() && pose["segments"].toInt() == 0);
+        QCOMPARE(call("map.undo", {{"redo", true}})["segments"].toInt(), before.size());
+        drive(0, 20);
+        const int keyScans = call("matcher.state")["key_scans"].toInt();
+        const QJsonArray room = call("map.get")["edges"].toArray();
+
+        call("pose.set", {{"x", 1.5}, {"y", 6.5}, {"theta", -0.7}, {"confirm", confirm}});
+        QCOMPARE(call("matcher.state")["undoes"].toString(), QString("pose.set"));
+        drive(20, 30);
+        QCOMPARE(call("map.get")["size"].toInt() > room.size(), confirm); // a second room
+        pose = call("map.undo");
+        QCOMPARE(pose["command"].toString(), QString("pose.set"));
+        QVERIFY(pose["pose"].toBool());
+        QCOMPARE(pose["map"].toBool(), confirm);
+        QCOMPARE(call("map.get")["edges"].toArray().size(), room.size());
+        const vectorlib::Pose2D truth = onTheWay(29); // it has driven on
+        const QJsonObject at = pose["at"].toObject();
+        QVERIFY2(std::hypot(at["x"].toDouble() - truth.x, at["y"].toDouble() - truth.y) < 0.1,
+                 qPrintable(QString("%1 %2").arg(at["x"].toDouble()).arg(at["y"].toDouble())));
+        QVERIFY(confirm || call("matcher.state")["key_scans"].toInt() >= keyScans); // the drive goes on
+        for (int i = 30; i < 40; ++i)
+            source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), confirm ? 10 : 40); // of this map
+        QTRY_COMPARE(call("matcher.state")["place"].toString(), QString("known"));
+        QCOMPARE(call("map.get")["size"].toInt(), room.size());
+        if (confirm) // what was undone is not lost either
+            QVERIFY(call("map.undo", {{"redo", true}})["segments"].toInt() > room.size());
+    }
+
+    void eachUndoGoesOneStepBack() {
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 10);
+        const int walls = call("map.get")["size"].toInt();
+        call("map.save", {{"path", "room.csv"}});
+        call("map.clear");
+        call("map.load", {{"path", "room.csv"}}); // which replaces an empty map
+        for (int i = 0; i < 20; ++i)
+            call("pose.set", {{"x", 0.1 * i}, {"y", 0}, {"theta", 0}});
+        for (int i = 0; i < 8; ++i)
+            QCOMPARE(call("map.undo")["command"].toString(), QString("pose.set"));
+        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady)); // no further
+        call("map.load", {{"path", "room.csv"}});
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0}});
+        QCOMPARE(call("map.undo")["command"].toString(), QString("pose.set"));
+        const QJsonObject loaded = call("map.undo");
+        QCOMPARE(loaded["command"].toString(), QString("map.load"));
+        QCOMPARE(loaded["segments"].toInt(), walls);
     }
 
     void mapsAreListed() {
