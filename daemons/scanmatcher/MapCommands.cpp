@@ -328,6 +328,8 @@ void ScanMatcher::showMapAgain(const vectorlib::ScanTrackerCounts &counts) {
     publishSnapshot("map");
     counts_ = counts;
     lostInARow_ = 0;
+    doubtedSince_.reset();
+    doubted_s_ = 0;
     lastRecovery_.reset();
     logInfo("replay", "the live map and its drive are back; map.undo brings back the map of the replay");
 }
@@ -368,6 +370,8 @@ void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optiona
         this, [this, edges = std::move(edges), number = mapNumber_, reply, answer, isSaved]() mutable {
             counts_ = vectorlib::ScanTrackerCounts();
             lostInARow_ = 0;
+            doubtedSince_.reset();
+            doubted_s_ = 0;
             lastRecovery_.reset();
             mirror_.replace(*edges, number);
             mirror_.setSaved(isSaved);

@@ -8,7 +8,8 @@ using PlaceState = vectorlib::ScanTracker::PlaceState;
 
 namespace {
 
-constexpr double longestSilence_s = 3, longestBlindness_s = 3;
+constexpr double longestSilence_s = 3, longestBlindness_s = 3, longestDoubt_s = 3;
+constexpr double doubtful = 0.5; // trust; as in the window
 
 // What of a source's messages is no message at all, as one with a number that is not finite.
 QString unreadable(const Client::Rejected &rejected) {
@@ -112,6 +113,16 @@ void ScanMatcher::noteSkipped(const Outcome &outcome) {
     skipped_.points = outcome.points;
 }
 
+// Time is that of the scans.
+void ScanMatcher::noteTrust(const ScanResult &result) {
+    trust_ = result.pose.trust;
+    if (trust_ >= doubtful)
+        doubtedSince_.reset();
+    else if (!doubtedSince_ || result.stamp < *doubtedSince_) // or the clock was set back
+        doubtedSince_ = result.stamp;
+    doubted_s_ = doubtedSince_ ? result.stamp - *doubtedSince_ : 0;
+}
+
 bool ScanMatcher::isBlind() const {
     return skipped_.count > 0 && monotonicNow() - skipped_.since > longestBlindness_s;
 }
@@ -129,9 +140,15 @@ QString ScanMatcher::blindText() const {
 }
 
 void ScanMatcher::updateTrackingHealth() {
-    QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
-                      : isBlind()     ? blindText()
-                                      : QString("on track");
+    QString message =
+        lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
+        : isBlind()     ? blindText()
+        : doubted_s_ >= longestDoubt_s
+            ? QString("the pose is doubtful for %1 s: its trust is %2, expected are %3 at least")
+                  .arg(doubted_s_, 0, 'f', 0)
+                  .arg(trust_, 0, 'f', 2)
+                  .arg(doubtful)
+            : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
     const PlaceState place = place_;
@@ -146,11 +163,13 @@ void ScanMatcher::updateTrackingHealth() {
                    "mapped. Drive to where the map shows the same, or tell the place with pose.set";
     const HealthLevel level =
         lostInARow_ >= 3 ? HealthLevel::Failed
-        : isBlind() || (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
+        : isBlind() || doubted_s_ >= longestDoubt_s ||
+                (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
             ? HealthLevel::Warn
             : HealthLevel::Ok;
     health().set("tracking", level, message,
                  {{"lost_in_a_row", lostInARow_},
+                  {"trust", trust_},
                   {"skipped_in_a_row", skipped_.count},
                   {"recoveries", qint64(recoveries_)},
                   {"recovered", qint64(recovered_)}});

@@ -284,6 +284,7 @@ void ScanMatcher::show(const Outcome &o) {
         lastRecovery_.reset();
     noteSkipped(o);
     const ScanResult &r = o.result;
+    noteTrust(r);
     mirror_.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
     publish("scan", r, r.stamp);
     publish("pose", r.pose, r.stamp);

@@ -83,6 +83,7 @@ private:
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
     void noteSkipped(const Outcome &outcome);
+    void noteTrust(const ScanResult &result);
     bool isBlind() const;
     QString blindText() const;
     void updateMemoryHealth();
@@ -171,7 +172,9 @@ private:
     vectorlib::ScanTrackerCounts counts_;
     int lostInARow_ = 0;
     SkippedScans skipped_;
-    bool relocalizing_ = false; ///< for a command
+    std::optional<double> doubtedSince_; ///< stamp of the first of the scans in a row that are trusted little
+    double doubted_s_ = 0, trust_ = 0;   ///< how long so far, and of the last scan
+    bool relocalizing_ = false;          ///< for a command
     quint64 recoveries_ = 0,
             recovered_ = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost

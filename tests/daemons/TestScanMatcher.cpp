@@ -445,6 +445,30 @@ private Q_SLOTS:
         QVERIFY(!updates[1]["cleared"].toBool());
     }
 
+    // Along a corridor without an end nothing tells how far it is.
+    void healthFollowsTheTrust() {
+        QJsonArray x, y;
+        for (int i = 0; i < 400; ++i) {
+            x << (i < 200 ? -4 + 0.04 * i : 4 - 0.04 * (i - 200));
+            y << (i < 200 ? -1.0 : 1.0);
+        }
+        const auto show = [&](int from, int to) {
+            for (int i = from; i < to; ++i)
+                source->publish("scan2d", QJsonObject{{"stamp", 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}},
+                                0.1 * i);
+            QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
+        };
+        show(0, 30); // 2.9 s
+        QCOMPARE(healthItem("tracking")["level"].toString(), QString("ok"));
+        show(30, 40);
+        const QString message = healthItem("tracking")["message"].toString();
+        QVERIFY2(message.startsWith("the pose is doubtful for 4 s: its trust is 0."), qPrintable(message));
+        QCOMPARE(healthItem("tracking")["level"].toString(), QString("warn"));
+        call("map.clear");
+        drive(0, 40);
+        QCOMPARE(healthItem("tracking")["message"].toString(), QString("on track"));
+    }
+
     void queueDropsItsOldestAndCounts() {
         std::promise<void> release;
         std::vector<quint64> seen;
