@@ -3,10 +3,23 @@
 #include "vectorlib/geometry/Angle.h"
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace hermes {
+
+/// The radians of an angle that a person types: radians, or degrees as "90deg". `parseNumber` reads the
+/// number.
+template <typename ParseNumber>
+std::optional<double> parseAngle(std::string_view text, const ParseNumber &parseNumber) {
+    constexpr std::string_view unit = "deg";
+    const bool inDegrees = text.size() > unit.size() && text.substr(text.size() - unit.size()) == unit;
+    text.remove_suffix(inDegrees ? unit.size() : 0);
+    const std::optional<double> number = parseNumber(text);
+    return number && inDegrees ? *number * vectorlib::pi / 180 : number;
+}
 
 /// Whether an angle in radians is beyond a full turn: most often it was meant in degrees.
 inline bool isBeyondTurn(double angle) {

@@ -5,6 +5,7 @@
 
 #include <QJsonArray>
 #include <algorithm>
+#include <optional>
 
 namespace hermes {
 namespace {
@@ -13,6 +14,27 @@ constexpr int mostTexts = 5;
 
 bool isAngle(const QJsonObject &schema) {
     return schema.value(QStringLiteral("unit")) == QStringLiteral("rad");
+}
+
+/// Of a text as "90deg".
+std::optional<double> angleIn(const QJsonValue &value) {
+    if (!value.toString().endsWith(QStringLiteral("deg")))
+        return std::nullopt;
+    return parseAngle(value.toString().toStdString(), [](std::string_view text) {
+        bool isNumber = false;
+        const double number = QByteArray(text.data(), int(text.size())).toDouble(&isNumber);
+        return isNumber && std::isfinite(number) ? std::optional(number) : std::nullopt;
+    });
+}
+
+/// Of a value, or of one of those in it.
+template <typename Holds>
+bool anyHolds(const QJsonValue &value, const Holds &holds) {
+    const auto below = [&holds](const QJsonValue &inner) { return anyHolds(inner, holds); };
+    const QJsonObject object = value.toObject();
+    const QJsonArray array = value.toArray();
+    return holds(value) || std::any_of(object.begin(), object.end(), below) ||
+           std::any_of(array.begin(), array.end(), below);
 }
 
 /// Lists may be long, and most hold no angle.
@@ -43,11 +65,32 @@ QStringList beyondTurn(const QJsonObject &schema, const QJsonValue &value, const
     return texts.mid(0, mostTexts);
 }
 
+QJsonValue withAnglesRead(const QJsonObject &schema, const QJsonValue &value) {
+    if (value.isString()) {
+        const auto angle = isAngle(schema) ? angleIn(value) : std::nullopt;
+        return angle ? QJsonValue(*angle) : value;
+    }
+    if (value.isArray()) {
+        QJsonArray array = value.toArray();
+        for (QJsonValueRef element : array)
+            element = withAnglesRead(schema.value(itemsKey).toObject(), element);
+        return array;
+    }
+    if (!value.isObject())
+        return value;
+    QJsonObject object = value.toObject();
+    const QJsonObject properties = schema.value(propertiesKey).toObject();
+    for (auto member = object.begin(); member != object.end(); ++member)
+        member.value() = withAnglesRead(properties.value(member.key()).toObject(), member.value());
+    return object;
+}
+
+bool holdsAngleText(const QJsonValue &value) {
+    return anyHolds(value, [](const QJsonValue &one) { return angleIn(one).has_value(); });
+}
+
 bool holdsBeyondTurn(const QJsonValue &value) {
-    const QJsonObject object = value.toObject();
-    const QJsonArray array = value.toArray();
-    return isBeyondTurn(value.toDouble()) || std::any_of(object.begin(), object.end(), holdsBeyondTurn) ||
-           std::any_of(array.begin(), array.end(), holdsBeyondTurn);
+    return anyHolds(value, [](const QJsonValue &one) { return isBeyondTurn(one.toDouble()); });
 }
 
 } // namespace hermes

@@ -1,6 +1,7 @@
 #include "common/schema/Field.h"
 
 #include "protocol/wire/Fields.h"
+#include "vectorlib/geometry/Angle.h"
 
 namespace hermes {
 namespace {
@@ -19,6 +20,10 @@ Field::Field(QString name, const QString &description, QJsonObject schema)
 
 Field Field::number(const QString &name, const QString &description) {
     return Field(name, description, ofType("number"));
+}
+
+Field Field::angle(const QString &name, const QString &description) {
+    return number(name, description).unit(QStringLiteral("rad")).range(-2 * vectorlib::pi, 2 * vectorlib::pi);
 }
 
 Field Field::integer(const QString &name, const QString &description) {

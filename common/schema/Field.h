@@ -13,6 +13,8 @@ class Field {
 public:
     static Field number(const QString &name, const QString &description);
     static Field integer(const QString &name, const QString &description);
+    /// A number of radians, of a full turn at most.
+    static Field angle(const QString &name, const QString &description);
     static Field text(const QString &name, const QString &description);
     static Field boolean(const QString &name, const QString &description);
     /// itemSchema: the JSON Schema of each element, e.g. {{"type", "number"}}.

@@ -1,5 +1,6 @@
 #include "common/schema/SchemaValidator.h"
 
+#include "common/schema/Angles.h"
 #include "common/schema/CheckableSchema.h"
 #include "common/schema/SchemaKeys.h"
 #include "common/schema/SchemaText.h"
@@ -114,6 +115,11 @@ Place locate(const std::vector<std::string> &context, const QJsonObject &schema,
     return place;
 }
 
+// ": 90 rad is 14.3 turns; did you mean ...", of an angle beyond a turn.
+QString degreesText(const Place &place) {
+    return place.value.isDouble() ? beyondTurn(place.schema, place.value).join(QString()) : QString();
+}
+
 } // namespace
 
 struct SchemaValidator::Compiled {
@@ -169,7 +175,7 @@ std::vector<SchemaViolation> SchemaValidator::check(const QJsonValue &value) con
             return other.path != place.path && inside(other.path);
         });
         if (!known && !outer)
-            found.push_back({place.path, place.value, expectation(place.schema)});
+            found.push_back({place.path, place.value, expectation(place.schema) + degreesText(place)});
     }
     return found;
 }

@@ -9,8 +9,9 @@ namespace hermes::scanmatcher {
 
 namespace {
 
-constexpr double longestGap_s = 1; // between scans that follow each other
-constexpr int mostFiles = 4;       // that may wait to be written, each with its copy of the map
+constexpr double longestGap_s = 1;   // between scans that follow each other
+constexpr std::size_t mostSteps = 8; // that can be undone
+constexpr int mostFiles = 4;         // that may wait to be written, each with its copy of the map
 
 } // namespace
 
@@ -44,7 +45,7 @@ void ScanMatcher::declareMapCommands() {
                        "a journal")
                    .needs(Role::Engineer)
                    .param(path)
-                   .with("x-destructive", "the map; map.undo brings it back")
+                   .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
                    .gives<LoadedMap>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { loadMap(call, reply); }));
     addCommand(Command("map.list", "The maps and journals below map.folder, the newest first")
@@ -55,21 +56,24 @@ void ScanMatcher::declareMapCommands() {
                            reply.result(asJson(listMaps(folder)));
                        });
                    }));
-    addCommand(
-        Command("map.undo", "Brings back the map that the last map.clear or map.load replaced, and keeps "
-                            "the one of now for the next map.undo. The pose is sought in it; its drive is "
-                            "not remembered")
-            .gives<LoadedMap>()
-            .asyncHandler([this](const Call &, const Reply &reply) {
-                worker_->post([this, reply](vectorlib::ScanTracker &tracker) { undo(tracker, reply); });
-            }));
+    addCommand(Command("map.undo",
+                       "Undoes the last map.clear, map.load, pose.set, pose.relocalize or replay: its map "
+                       "or pose is back, then that of the one before. What was mapped since the sensor was "
+                       "put elsewhere goes, too. Where a map is back the pose is sought in it, unless it "
+                       "is known; its drive is not remembered")
+                   .param(Field::boolean("redo", "Carry out again what was undone last").byDefault(false))
+                   .gives<BroughtBack>()
+                   .asyncHandler([this](const Call &call, const Reply &reply) {
+                       worker_->post([this, again = call.flag("redo"), reply](
+                                         vectorlib::ScanTracker &tracker) { undo(tracker, again, reply); });
+                   }));
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
-                   .with("x-destructive", "the map; map.undo brings it back")
+                   .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
                    .returnsNull()
                    .asyncHandler([this](const Call &, const Reply &reply) {
                        worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
-                           replace(tracker, {});
-                           corrector_->restart(tracker);
+                           replace(tracker, {}, "map.clear");
+                           forgetDrive();
                            showNewMap(tracker, reply, QJsonValue());
                        });
                    }));
@@ -91,10 +95,14 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
         *map = {"Map of " + std::to_string(counts_.scans) + " scans", {}, mirror_.trajectory(), {}};
     const auto write = [this, map, format, file = mapPath(call), force = call.flag("force"), reply] {
         const Result<SavedMap> saved = writeMapFile(file, format, force, *map);
+        if (!saved && format == "csv")
+            QMetaObject::invokeMethod(this, [this] { mirror_.setSaved(false); });
         reply.give(saved ? Result<QJsonValue>(asJson(*saved)) : saved.error());
         --filesUnderWay_;
     };
-    worker_->post([this, map, write](vectorlib::ScanTracker &tracker) {
+    worker_->post([this, map, write, isSaved = format == "csv"](vectorlib::ScanTracker &tracker) {
+        if (isSaved) // as soon as what the scans before gave is shown
+            QMetaObject::invokeMethod(this, [this] { mirror_.setSaved(true); });
         tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { map->segments.push_back(edge); });
         files_.start(write);
     });
@@ -111,14 +119,16 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
         vectorlib::VectorMap map;
         for (const vectorlib::MapEdge &edge : *loaded)
             map.add(edge, edge.observations);
-        replace(tracker, std::move(map));
-        corrector_->restart(tracker);
+        replace(tracker, std::move(map), "map.load");
+        forgetDrive();
         seek(tracker); // else what it maps lies anywhere in it
-        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}));
+        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}), true);
     });
 }
 
 void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply) {
+    if (keepsLiveMap_)
+        return reply.error({ErrorCode::NotReady, "a drive goes on with live scans: end the replay first"});
     auto loaded = readJournalFile(file);
     if (!loaded)
         return reply.error(loaded.error());
@@ -132,7 +142,7 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
     const std::vector<vectorlib::Pose2D> poses = drive.loops.poses();
     drive.rebuild(builder, poses);
     drive.review(builder.map, poses);
-    replace(tracker, std::move(builder.map));
+    replace(tracker, std::move(builder.map), "map.load");
     tracker.place(poses.back());
     seek(tracker);
     LoadedMap answer{0, drive.loops.scans(), drive.loops.keys().size(), drive.loops.counts().closed,
@@ -143,72 +153,185 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
 }
 
 // The one of now is kept, unless it is empty.
-void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map) {
-    if (!tracker.builder.map.isEmpty()) {
-        replaced_.emplace();
-        std::swap(*replaced_, tracker.builder.map);
-    }
+void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command) {
+    if (!tracker.builder.map.isEmpty())
+        remember({command, std::move(tracker.builder.map), false, {}, {}, false});
     tracker.clear();
     newMap_ = NewMap::No;
-    std::swap(tracker.builder.map, map);
+    tracker.builder.map = std::move(map);
     mapNumber_ = ++mapsBegun_;
 }
 
-void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
-    if (!replaced_)
-        return reply.error(
-            {ErrorCode::NotReady, "there is no map to bring back: none was replaced, or it is back already"});
-    const vectorlib::Pose2D pose = tracker.builder.report().pose;
-    vectorlib::VectorMap back = std::move(*replaced_);
-    replaced_.reset();
-    replace(tracker, std::move(back));
-    tracker.place(pose);
-    corrector_->restart(tracker);
-    seek(tracker);
-    LoadedMap answer;
+void ScanMatcher::remember(UndoStep step) {
+    history_.undone.push_back(std::move(step));
+    if (history_.undone.size() > mostSteps)
+        history_.undone.erase(history_.undone.begin());
+    history_.redone.clear();
+    tellSteps();
+}
+
+void ScanMatcher::rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought) {
+    remember({command, std::nullopt, true, before, worker_->tracker().motion().pose(), wasSought});
+    keepMapOfStep(worker_->tracker());
+}
+
+// Before anything is mapped from where the sensor was put.
+void ScanMatcher::keepMapOfStep(const vectorlib::ScanTracker &tracker) {
+    if (history_.undone.empty() || !grows_ ||
+        tracker.placeState() != vectorlib::ScanTracker::PlaceState::Known)
+        return;
+    UndoStep &last = history_.undone.back();
+    if (!last.map)
+        last.map = tracker.builder.map;
+}
+
+// The map that they are of was corrected.
+void ScanMatcher::moveSteps(const vectorlib::Transformation2D &moved) {
+    for (std::vector<UndoStep> *steps : {&history_.undone, &history_.redone})
+        for (auto step = steps->rbegin(); step != steps->rend() && !step->map; ++step) {
+            step->before = (moved * vectorlib::Transformation2D(step->before)).pose();
+            step->told = (moved * vectorlib::Transformation2D(step->told)).pose();
+        }
+}
+
+void ScanMatcher::tellSteps() {
+    const auto next = [](const std::vector<UndoStep> &steps) {
+        return steps.empty() ? QString() : steps.back().command;
+    };
+    QMetaObject::invokeMethod(this, [this, undoes = next(history_.undone), redoes = next(history_.redone)] {
+        undoes_ = undoes;
+        redoes_ = redoes;
+    });
+}
+
+void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply) {
+    std::vector<UndoStep> &from = again ? history_.redone : history_.undone,
+                          &to = again ? history_.undone : history_.redone;
+    if (from.empty())
+        return reply.error({ErrorCode::NotReady, again ? "nothing was undone since the last command"
+                                                       : "there is nothing to undo: no command has replaced "
+                                                         "the map or put the sensor elsewhere"});
+    UndoStep step = std::move(from.back());
+    from.pop_back();
+    const vectorlib::Pose2D now = tracker.motion().pose();
+    const vectorlib::Pose2D target = step.isPose ? step.before * step.told.inverse() * now : now;
+    UndoStep back{step.command, std::nullopt, step.isPose,
+                  now,          target,       place_ == vectorlib::ScanTracker::PlaceState::Sought};
+    if (step.map) {
+        back.map = std::move(tracker.builder.map);
+        tracker.clear();
+        tracker.builder.map = std::move(*step.map);
+        newMap_ = NewMap::No;
+        mapNumber_ = ++mapsBegun_;
+    }
+    to.push_back(std::move(back));
+    tellSteps();
+    tracker.claim(target);
+    if (!tracker.builder.map.isEmpty() && (step.isPose ? step.wasSought : true))
+        seek(tracker);
+    place_ = tracker.placeState();
+    BroughtBack answer{step.command, step.map.has_value(), step.isPose && !step.wasSought, 0, target};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
+    if (!step.map)
+        return reply.result(asJson(answer));
+    forgetDrive();
     showNewMap(tracker, reply, asJson(answer));
+}
+
+void ScanMatcher::setUp(vectorlib::ScanTracker &tracker) {
+    tracker.apply(setup_.tracking);
+    tracker.builder.extract.vectorize.settings.sigma = setup_.sigma;
+    tracker.grow(grows_);
+}
+
+// That of the live map, which rests while a replay is mapped.
+void ScanMatcher::followDrive() {
+    if (!keepsLiveMap_)
+        corrector_->follow(setup_.closesLoops, worker_->tracker());
+}
+
+void ScanMatcher::forgetDrive() {
+    if (!keepsLiveMap_)
+        corrector_->restart(worker_->tracker());
 }
 
 // What was recorded elsewhere or before is not to grow into the map of now. Where nothing is mapped it does
 // not, and an empty map has nothing to keep.
-void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
+void ScanMatcher::setLiveMapAside() {
     if (!grows_ || live_)
         return;
     live_.emplace();
-    live_->pose = tracker.builder.report().pose;
+    live_->pose = worker_->tracker().builder.report().pose;
     live_->number = mapNumber_;
-    if (tracker.builder.map.isEmpty())
+    if (worker_->tracker().builder.map.isEmpty())
         return;
-    std::swap(live_->map, tracker.builder.map);
-    mapNumber_ = ++mapsBegun_;
     keepsLiveMap_ = true;
-    tracker.clear();
-    corrector_->follow(false, tracker); // its journal is of the live drive
-    showNewMap(tracker, std::nullopt, QJsonValue());
+    live_->tracker = worker_->exchange(std::make_unique<vectorlib::ScanTracker>());
+    setUp(worker_->tracker());
+    live_->history = std::exchange(history_, {});
+    tellSteps();
+    newMap_ = NewMap::No;
+    mapNumber_ = ++mapsBegun_;
+    QMetaObject::invokeMethod(this, [this] {
+        liveView_.emplace();
+        swapLiveView();
+        logInfo("replay", "a replay is mapped apart; the live map and its drive are kept");
+    });
+    showNewMap(worker_->tracker(), std::nullopt, QJsonValue());
 }
 
 // The map of the replay can be brought back by map.undo.
-void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
+void ScanMatcher::bringLiveMapBack() {
     if (!live_)
         return;
-    LiveMap live = std::move(*live_);
+    LiveDrive live = std::move(*live_);
     live_.reset();
+    if (!live.tracker) {
+        replace(worker_->tracker(), {}, "replay");
+        worker_->tracker().place(live.pose);
+        mapNumber_ = live.number;
+        forgetDrive();
+        return showNewMap(worker_->tracker(), std::nullopt, QJsonValue());
+    }
+    const auto replayed = worker_->exchange(std::move(live.tracker));
+    vectorlib::ScanTracker &tracker = worker_->tracker();
+    history_ = std::move(live.history);
+    if (!replayed->builder.map.isEmpty())
+        remember({"replay", std::move(replayed->builder.map), false, {}, {}, false});
+    tellSteps();
     keepsLiveMap_ = false;
-    const bool isSought = !live.map.isEmpty();
-    replace(tracker, std::move(live.map));
+    setUp(tracker);
     mapNumber_ = live.number;
-    tracker.place(live.pose);
-    if (isSought)
+    if (tracker.odometryFrame()) { // it knows the way since then
+        tracker.doubt();
+        place_ = tracker.placeState();
+    } else {
+        tracker.place(live.pose); // it stands still
         seek(tracker);
-    corrector_->restart(tracker);
-    QMetaObject::invokeMethod(this, [this] { // whether it closes loops is known there
-        if (worker_)
-            worker_->post([this, closes = closesLoops()](vectorlib::ScanTracker &now) {
-                corrector_->follow(closes, now);
-            });
-    });
-    showNewMap(tracker, std::nullopt, QJsonValue());
+    }
+    isInterrupted_ = true;
+    followDrive();
+    QMetaObject::invokeMethod(this, [this, counts = tracker.counts()] { showMapAgain(counts); });
+    if (live.correction)
+        applyCorrection(tracker, live.correction);
+}
+
+void ScanMatcher::swapLiveView() {
+    mirror_.swap(liveView_->map);
+    graph_.swap(liveView_->graph);
+    publishSnapshot("graph");
+}
+
+void ScanMatcher::showMapAgain(const vectorlib::ScanTrackerCounts &counts) {
+    swapLiveView();
+    liveView_.reset();
+    publishSnapshot("map");
+    counts_ = counts;
+    lostInARow_ = 0;
+    doubtedSince_.reset();
+    doubted_s_ = 0;
+    lastRecovery_.reset();
+    logInfo("replay", "the live map and its drive are back; map.undo brings back the map of the replay");
 }
 
 // One that was sought goes on elsewhere in its map, or where nobody was as yet: to expect it where the last
@@ -230,31 +353,34 @@ void ScanMatcher::followReplay(const Scan &scan) {
 void ScanMatcher::beginReplayAnew(vectorlib::ScanTracker &tracker) {
     if (newMap_ != NewMap::Due)
         return; // another map was loaded meanwhile
-    replace(tracker, {});
-    corrector_->restart(tracker);
+    replace(tracker, {}, "replay");
+    forgetDrive();
     showNewMap(tracker, std::nullopt, QJsonValue());
 }
 
 void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
-                             const QJsonValue &answer) {
+                             const QJsonValue &answer, bool isSaved) {
     tracker.grow(grows_);
     place_ = tracker.placeState();
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(
         [&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
-    QMetaObject::invokeMethod(this,
-                              [this, edges = std::move(edges), number = mapNumber_, reply, answer]() mutable {
-                                  counts_ = vectorlib::ScanTrackerCounts();
-                                  lostInARow_ = 0;
-                                  lastRecovery_.reset();
-                                  mirror_.replace(*edges, number);
-                                  if (worker_) // where the old map is freed, which takes its time too
-                                      worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
-                                  publishSnapshot("map");
-                                  if (reply)
-                                      reply->result(answer);
-                              });
+    QMetaObject::invokeMethod(
+        this, [this, edges = std::move(edges), number = mapNumber_, reply, answer, isSaved]() mutable {
+            counts_ = vectorlib::ScanTrackerCounts();
+            lostInARow_ = 0;
+            doubtedSince_.reset();
+            doubted_s_ = 0;
+            lastRecovery_.reset();
+            mirror_.replace(*edges, number);
+            mirror_.setSaved(isSaved);
+            if (worker_) // where the old map is freed, which takes its time too
+                worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
+            publishSnapshot("map");
+            if (reply)
+                reply->result(answer);
+        });
 }
 
 } // namespace hermes::scanmatcher

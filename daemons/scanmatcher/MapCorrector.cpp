@@ -1,5 +1,7 @@
 #include "daemons/scanmatcher/MapCorrector.h"
 
+#include "common/Log.h"
+
 #include <chrono>
 
 namespace hermes::scanmatcher {
@@ -68,6 +70,11 @@ void MapCorrector::restart(const ScanTracker &tracker) {
 }
 
 void MapCorrector::forget(std::vector<vectorlib::MapEdge> known) {
+    if (const CorrectorState lost = state(); lost.keys > 0)
+        logInfo("loops", QString("a drive of %1 key scans is not remembered any more; %2")
+                             .arg(lost.keys)
+                             .arg(lost.journal.path.isEmpty() ? QString("no journal was kept")
+                                                              : "it is in " + lost.journal.path));
     beginDrive(0);
     Item item;
     item.drive = drive_;

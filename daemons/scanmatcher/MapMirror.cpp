@@ -58,6 +58,7 @@ MapChanges takeChanges(vectorlib::VectorMap &map) {
 void MapMirror::replace(Edges &other, qint64 number) {
     edges_.swap(other);
     number_ = number;
+    isSaved_ = false;
     poses_.clear();
     ++revision_;
 }
@@ -65,6 +66,7 @@ void MapMirror::replace(Edges &other, qint64 number) {
 void MapMirror::correct(Edges &other, const std::vector<quint64> &numbers,
                         const std::vector<vectorlib::Pose2D> &poses) {
     edges_.swap(other);
+    isSaved_ = false;
     ++revision_;
     vectorlib::Transformation2D moved;
     auto number = numbers.begin();
@@ -87,6 +89,7 @@ MapMessage MapMirror::message(bool cleared) const {
 
 MapMessage MapMirror::apply(const MapChanges &changes) {
     ++revision_;
+    isSaved_ = false;
     for (const vectorlib::MapEdge &m : changes.changed)
         edges_[m.id] = m;
     for (qint64 id : changes.removed)

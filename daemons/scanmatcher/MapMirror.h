@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace hermes::scanmatcher {
@@ -18,6 +19,12 @@ public:
     void replace(GraphMessage &&graph) {
         const qint64 revision = all_.revision + 1;
         all_ = std::move(graph);
+        all_.revision = revision;
+    }
+    /// Exchanges what is mirrored; the revision goes on.
+    void swap(GraphMirror &other) {
+        const qint64 revision = all_.revision + 1;
+        std::swap(all_, other.all_);
         all_.revision = revision;
     }
     /// Takes new key scans in and gives the data of the topic.
@@ -48,6 +55,14 @@ public:
     /// Takes the edges of another map over, of this number, and forgets the trajectory; `other` has the old
     /// edges afterwards.
     void replace(Edges &other, qint64 number);
+    /// Exchanges what is mirrored; the revision goes on.
+    void swap(MapMirror &other) {
+        edges_.swap(other.edges_);
+        poses_.swap(other.poses_);
+        std::swap(number_, other.number_);
+        std::swap(isSaved_, other.isSaved_);
+        ++revision_;
+    }
     /// Takes the edges of the same map over, made anew, and where the scans of these numbers lie now; those
     /// between and after them move with the one before.
     void correct(Edges &other, const std::vector<quint64> &numbers,
@@ -64,6 +79,9 @@ public:
     static constexpr std::size_t partEdges = 1000;
     const std::vector<vectorlib::StampedPose> &trajectory() const { return poses_; }
     size_t size() const { return edges_.size(); }
+    /// Whether a file holds all of it: nothing changed since one was written or read.
+    bool isSaved() const { return isSaved_ || edges_.empty(); }
+    void setSaved(bool isSaved) { isSaved_ = isSaved; }
 
 private:
     MapMessage message(bool cleared) const;
@@ -72,6 +90,7 @@ private:
     std::vector<vectorlib::StampedPose> poses_;
     qint64 revision_ = 0;
     qint64 number_ = 0; ///< which map it is
+    bool isSaved_ = true;
 };
 
 } // namespace hermes::scanmatcher

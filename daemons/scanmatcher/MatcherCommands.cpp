@@ -14,6 +14,14 @@ QJsonObject scanSchema() {
     return schema;
 }
 
+// Its heading is of a full turn at most.
+QJsonObject poseSchema() {
+    QJsonObject schema = schemaOf<Pose2D>(), properties = schema["properties"].toObject();
+    properties["theta"] = Field::angle("theta", "Heading, counter-clockwise").schema();
+    schema["properties"] = properties;
+    return schema;
+}
+
 Pose2D toPose(const QJsonObject &json) {
     return {json["x"].toDouble(), json["y"].toDouble(), json["theta"].toDouble()};
 }
@@ -59,7 +67,7 @@ void ScanMatcher::declareMatcherCommands() {
                                         scanSchema()))
                    .param(Field::schema("current", "The scan whose pose in the other's frame is wanted",
                                         scanSchema()))
-                   .param(Field::schema("expected", "Where the current one is expected", schemaOf<Pose2D>())
+                   .param(Field::schema("expected", "Where the current one is expected", poseSchema())
                               .byDefault(QJsonObject{{"x", 0}, {"y", 0}, {"theta", 0}}))
                    .takes(20000)
                    .gives<PairMatch>()
@@ -69,7 +77,7 @@ void ScanMatcher::declareMatcherCommands() {
                        "grows, nothing is mapped until some scans agree with the place")
                    .param(Field::number("x", "Position").unit("m"))
                    .param(Field::number("y", "Position").unit("m"))
-                   .param(Field::number("theta", "Heading").unit("rad"))
+                   .param(Field::angle("theta", "Heading"))
                    .param(Field::boolean("confirm",
                                          "A person has looked: the place is right, whatever the scans say")
                               .byDefault(false))
@@ -79,8 +87,11 @@ void ScanMatcher::declareMatcherCommands() {
                        const Pose2D pose = toPose(call.params);
                        worker_->post([this, pose, isSure = call.flag("confirm"),
                                       reply](vectorlib::ScanTracker &tracker) {
+                           const Pose2D before = tracker.motion().pose();
+                           const bool wasSought = place_ == vectorlib::ScanTracker::PlaceState::Sought;
                            isSure ? tracker.place(pose, 1) : tracker.claim(pose);
                            place_ = tracker.placeState();
+                           rememberPose("pose.set", before, wasSought);
                            reply.result(QJsonValue());
                        });
                    }));

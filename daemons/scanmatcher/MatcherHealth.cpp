@@ -8,7 +8,8 @@ using PlaceState = vectorlib::ScanTracker::PlaceState;
 
 namespace {
 
-constexpr double longestSilence_s = 3, longestBlindness_s = 3;
+constexpr double longestSilence_s = 3, longestBlindness_s = 3, longestDoubt_s = 3;
+constexpr double doubtful = 0.5; // trust; as in the window
 
 // What of a source's messages is no message at all, as one with a number that is not finite.
 QString unreadable(const Client::Rejected &rejected) {
@@ -46,8 +47,8 @@ void ScanMatcher::updateHealth() {
     health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
                  !replayed_ ? QString("live scans are matched")
                  : keepsLiveMap_
-                     ? QString("a replay is matched, in a map of its own; the live map is kept until "
-                               "live scans come")
+                     ? QString("a replay is matched, in a map of its own; the live map is kept, with its "
+                               "drive, until live scans come")
                      : QString("a replay is matched"));
     odometry_.report(health());
     const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
@@ -58,6 +59,24 @@ void ScanMatcher::updateHealth() {
     updateSensorHealth();
     updateMemoryHealth();
     updateJournalHealth();
+    updateMapHealth();
+}
+
+// What would be gone if this program ended now; empty: nothing.
+QString ScanMatcher::unsavedText() const {
+    const MapMirror &map = liveView_ ? liveView_->map : mirror_;
+    if (map.isSaved())
+        return {};
+    const JournalState journal = corrector_ ? corrector_->state().journal : JournalState();
+    return QString("the map of %1 segments is in no file").arg(map.size()) +
+           (journal.path.isEmpty() ? QString() : "; its drive is in " + journal.path);
+}
+
+void ScanMatcher::updateMapHealth() {
+    const QString unsaved = unsavedText();
+    health().set("map", HealthLevel::Ok,
+                 unsaved.isEmpty() ? QString("nothing to save") : unsaved + "; map.save writes it",
+                 {{"segments", qint64(mirror_.size())}, {"saved", unsaved.isEmpty()}});
 }
 
 void ScanMatcher::updateSensorHealth() {
@@ -110,6 +129,16 @@ void ScanMatcher::noteSkipped(const Outcome &outcome) {
     skipped_.points = outcome.points;
 }
 
+// Time is that of the scans.
+void ScanMatcher::noteTrust(const ScanResult &result) {
+    trust_ = result.pose.trust;
+    if (trust_ >= doubtful)
+        doubtedSince_.reset();
+    else if (!doubtedSince_ || result.stamp < *doubtedSince_) // or the clock was set back
+        doubtedSince_ = result.stamp;
+    doubted_s_ = doubtedSince_ ? result.stamp - *doubtedSince_ : 0;
+}
+
 bool ScanMatcher::isBlind() const {
     return skipped_.count > 0 && monotonicNow() - skipped_.since > longestBlindness_s;
 }
@@ -127,9 +156,15 @@ QString ScanMatcher::blindText() const {
 }
 
 void ScanMatcher::updateTrackingHealth() {
-    QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
-                      : isBlind()     ? blindText()
-                                      : QString("on track");
+    QString message =
+        lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
+        : isBlind()     ? blindText()
+        : doubted_s_ >= longestDoubt_s
+            ? QString("the pose is doubtful for %1 s: its trust is %2, expected are %3 at least")
+                  .arg(doubted_s_, 0, 'f', 0)
+                  .arg(trust_, 0, 'f', 2)
+                  .arg(doubtful)
+            : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
     const PlaceState place = place_;
@@ -144,11 +179,13 @@ void ScanMatcher::updateTrackingHealth() {
                    "mapped. Drive to where the map shows the same, or tell the place with pose.set";
     const HealthLevel level =
         lostInARow_ >= 3 ? HealthLevel::Failed
-        : isBlind() || (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
+        : isBlind() || doubted_s_ >= longestDoubt_s ||
+                (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
             ? HealthLevel::Warn
             : HealthLevel::Ok;
     health().set("tracking", level, message,
                  {{"lost_in_a_row", lostInARow_},
+                  {"trust", trust_},
                   {"skipped_in_a_row", skipped_.count},
                   {"recoveries", qint64(recoveries_)},
                   {"recovered", qint64(recovered_)}});

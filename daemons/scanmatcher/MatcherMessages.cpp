@@ -1,12 +1,18 @@
 #include "daemons/scanmatcher/MatcherMessages.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
+#include "vectorlib/motion/MotionModel.h"
+
+#include <cmath>
 
 namespace hermes::scanmatcher {
 
 namespace {
 
 constexpr double latest = 1e10; // seconds since the epoch: beyond it stamps lose their digits
+constexpr double longestScan_s = 5;
+
+const QString sinceTheEpoch = QStringLiteral(", in seconds since the Unix epoch, not in milliseconds");
 
 Error wrong(const char *what, const QString &text) {
     return {ErrorCode::InvalidParams, QString("%1, %2").arg(what, text)};
@@ -26,12 +32,19 @@ Result<Scan> readScan(WireView data, quint64 &unknown) {
     auto message = readMessage<ScanMessage>(data, report);
     unknown += report.unknown;
     if (!message)
-        return wrong("scan", report.text());
+        return wrong("scan", report.text() + (report.path == "stamp" ? sinceTheEpoch : QString()));
     const std::size_t count = message->x.size();
     if (message->y.size() != count)
         return wrongSize("y", message->y.size(), count);
     if (message->t && message->t->size() != count)
         return wrongSize("t", message->t->size(), count);
+    for (std::size_t i = 0; message->t && i < count; ++i)
+        if (const double t = double((*message->t)[i]); !(std::abs(t) <= longestScan_s))
+            return wrong("scan", QString("member t.%1: found %2, expected seconds after the stamp, of %3 at "
+                                         "most; are these milliseconds?")
+                                     .arg(i)
+                                     .arg(t)
+                                     .arg(longestScan_s));
     Scan scan;
     scan.number = message->header.turn;
     scan.partial = message->header.partial;
@@ -49,12 +62,24 @@ Result<Scan> readScan(WireView data, quint64 &unknown) {
 Result<vectorlib::OdometrySample> readOdometry(WireView data, double stamp, quint64 &unknown) {
     if (!(stamp >= 0 && stamp <= latest))
         return wrong("odometry",
-                     QString("stamp: found %1, expected seconds since the Unix epoch").arg(stamp));
+                     QString("stamp: found %1, expected a number from 0 to %2").arg(stamp).arg(latest) +
+                         sinceTheEpoch);
     ReadReport report;
     const auto message = readMessage<OdometryMessage>(data, report);
     unknown += report.unknown;
     if (!message)
         return wrong("odometry", report.text());
+    using vectorlib::MotionModel;
+    if (std::hypot(message->twist.vx, message->twist.vy) > MotionModel::fastest_mps ||
+        std::abs(message->twist.omega) > MotionModel::fastest_radps)
+        return wrong("odometry",
+                     QString("member twist: found %1 m/s, %2 m/s and %3 rad/s, expected what a robot "
+                             "can: %4 m/s and %5 rad/s at most")
+                         .arg(message->twist.vx)
+                         .arg(message->twist.vy)
+                         .arg(message->twist.omega)
+                         .arg(MotionModel::fastest_mps)
+                         .arg(MotionModel::fastest_radps));
     vectorlib::OdometrySample sample{stamp,
                                      message->pose,
                                      {message->twist.vx, message->twist.vy, message->twist.omega},
@@ -128,6 +153,8 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
                  "yet "
                  "confirmed by the scans; sought. While it is not known nothing is mapped")
             .choices({"known", "found", "told", "sought"})
+            .add("undoes", &S::undoes, "The command that map.undo would undo; empty: none")
+            .add("redoes", &S::redoes, "That it would carry out again with redo; empty: none")
             .add("scans", &S::scans, "Since the map is the one it is")
             .add("matched", &S::matched, "Of them")
             .add("lost", &S::lost, "Of them: no match was good enough")
@@ -221,6 +248,21 @@ const Fields<SavedMap> &fieldsOf(Of<SavedMap>) {
                                    .add("path", &SavedMap::path, "Of the file")
                                    .add("segments", &SavedMap::segments, "Edges written")
                                    .add("bytes", &SavedMap::bytes, "Size of the file", "byte");
+    return fields;
+}
+
+const Fields<BroughtBack> &fieldsOf(Of<BroughtBack>) {
+    using B = BroughtBack;
+    static const auto fields =
+        Fields<B>()
+            .add("command", &B::command,
+                 "That was undone, or carried out again: map.clear, map.load, pose.set, "
+                 "pose.relocalize or replay")
+            .add("map", &B::map, "Another map is back")
+            .add("pose", &B::pose,
+                 "The sensor is back at its place, moved by the way since; else it is sought")
+            .add("segments", &B::segments, "Edges of the map")
+            .add("at", &B::at, "Where the sensor is now expected");
     return fields;
 }
 

@@ -40,7 +40,7 @@ struct OdometryState {
 /// What matcher.state gives.
 struct MatcherState {
     bool active = false;
-    QString mode, place;
+    QString mode, place, undoes, redoes;
     quint64 scans = 0, matched = 0, lost = 0, skipped = 0, doubted = 0, restarts = 0;
     quint64 waiting = 0, dropped = 0, droppedBySource = 0, refused = 0, unknownFields = 0;
     quint64 recoveries = 0, recovered = 0, byOdometry = 0;
@@ -112,6 +112,14 @@ struct LoadedMap {
     quint64 leftOut = 0;                           ///< bytes at its end
 };
 
+/// What map.undo gives.
+struct BroughtBack {
+    QString command;
+    bool map = false, pose = false;
+    quint64 segments = 0;
+    Pose2D at;
+};
+
 SearchAnswer answerOf(const vectorlib::Relocalized &search);
 
 const Fields<OdometryState> &fieldsOf(Of<OdometryState>);
@@ -122,6 +130,7 @@ const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>);
 const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>);
 const Fields<SavedMap> &fieldsOf(Of<SavedMap>);
 const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>);
+const Fields<BroughtBack> &fieldsOf(Of<BroughtBack>);
 const Fields<ListedMap> &fieldsOf(Of<ListedMap>);
 const Fields<MapList> &fieldsOf(Of<MapList>);
 

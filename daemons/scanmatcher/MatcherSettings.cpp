@@ -52,12 +52,14 @@ void ScanMatcher::declareSettings() {
                        "that turn on the spot make them")
             .byDefault(true)
             .group("Odometry"));
-    const auto sensor = [this](const char *name, const char *text, const char *unit) {
-        addSetting(Field::number(name, text).unit(unit).range(-100, 100).byDefault(0).group("Odometry"));
+    const auto sensor = [this](const char *name, const char *text) {
+        addSetting(Field::number(name, text).unit("m").range(-100, 100).byDefault(0).group("Odometry"));
     };
-    sensor("sensor.x_m", "How far the sensor is ahead of the robot's centre", "m");
-    sensor("sensor.y_m", "How far it is to the left", "m");
-    sensor("sensor.theta_rad", "Its heading in the robot's frame, counter-clockwise", "rad");
+    sensor("sensor.x_m", "How far the sensor is ahead of the robot's centre");
+    sensor("sensor.y_m", "How far it is to the left");
+    addSetting(Field::angle("sensor.theta_rad", "Its heading in the robot's frame, counter-clockwise")
+                   .byDefault(0)
+                   .group("Odometry"));
     addSetting(Field::text("matcher.start", "What to do from the start on")
                    .choices({"mapping", "localization", "nothing"})
                    .byDefault("mapping")

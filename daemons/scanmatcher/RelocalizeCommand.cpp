@@ -34,8 +34,12 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
         return reply.error({ErrorCode::NotReady, "another search of the map is under way"});
     relocalizing_ = true;
     worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
+        const Pose2D before = tracker.motion().pose();
+        const bool wasSought = place_ == PlaceState::Sought;
         const Relocalized found = tracker.relocalize(apply);
         place_ = tracker.placeState();
+        if (apply && found.isFound())
+            rememberPose("pose.relocalize", before, wasSought);
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing_ = false;
             RelocalizeAnswer answer;

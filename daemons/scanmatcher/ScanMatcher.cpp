@@ -139,8 +139,9 @@ Result<void> ScanMatcher::start() {
         const std::optional<vectorlib::Relocalized> recovery = find(tracker);
         if (place_ != ScanTracker::PlaceState::Known)
             isInterrupted_ = true;
-        else
+        else if (!keepsLiveMap_) // else the drive is that of the live map
             corrector_->add(tracker, scan.data.points, std::exchange(isInterrupted_, false));
+        keepMapOfStep(tracker);
         Outcome outcome = outcomeOf(tracker, scan);
         outcome.result.pose.corrected = std::exchange(corrected_, false);
         outcome.recovery = recovery;
@@ -156,12 +157,16 @@ Result<void> ScanMatcher::start() {
 }
 
 void ScanMatcher::stop() {
+    if (!worker_)
+        return;
     source_.close();
     odometry_.close();
-    if (corrector_)
-        corrector_->stop();
+    corrector_->stop();
+    worker_->stop(); // its last jobs still need it
     worker_.reset();
     files_.waitForDone();
+    if (const QString lost = unsavedText(); !lost.isEmpty())
+        logWarning("map", "not saved when this program ended: " + lost);
 }
 
 void ScanMatcher::settingsChanged(const QStringList &paths) {
@@ -169,11 +174,11 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
         return;
     corrector_->setLimit(std::size_t(1e6 * settings().number("matcher.remember_mb")));
     worker_->setQueueLimit(size_t(settings().integer("source.queue")));
-    worker_->post([this, s = trackerSettings(), sigma = settings().number("matcher.sigma_m"),
-                   closes = closesLoops()](ScanTracker &tracker) {
-        tracker.apply(s);
-        corrector_->follow(closes && !keepsLiveMap_, tracker); // of the live drive
-        tracker.builder.extract.vectorize.settings.sigma = sigma;
+    const Setup setup{trackerSettings(), settings().number("matcher.sigma_m"), closesLoops()};
+    worker_->post([this, setup](ScanTracker &tracker) {
+        setup_ = setup;
+        setUp(tracker);
+        followDrive();
     });
     if (active_ && !paths.filter("source.").isEmpty())
         connectToSource();
@@ -187,10 +192,12 @@ void ScanMatcher::begin(bool toMap) {
         if (toMap && tracker.isContradicted()) // else it would be mapped at a wrong place
             seek(tracker);
         grows_ = toMap;
+        setup_.closesLoops = closes;
         if (matchesReplay_)
-            setLiveMapAside(tracker);
-        tracker.grow(grows_);
-        corrector_->follow(closes && !keepsLiveMap_, tracker); // of the live drive
+            setLiveMapAside();
+        worker_->tracker().grow(grows_);
+        keepMapOfStep(worker_->tracker());
+        followDrive();
     });
     active_ = true;
     connectToSource();
@@ -247,9 +254,9 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
     if (scan.partial)
         return;
     if (std::exchange(replayed_, scan.replayed) != scan.replayed)
-        worker_->post([this, replayed = scan.replayed](ScanTracker &tracker) {
+        worker_->post([this, replayed = scan.replayed](ScanTracker &) {
             matchesReplay_ = replayed;
-            replayed ? setLiveMapAside(tracker) : bringLiveMapBack(tracker);
+            replayed ? setLiveMapAside() : bringLiveMapBack();
         });
     followReplay(scan);
     scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());
@@ -279,6 +286,7 @@ void ScanMatcher::show(const Outcome &o) {
         lastRecovery_.reset();
     noteSkipped(o);
     const ScanResult &r = o.result;
+    noteTrust(r);
     mirror_.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
     publish("scan", r, r.stamp);
     publish("pose", r.pose, r.stamp);
@@ -294,8 +302,15 @@ bool ScanMatcher::closesLoops() {
     return mapping_ && settings().flag("matcher.close_loops");
 }
 
+// While a replay is mapped it waits, and the corrector rests, until the live map is back.
 void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Correction> &correction) {
+    if (keepsLiveMap_) {
+        live_->correction = correction;
+        return;
+    }
+    const vectorlib::Transformation2D before(tracker.motion().pose());
     if (corrector_->apply(tracker, *correction)) {
+        moveSteps(vectorlib::Transformation2D(tracker.motion().pose()) * before.inverse());
         corrected_ = true;
         QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
             showCorrection(correction, since);
@@ -319,6 +334,9 @@ void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, 
 }
 
 void ScanMatcher::showGraph(GraphMessage more) {
+    if (liveView_) // it is of the live drive
+        return more.cleared ? liveView_->graph.replace(std::move(more))
+                            : void(liveView_->graph.grow(std::move(more)));
     if (!more.cleared)
         return publish("graph", graph_.grow(std::move(more)));
     graph_.replace(std::move(more));
@@ -330,6 +348,8 @@ MatcherState ScanMatcher::matcherState() const {
     state.active = active_;
     state.mode = mapping_ ? "mapping" : "localization";
     state.place = toText(place_);
+    state.undoes = undoes_;
+    state.redoes = redoes_;
     state.scans = quint64(counts_.scans);
     state.matched = quint64(counts_.matched);
     state.lost = quint64(counts_.lost);

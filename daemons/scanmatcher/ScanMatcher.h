@@ -50,6 +50,18 @@ private:
         std::size_t segments = 0, points = 0; ///< of the last
     };
 
+    /// What a command that changed map or pose did away with.
+    struct UndoStep {
+        QString command;
+        std::optional<vectorlib::VectorMap> map; ///< none: it is still the same
+        bool isPose = false;                     ///< the sensor was put elsewhere
+        vectorlib::Pose2D before, told;          ///< of the sensor, then and instead of that
+        bool wasSought = false;                  ///< the place before
+    };
+    struct History {
+        std::vector<UndoStep> undone, redone; ///< what can be; the last is the next
+    };
+
     void declareSettings();
     void declareTopics();
     void declareMatcherCommands();
@@ -72,11 +84,14 @@ private:
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
     void noteSkipped(const Outcome &outcome);
+    void noteTrust(const ScanResult &result);
     bool isBlind() const;
     QString blindText() const;
     void updateSensorHealth();
     void updateMemoryHealth();
     void updateJournalHealth();
+    void updateMapHealth();
+    QString unsavedText() const;
     std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
 
     vectorlib::ScanTrackerSettings trackerSettings() const;
@@ -84,15 +99,25 @@ private:
     void loadMap(const Call &call, const Reply &reply);
     void loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply);
     // In the worker's thread:
-    void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map);
-    void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
-    void setLiveMapAside(vectorlib::ScanTracker &tracker);
-    void bringLiveMapBack(vectorlib::ScanTracker &tracker);
+    void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command);
+    void undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply);
+    void remember(UndoStep step);
+    void rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought);
+    void keepMapOfStep(const vectorlib::ScanTracker &tracker);
+    void moveSteps(const vectorlib::Transformation2D &moved);
+    void tellSteps();
+    void setUp(vectorlib::ScanTracker &tracker);
+    void followDrive();
+    void forgetDrive();
+    void setLiveMapAside();
+    void bringLiveMapBack();
     void followReplay(const Scan &scan);
     void beginReplayAnew(vectorlib::ScanTracker &tracker);
     /// When the map is another one: hands it over to the main thread, then answers.
     void showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
-                    const QJsonValue &answer);
+                    const QJsonValue &answer, bool isSaved = false);
+    void showMapAgain(const vectorlib::ScanTrackerCounts &counts);
+    void swapLiveView();
     void matchTwo(const Call &call, const Reply &reply);
     MapPath mapPath(const Call &call);
     MatcherState matcherState() const;
@@ -101,19 +126,36 @@ private:
     QThreadPool files_; ///< one thread, which writes maps: a disk may take its time
     std::unique_ptr<Worker> worker_;
     std::unique_ptr<MapCorrector> corrector_;
-    bool corrected_ = false;                       ///< since the last scan; the worker's
-    std::optional<vectorlib::VectorMap> replaced_; ///< by the last map that was loaded or begun; the worker's
-    struct LiveMap {
-        vectorlib::VectorMap map;
+    bool corrected_ = false;  ///< since the last scan; the worker's
+    History history_;         ///< the worker's
+    QString undoes_, redoes_; ///< the commands that map.undo would undo, and carry out again; empty: none
+    /// What live scans go on with after a replay. Its drive rests meanwhile.
+    struct LiveDrive {
+        std::unique_ptr<vectorlib::ScanTracker> tracker; ///< none: its map was empty
         vectorlib::Pose2D pose;
-        qint64 number = 0;
+        qint64 number = 0;                      ///< of the map
+        std::shared_ptr<Correction> correction; ///< not applied yet
+        History history;
+    };
+    /// The same for the main thread.
+    struct LiveView {
+        MapMirror map;
+        GraphMirror graph;
+    };
+    /// How a tracker is set up.
+    struct Setup {
+        vectorlib::ScanTrackerSettings tracking;
+        double sigma = 0;
+        bool closesLoops = false;
     };
     qint64 mapNumber_ = 0, mapsBegun_ = 0;  ///< the worker's
     bool matchesReplay_ = false;            ///< the worker's
-    std::optional<LiveMap> live_;           ///< while a replay is mapped; the worker's
-    std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
-    bool replayed_ = false;                 ///< the last scan
-    double replayStamp_ = -1;               ///< of the last scan that was replayed
+    Setup setup_;                           ///< the worker's
+    std::optional<LiveDrive> live_;         ///< while a replay is mapped; the worker's
+    std::atomic<bool> keepsLiveMap_{false}; ///< it has a tracker
+    std::optional<LiveView> liveView_;
+    bool replayed_ = false;   ///< the last scan
+    double replayStamp_ = -1; ///< of the last scan that was replayed
     /// A replay that was sought to a place that its map does not have gets a new map.
     enum class NewMap { No, WhenNowhere, Due };
     NewMap newMap_ = NewMap::No; ///< the worker's
@@ -133,7 +175,9 @@ private:
     int lostInARow_ = 0;
     vectorlib::ScannerCheck scanner_;
     SkippedScans skipped_;
-    bool relocalizing_ = false; ///< for a command
+    std::optional<double> doubtedSince_; ///< stamp of the first of the scans in a row that are trusted little
+    double doubted_s_ = 0, trust_ = 0;   ///< how long so far, and of the last scan
+    bool relocalizing_ = false;          ///< for a command
     quint64 recoveries_ = 0,
             recovered_ = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost

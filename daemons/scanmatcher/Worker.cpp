@@ -2,13 +2,14 @@
 
 namespace hermes::scanmatcher {
 
-Worker::~Worker() {
+void Worker::stop() {
     {
         const std::lock_guard lock(mutex_);
         ending_ = true;
     }
     wake_.notify_one();
-    thread_.join();
+    if (thread_.joinable())
+        thread_.join();
 }
 
 void Worker::push(Scan scan) {
@@ -52,10 +53,10 @@ void Worker::run() {
                 --scans_;
         }
         if (item.job) {
-            item.job(tracker_);
+            item.job(*tracker_);
         } else {
-            tracker_.process(item.scan.data);
-            whenDone_(tracker_, item.scan);
+            tracker_->process(item.scan.data);
+            whenDone_(*tracker_, item.scan);
         }
     }
 }

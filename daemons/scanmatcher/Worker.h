@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -23,8 +24,16 @@ public:
     explicit Worker(Done done)
         : whenDone_(std::move(done))
         , thread_([this] { run(); }) {}
+    ~Worker() { stop(); }
     /// Finishes what waits, then ends the thread.
-    ~Worker();
+    void stop();
+
+    /// In its thread: the tracker that takes what comes from now on, and the one that did so.
+    std::unique_ptr<vectorlib::ScanTracker> exchange(std::unique_ptr<vectorlib::ScanTracker> other) {
+        tracker_.swap(other);
+        return other;
+    }
+    vectorlib::ScanTracker &tracker() { return *tracker_; }
 
     void push(Scan scan);
     void post(Job job);
@@ -46,7 +55,8 @@ private:
     void run();
 
     Done whenDone_;
-    vectorlib::ScanTracker tracker_; // used by the thread alone
+    std::unique_ptr<vectorlib::ScanTracker> tracker_ =
+        std::make_unique<vectorlib::ScanTracker>(); // used by the thread alone
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::deque<Item> items_;

@@ -58,10 +58,21 @@ void printChanged(const QJsonValue &result, const QString &daemon) {
                                          : QStringLiteral(" changed")));
 }
 
+using SchemaOf = std::function<QJsonObject(const QJsonValue &)>;
+
+/// Angles that were typed as "90deg" become radians. `method` describes the values. Where no description is
+/// to be had the text stays, which the daemon refuses.
+QJsonObject withAngles(Client &client, const QString &method, const QJsonObject &values,
+                       const SchemaOf &schemaOf) {
+    if (!holdsAngleText(values))
+        return values;
+    const auto description = client.callAndWait(method);
+    return description ? withAnglesRead(schemaOf(*description), values).toObject() : values;
+}
+
 /// Angles in radians beyond a full turn were most often meant in degrees. `method` describes the values. The
 /// daemon's log asks the same: no description is no error, and a large one does not go over a serial line.
-void noteAngles(Client &client, const QString &method, const QJsonObject &values,
-                const std::function<QJsonObject(const QJsonValue &)> &schemaOf) {
+void noteAngles(Client &client, const QString &method, const QJsonObject &values, const SchemaOf &schemaOf) {
     if (!holdsBeyondTurn(values) || client.isLossy())
         return;
     if (const auto description = client.callAndWait(method))
@@ -253,17 +264,19 @@ Result<void> document(Client &client, const Arguments &arguments) {
 }
 
 Result<void> call(Client &client, const Arguments &arguments) {
-    const auto params = assignments(arguments.words.mid(2));
-    if (!params)
-        return params.error();
-    const auto result = askAgain(client, arguments, arguments.words.at(1), *params);
+    const auto given = assignments(arguments.words.mid(2));
+    if (!given)
+        return given.error();
+    const auto schemaOf = [&arguments](const QJsonValue &description) {
+        const QJsonArray methods = description[QStringLiteral("methods")].toArray();
+        return parametersSchema(named(methods, arguments.words.at(1)));
+    };
+    const QJsonObject params = withAngles(client, QStringLiteral("rpc.discover"), *given, schemaOf);
+    const auto result = askAgain(client, arguments, arguments.words.at(1), params);
     if (!result)
         return result.error();
     printLine(pretty(*result));
-    noteAngles(client, QStringLiteral("rpc.discover"), *params, [&arguments](const QJsonValue &description) {
-        const QJsonArray methods = description[QStringLiteral("methods")].toArray();
-        return parametersSchema(named(methods, arguments.words.at(1)));
-    });
+    noteAngles(client, QStringLiteral("rpc.discover"), params, schemaOf);
     return {};
 }
 
@@ -277,19 +290,20 @@ Result<void> getSettings(Client &client, const Arguments &arguments) {
 }
 
 Result<void> setSettings(Client &client, const Arguments &arguments) {
-    const auto values = assignments(arguments.words.mid(1));
-    if (!values)
-        return values.error();
+    const auto given = assignments(arguments.words.mid(1));
+    if (!given)
+        return given.error();
+    const auto schemaOf = [](const QJsonValue &schema) { return schema.toObject(); };
+    const QJsonObject values = withAngles(client, QStringLiteral("settings.schema"), *given, schemaOf);
     const auto result = ask(client, arguments, QStringLiteral("settings.set"),
-                            QJsonObject{{QStringLiteral("values"), *values}});
+                            QJsonObject{{QStringLiteral("values"), values}});
     if (!result)
         return result.error();
     if (arguments.json)
         printJson(*result);
     else
         printChanged(*result, arguments.words.first());
-    noteAngles(client, QStringLiteral("settings.schema"), *values,
-               [](const QJsonValue &schema) { return schema.toObject(); });
+    noteAngles(client, QStringLiteral("settings.schema"), values, schemaOf);
     return {};
 }
 

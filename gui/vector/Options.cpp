@@ -27,17 +27,11 @@ CLI::Validator numberThat(std::string expected, std::function<bool(double)> hold
 std::optional<vectorlib::Pose2D> readPose(const std::string &text) {
     std::vector<std::string_view> fields;
     vectorlib::splitCommas(text, fields);
-    std::string_view &theta = fields.back();
-    const bool inDegrees = theta.size() > 3 && theta.substr(theta.size() - 3) == "deg";
-    theta.remove_suffix(inDegrees ? 3 : 0);
-    std::vector<double> numbers;
-    for (const std::string_view field : fields)
-        if (const auto number = vectorlib::parseNumber(field))
-            numbers.push_back(*number);
-    if (fields.size() != 3 || numbers.size() != 3)
+    if (fields.size() != 3)
         return std::nullopt;
-    return vectorlib::Pose2D{numbers[0], numbers[1],
-                             inDegrees ? numbers[2] * vectorlib::pi / 180 : numbers[2]};
+    const auto x = vectorlib::parseNumber(fields[0]), y = vectorlib::parseNumber(fields[1]);
+    const auto theta = parseAngle(fields[2], vectorlib::parseNumber);
+    return x && y && theta ? std::optional(vectorlib::Pose2D{*x, *y, *theta}) : std::nullopt;
 }
 
 std::string plain(double value) {

@@ -1,6 +1,8 @@
 #include "common/schema/Angles.h"
 #include "common/schema/CheckableSchema.h"
+#include "common/schema/Field.h"
 #include "common/schema/SchemaValidator.h"
+#include "vectorlib/geometry/Angle.h"
 
 using namespace hermes;
 
@@ -14,6 +16,7 @@ private Q_SLOTS:
     void patterns();
     void costIsBounded();
     void anglesBeyondATurn();
+    void anglesInDegrees();
 
 private:
     static QJsonObject object(const char *json) { return QJsonDocument::fromJson(json).object(); }
@@ -88,6 +91,25 @@ void TestSchemaValidator::anglesBeyondATurn() {
     for (int i = 0; i < 100; ++i)
         many.append(90);
     QCOMPARE(beyondTurn(schema, QJsonObject{{"turns", many}}).size(), 5);
+}
+
+void TestSchemaValidator::anglesInDegrees() {
+    const QJsonObject schema = object(R"({"properties":{"name":{"type":"string"},
+        "pose":{"properties":{"theta":{"type":"number","unit":"rad"}}},
+        "turns":{"items":{"type":"number","unit":"rad"}}}})");
+    const QJsonObject typed =
+        object(R"({"name":"90deg","pose":{"theta":"-90deg"},"turns":["360deg","deg",1,"1e999deg","9degs"]})");
+    QVERIFY(holdsAngleText(typed));
+    QVERIFY(!holdsAngleText(object(R"({"theta":"90","name":"90 degrees","x":1})")));
+    const QJsonValue read = withAnglesRead(schema, typed);
+    QCOMPARE(read["name"], QJsonValue("90deg")); // a text
+    QCOMPARE(read["pose"]["theta"].toDouble(), -vectorlib::pi / 2);
+    QCOMPARE(read["turns"], QJsonValue(QJsonArray{2 * vectorlib::pi, "deg", 1, "1e999deg", "9degs"}));
+    const auto turn = SchemaValidator::make(Field::angle("by", "How far").schema());
+    QVERIFY(turn && turn->check(read["turns"][0]).empty());
+    const QString refusal = toString(turn->check(90));
+    QVERIFY2(refusal.endsWith(" in rad: 90 rad is 14.3 turns; did you mean 1.571 rad (90 degrees)?"),
+             qPrintable(refusal));
 }
 
 QTEST_APPLESS_MAIN(TestSchemaValidator)

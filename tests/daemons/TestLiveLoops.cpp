@@ -64,6 +64,44 @@ private Q_SLOTS:
             QVERIFY(!pose["corrected"].toBool());
     }
 
+    // Key scans, loops, poses, counts and journal of the live drive rest meanwhile, and go on behind it.
+    void aReplayLeavesTheDriveAlone() {
+        const std::size_t rest = way.size() - 10;
+        drive(0, rest);
+        waitForCorrector();
+        const QJsonObject before = call("matcher.state");
+        QVERIFY(before["closures"].toInt() > 20 && before["key_scans"].toInt() > 20);
+        const QJsonArray graph = graphPoses, live = call("map.get")["edges"].toArray();
+        for (int i = 0; i < 20; ++i) { // of a small room
+            QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
+            scan["replayed"] = true;
+            source->publish("scan2d", scan, 0.1 * i);
+        }
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 20);
+        QTRY_VERIFY(healthItem("replay")["message"].toString().contains("with its drive"));
+        QTRY_COMPARE(graphPoses.size(), 0); // it is not of the map that is shown
+        QVERIFY(call("map.get")["edges"].toArray() != live);
+        QVERIFY(failure("map.load", {{"path", "drive.journal"}}).message.contains("replay"));
+        call("map.clear"); // that of the replay
+        for (const char *member : {"key_scans", "closures", "corrections"})
+            QCOMPARE(call("matcher.state")[member], before[member]);
+
+        tell(rest);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), int(rest) + 1);
+        QTRY_COMPARE(graphPoses, graph);
+        QCOMPARE(call("matcher.state")["key_scans"], before["key_scans"]);
+        QVERIFY(std::abs(call("map.get")["size"].toInt() - live.size()) < 5);
+        drive(rest + 1, way.size());
+        QTRY_COMPARE(call("matcher.state")["place"].toString(), QString("known"));
+        waitForCorrector();
+        const double end = distance(poseOf(poses.rbegin()->second), way.back());
+        QVERIFY2(end < 0.2, qPrintable(QString::number(end)));
+        QVERIFY(call("matcher.state")["closures"].toInt() >= before["closures"].toInt());
+        client_.reset();
+        matcher->shutDown();
+        QCOMPARE(QDir(folder->path()).entryList({"*.journal"}), QStringList("drive.journal")); // of one drive
+    }
+
     void anotherMapForgetsTheDrive() {
         for (int trial = 0; trial < 10; ++trial) {
             if (clearsInTime() || QTest::currentTestFailed())

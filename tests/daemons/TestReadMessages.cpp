@@ -51,6 +51,8 @@ private Q_SLOTS:
         row("no covariance", "covariance", none, "found null, expected an array of 9");
         row("negative variance", "covariance", QJsonValue(QJsonArray{1, 0, 0, 0, 1, 0, 0, 0, -1}),
             "member covariance.8: found -1, expected a variance");
+        row("too fast", "twist", QJsonValue(QJsonObject{{"vx", 125}, {"vy", 0}, {"omega", 0}}),
+            "member twist: found 125 m/s, 0 m/s and 0 rad/s, expected what a robot can");
     }
 
     void refusesOdometry() {
@@ -76,6 +78,10 @@ private Q_SLOTS:
             "member x.1: found null, expected a number");
         row("too large", {{"stamp", 1}, {"x", QJsonArray{1, 1e300}}, {"y", two}},
             "member x.1: found 1e+300, expected a number");
+        row("stamp in milliseconds", {{"stamp", 1.7e12}, {"x", two}, {"y", two}},
+            "expected a number from -1e+10 to 1e+10, in seconds since the Unix epoch, not in milliseconds");
+        row("t in milliseconds", {{"stamp", 1}, {"x", two}, {"y", two}, {"t", QJsonArray{0, 97}}},
+            "member t.1: found 97, expected seconds after the stamp, of 5 at most; are these milliseconds?");
         row("t of another size", {{"stamp", 1}, {"x", two}, {"y", two}, {"t", one}}, "member t");
     }
 

@@ -1,4 +1,5 @@
 #include "MatcherFixture.h"
+#include "common/Log.h"
 #include "tests/support/FileSizeLimit.h"
 
 #include <future>
@@ -50,6 +51,29 @@ private Q_SLOTS:
         for (const char *format : {"svg", "geojson", "dxf"})
             QVERIFY(call("map.export", {{"format", format}, {"path", QString("room.") + format}})["bytes"]
                         .toInt() > 300);
+    }
+
+    void whatIsInNoFileIsTold() {
+        const auto isSaved = [this] { return healthItem("map")["values"].toObject()["saved"].toBool(); };
+        QVERIFY(isSaved()); // an empty one
+        drive(0, 3);
+        QVERIFY(!isSaved());
+        call("map.export", {{"path", "room.svg"}, {"format", "svg"}}); // from which it is not loaded
+        QVERIFY(!isSaved());
+        call("map.save", {{"path", "room.csv"}});
+        QVERIFY(isSaved());
+        failure("map.save", {{"path", "room.csv"}});
+        QTRY_VERIFY(!isSaved()); // for all that is known
+        call("map.load", {{"path", "room.csv"}});
+        QVERIFY(isSaved());
+        call("map.clear");
+        drive(0, 3);
+        client_.reset();
+        matcher->shutDown();
+        const std::vector<LogMessage> log = Log::instance().tail(10);
+        QVERIFY(std::any_of(log.begin(), log.end(), [](const LogMessage &one) {
+            return one.source == "map" && one.text.contains("segments is in no file");
+        }));
     }
 
     void refusesToOverwriteAndNamesThePath() {
@@ -148,6 +172,20 @@ private Q_SLOTS:
         QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
     }
 
+    void anglesBeyondATurnAreRefused() {
+        const QJsonObject scan = roomScan({0, 0, 0}, 0), there{{"x", 0}, {"y", 0}, {"theta", 90}};
+        const std::pair<const char *, QJsonObject> calls[] = {
+            {"pose.set", there},
+            {"matcher.match", {{"reference", scan}, {"current", scan}, {"expected", there}}},
+            {"settings.set", {{"values", QJsonObject{{"sensor", QJsonObject{{"theta_rad", 90}}}}}}}};
+        for (const auto &[method, params] : calls) {
+            const Error error = failure(method, params);
+            QVERIFY2(error.message.contains("did you mean 1.571 rad (90 degrees)?"),
+                     qPrintable(method + (": " + error.message)));
+        }
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 2 * vectorlib::pi}});
+    }
+
     void undoBringsTheMapBack() {
         QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
         call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
@@ -162,11 +200,74 @@ private Q_SLOTS:
         for (int i = 0; i < back.size(); ++i)
             for (const char *member : {"x1", "y1", "x2", "y2", "n", "observations"})
                 QCOMPARE(back[i].toObject()[member], before[i].toObject()[member]);
-        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        QCOMPARE(call("matcher.state")["redoes"].toString(), QString("map.clear"));
+        QCOMPARE(call("map.undo", {{"redo", true}})["segments"].toInt(), 0);
+        QCOMPARE(call("map.undo")["command"].toString(), QString("map.clear"));
         QVERIFY(failure("map.load", {{"path", "none.csv"}}).is(ErrorCode::InputOutput)); // replaces nothing
-        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+        QCOMPARE(call("matcher.state")["undoes"].toString(), QString("pose.set"));
         drive(0, 10); // it is found in it, and the map stays the same room
         QCOMPARE(call("map.get")["size"].toInt(), before.size());
+    }
+
+    void undoBringsThePoseBack_data() {
+        const Rows<bool> row("confirm");
+        row("a place that nothing agrees with", false);
+        row("a place that somebody insists on", true);
+    }
+
+    void undoBringsThePoseBack() {
+        QFETCH(bool, confirm);
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 20);
+        const QJsonArray before = call("map.get")["edges"].toArray();
+        QJsonObject pose = call("map.undo", {{"redo", false}}); // the first pose.set: the frame is another
+        QVERIFY(pose["map"].toBool() && pose["segments"].toInt() == 0);
+        QCOMPARE(call("map.undo", {{"redo", true}})["segments"].toInt(), before.size());
+        drive(0, 20);
+        const int keyScans = call("matcher.state")["key_scans"].toInt();
+        const QJsonArray room = call("map.get")["edges"].toArray();
+
+        call("pose.set", {{"x", 1.5}, {"y", 6.5}, {"theta", -0.7}, {"confirm", confirm}});
+        QCOMPARE(call("matcher.state")["undoes"].toString(), QString("pose.set"));
+        drive(20, 30);
+        QCOMPARE(call("map.get")["size"].toInt() > room.size(), confirm); // a second room
+        pose = call("map.undo");
+        QCOMPARE(pose["command"].toString(), QString("pose.set"));
+        QVERIFY(pose["pose"].toBool());
+        QCOMPARE(pose["map"].toBool(), confirm);
+        QCOMPARE(call("map.get")["edges"].toArray().size(), room.size());
+        const vectorlib::Pose2D truth = onTheWay(29); // it has driven on
+        const QJsonObject at = pose["at"].toObject();
+        QVERIFY2(std::hypot(at["x"].toDouble() - truth.x, at["y"].toDouble() - truth.y) < 0.1,
+                 qPrintable(QString("%1 %2").arg(at["x"].toDouble()).arg(at["y"].toDouble())));
+        QVERIFY(confirm || call("matcher.state")["key_scans"].toInt() >= keyScans); // the drive goes on
+        for (int i = 30; i < 40; ++i)
+            source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), confirm ? 10 : 40); // of this map
+        QTRY_COMPARE(call("matcher.state")["place"].toString(), QString("known"));
+        QCOMPARE(call("map.get")["size"].toInt(), room.size());
+        if (confirm) // what was undone is not lost either
+            QVERIFY(call("map.undo", {{"redo", true}})["segments"].toInt() > room.size());
+    }
+
+    void eachUndoGoesOneStepBack() {
+        call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+        drive(0, 10);
+        const int walls = call("map.get")["size"].toInt();
+        call("map.save", {{"path", "room.csv"}});
+        call("map.clear");
+        call("map.load", {{"path", "room.csv"}}); // which replaces an empty map
+        for (int i = 0; i < 20; ++i)
+            call("pose.set", {{"x", 0.1 * i}, {"y", 0}, {"theta", 0}});
+        for (int i = 0; i < 8; ++i)
+            QCOMPARE(call("map.undo")["command"].toString(), QString("pose.set"));
+        QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady)); // no further
+        call("map.load", {{"path", "room.csv"}});
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0}});
+        QCOMPARE(call("map.undo")["command"].toString(), QString("pose.set"));
+        const QJsonObject loaded = call("map.undo");
+        QCOMPARE(loaded["command"].toString(), QString("map.load"));
+        QCOMPARE(loaded["segments"].toInt(), walls);
     }
 
     void mapsAreListed() {
@@ -233,7 +334,8 @@ private Q_SLOTS:
         QCOMPARE(replayed == live, !isApart);
         QVERIFY(!replayed.isEmpty());
 
-        scans = isApart ? 0 : call("matcher.state")["scans"].toInt();
+        if (!isApart)
+            scans = call("matcher.state")["scans"].toInt();
         for (int i = 40; i < 65; ++i) // not as many as before
             source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
         QTRY_COMPARE(call("matcher.state")["scans"].toInt(), scans + 25);
@@ -274,7 +376,6 @@ private Q_SLOTS:
         call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{"sigma_m", 0.02}}}}}});
         replay();
         QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 40);
-        QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0); // no drive of it is remembered
         source->publish("scan2d", roomScan(onTheWay(40), 4), 4);
         QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("ok"));
         QTRY_COMPARE(call("map.get")["size"].toInt(), live.size());
@@ -342,6 +443,30 @@ private Q_SLOTS:
         QTRY_COMPARE(updates.size(), 2);
         QCOMPARE(updates[1]["revision"].toInt(), updates[0]["revision"].toInt() + 1);
         QVERIFY(!updates[1]["cleared"].toBool());
+    }
+
+    // Along a corridor without an end nothing tells how far it is.
+    void healthFollowsTheTrust() {
+        QJsonArray x, y;
+        for (int i = 0; i < 400; ++i) {
+            x << (i < 200 ? -4 + 0.04 * i : 4 - 0.04 * (i - 200));
+            y << (i < 200 ? -1.0 : 1.0);
+        }
+        const auto show = [&](int from, int to) {
+            for (int i = from; i < to; ++i)
+                source->publish("scan2d", QJsonObject{{"stamp", 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}},
+                                0.1 * i);
+            QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
+        };
+        show(0, 30); // 2.9 s
+        QCOMPARE(healthItem("tracking")["level"].toString(), QString("ok"));
+        show(30, 40);
+        const QString message = healthItem("tracking")["message"].toString();
+        QVERIFY2(message.startsWith("the pose is doubtful for 4 s: its trust is 0."), qPrintable(message));
+        QCOMPARE(healthItem("tracking")["level"].toString(), QString("warn"));
+        call("map.clear");
+        drive(0, 40);
+        QCOMPARE(healthItem("tracking")["message"].toString(), QString("on track"));
     }
 
     void queueDropsItsOldestAndCounts() {

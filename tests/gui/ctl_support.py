@@ -59,7 +59,7 @@ class ThermometerCase(unittest.TestCase):
 
 
 class MadeUpDaemon:
-    """Answers each method with what replies has for it (an Error becomes one), and sends the messages of a topic, once, to the
+    """Answers each method with what replies has for it (an Error becomes one; a function gets the parameters), and sends the messages of a topic, once, to the
     first who subscribes: a list of (seq, dropped, data)."""
 
     class Error(dict):
@@ -91,6 +91,7 @@ class MadeUpDaemon:
 
     def answer(self, request, lines):
         reply = self.replies.get(request["method"], self.Error(code=-32601, message="not found"))
+        reply = reply(request["params"]) if callable(reply) else reply
         key = "error" if isinstance(reply, self.Error) else "result"
         lines.write(json.dumps({"jsonrpc": "2.0", "id": request["id"], key: reply}) + "\n")
         if request["method"] == "topics.subscribe":

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """hermesctl says what to do about a failure, and speaks JSON where it is asked to."""
 import json
+import math
 import os
 import socket
 import subprocess
@@ -121,6 +122,13 @@ class Advice(ThermometerCase):
         shown = ctl("set", address, "sensor.theta_rad=-180", "--json")
         self.assertEqual((shown.returncode, json.loads(shown.stderr)),
                          (0, {"note": "sensor.theta_rad: -180 rad is 28.6 turns; did you mean -3.142 rad (-180 degrees)?"}))
+
+    def test_angles_typed_in_degrees(self):
+        echo = lambda params: params
+        shown = ctl("call", self.made_up(trigger__define=echo), "trigger.define", "when.angle=90deg", "id=90deg")
+        self.assertEqual((json.loads(shown.stdout), shown.stderr), ({"when": {"angle": math.pi / 2}, "id": "90deg"}, ""))
+        shown = ctl("set", self.made_up(settings__set=echo), "sensor.theta_rad=-180deg", "--json")
+        self.assertEqual(json.loads(shown.stdout), {"values": {"sensor": {"theta_rad": -math.pi}}})
 
     def test_a_hint_that_cannot_be_had_is_no_error(self):
         daemon = MadeUpDaemon({"trigger.define": {"id": "x"}})

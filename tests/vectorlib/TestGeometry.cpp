@@ -111,6 +111,22 @@ private Q_SLOTS:
         model.update({0.2, 0, 0}, 9.0); // a clock that steps back
         QCOMPARE(model.predict(9.1).x, 0.2);
     }
+
+    void motionModelBelievesNoImpossibleVelocity() {
+        MotionModel model;
+        model.update({0, 0, 0}, 10.0);
+        model.update({0.1, 0, 0}, 10.1);
+        model.update({0.1125, 0, 0}, 10.1001); // 125 m/s
+        QCOMPARE(model.twist().vx, 1.0);
+        model.update({0.1225, 0, 0}, 10.1021); // 5 m/s, of the noise
+        QCOMPARE(model.twist().vx, 1.0);
+        model.update({4, 0, 0}, 10.2); // it leapt
+        QCOMPARE(model.twist().vx, 1.0);
+        model.update({4, 0, 3}, 10.3); // and turned
+        QCOMPARE(model.twist().omega, 0.0);
+        model.update({4.2, 0, 3}, 10.4);
+        QVERIFY(model.twist().omega == 0 && std::abs(model.twist().vx) < 2);
+    }
 };
 
 QTEST_APPLESS_MAIN(TestGeometry)

@@ -37,6 +37,21 @@ QPushButton *addButtons(QDialog *dialog, const QString &accept) {
     return button;
 }
 
+/// As a person knows it.
+QString commandText(const QString &command) {
+    return command == "map.clear"         ? MapMenu::tr("New map")
+           : command == "map.load"        ? MapMenu::tr("Open")
+           : command == "pose.set"        ? MapMenu::tr("Place")
+           : command == "pose.relocalize" ? MapMenu::tr("Relocalize")
+           : command == "replay"          ? MapMenu::tr("Replay")
+                                          : shortLine(command);
+}
+
+/// "Undo Place".
+void name(QAction *action, const QString &word, const QString &command) {
+    action->setText(command.isEmpty() ? word : word + ' ' + commandText(command));
+}
+
 } // namespace
 
 MapMenu::MapMenu(QWidget *parent)
@@ -48,7 +63,8 @@ MapMenu::MapMenu(QWidget *parent)
     save_ = add(tr("&Save"), "saveMap", "map.save", &MapMenu::save);
     add(tr("Save &as..."), "saveMapAs", "map.save", &MapMenu::saveAs);
     add(tr("&Export on the robot..."), "exportMap", "map.export", &MapMenu::exportAs);
-    add(tr("&Undo: bring back the last map"), "undoMap", "map.undo", &MapMenu::bringBack);
+    undo_ = add(tr("&Undo"), "undoMap", "map.undo", &MapMenu::bringBack);
+    redo_ = add(tr("&Redo"), "redoMap", "map.undo", &MapMenu::bringForth);
     addSeparator();
     mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", nullptr);
     localization_ =
@@ -74,6 +90,8 @@ void MapMenu::setMatcher(DaemonLink *matcher) {
     if (matcher_ != matcher) {
         path_.clear();
         matcher_ = matcher;
+        name(undo_, tr("&Undo"), {});
+        name(redo_, tr("&Redo"), {});
         question_.close();
         Q_EMIT told({}, false);
     }
@@ -115,7 +133,7 @@ void MapMenu::ask(const QString &question, const QString &yes, const std::functi
 }
 
 void MapMenu::startNew() {
-    ask(tr("Begin a new map? The one of now is kept until the next is replaced: Map, Undo."),
+    ask(tr("Begin a new map? The one of now is kept: Map, Undo. The drive that closes its loops is not."),
         tr("Begin anew"), [this] {
             call("map.clear", {}, [this](const QJsonValue &) {
                 path_.clear();
@@ -247,13 +265,29 @@ void MapMenu::exportAs() {
 }
 
 void MapMenu::bringBack() {
-    call("map.undo", {}, [this](const QJsonValue &back) {
-        path_.clear();
-        update();
-        const QString brought = tr("The last map is back: %1 walls.").arg(back["segments"].toDouble());
-        Q_EMIT told(brought + ' ' + tr("The robot is sought in it."), false);
-        Q_EMIT sought(brought);
-    });
+    undo(false);
+}
+
+void MapMenu::bringForth() {
+    undo(true);
+}
+
+void MapMenu::undo(bool again) {
+    call("map.undo", again ? QJsonObject{{"redo", true}} : QJsonObject(),
+         [this, again](const QJsonValue &back) {
+             const bool isMap = back["map"].toBool(), isPose = back["pose"].toBool();
+             if (isMap)
+                 path_.clear();
+             readMode();
+             QString brought = again ? tr("Done again: %1.") : tr("Undone: %1.");
+             brought = brought.arg(commandText(back["command"].toString()));
+             if (isMap)
+                 brought += ' ' + tr("The map has %1 walls.").arg(back["segments"].toDouble());
+             if (isPose)
+                 return Q_EMIT told(brought + ' ' + tr("Its place counts once scans agree."), false);
+             Q_EMIT told(brought + ' ' + tr("The robot is sought in it."), false);
+             Q_EMIT sought(brought);
+         });
 }
 
 void MapMenu::setMode(const QString &mode) {
@@ -273,6 +307,8 @@ void MapMenu::readMode() {
             return;
         mapping_->setChecked((*state)["mode"] == QJsonValue("mapping"));
         localization_->setChecked((*state)["mode"] == QJsonValue("localization"));
+        name(undo_, tr("&Undo"), (*state)["undoes"].toString());
+        name(redo_, tr("&Redo"), (*state)["redoes"].toString());
     });
 }
 

@@ -40,6 +40,8 @@ private:
     void saveAs();
     void exportAs();
     void bringBack();
+    void bringForth();
+    void undo(bool again);
     void setMode(const QString &mode);
     /// Asks for the name of a file on the robot.
     void askName(const QString &title, const QString &name, const std::function<void(const QString &)> &use);
@@ -51,7 +53,8 @@ private:
     QPointer<DaemonLink> matcher_;
     OneDialog question_;                                 ///< two would mean different maps
     std::vector<std::pair<QAction *, QString>> actions_; ///< with the method that each needs
-    QAction *save_ = nullptr, *mapping_ = nullptr, *localization_ = nullptr;
+    QAction *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr, *mapping_ = nullptr,
+            *localization_ = nullptr;
     QString path_; ///< of the map, as it was opened or saved last
 };
 

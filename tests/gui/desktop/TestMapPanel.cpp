@@ -137,7 +137,8 @@ private Q_SLOTS:
         accept();
         QTRY_VERIFY2(message().startsWith("A new map has begun"), qPrintable(message()));
         trigger("undoMap");
-        QTRY_VERIFY2(message().startsWith("The last map is back"), qPrintable(message()));
+        QTRY_VERIFY2(message().startsWith("Undone: New map. The map has "), qPrintable(message()));
+        QTRY_COMPARE(panel()->findChild<QAction *>("redoMap")->text(), QString("&Redo New map"));
         QTRY_VERIFY(model().edges().size() >= walls);
         trigger("localization");
         QTRY_COMPARE(message(), QString("The map stays as it is."));

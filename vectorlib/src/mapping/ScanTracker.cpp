@@ -173,8 +173,7 @@ VECTORLIB_BODY void ScanTracker::confirm(const Relocalized &again) {
 
 VECTORLIB_BODY void ScanTracker::claim(const Pose2D &pose) {
     place(pose);
-    if (grows_ && !builder.map.isEmpty())
-        setPlace(PlaceState::Told);
+    doubt();
 }
 
 VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {

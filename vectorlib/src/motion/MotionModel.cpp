@@ -116,8 +116,9 @@ VECTORLIB_BODY void MotionModel::update(const Pose2D &pose, double stamp) {
     if (!known_ || !(seconds > 0) || seconds > maxGap) {
         twist_ = Twist2D();
         velocityKnown_ = false;
-    } else {
-        const Twist2D last = Twist2D::between(pose_.inverse() * pose, seconds);
+    } else if (const Twist2D last = Twist2D::between(pose_.inverse() * pose, seconds);
+               seconds >= minGap && std::hypot(last.vx, last.vy) <= fastest_mps &&
+               std::abs(last.omega) <= fastest_radps) {
         const double k = velocityKnown_ ? lastStepShare : 1;
         twist_ = {twist_.vx + k * (last.vx - twist_.vx), twist_.vy + k * (last.vy - twist_.vy),
                   twist_.omega + k * (last.omega - twist_.omega)};

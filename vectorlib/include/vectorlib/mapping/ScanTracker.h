@@ -115,6 +115,12 @@ public:
     void place(const Pose2D &pose, double against = 0);
     /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree.
     void claim(const Pose2D &pose);
+    /// The place may be wrong: nothing is mapped until five scans in a row agree with it.
+    void doubt() {
+        agreed_ = 0;
+        if (place_ == PlaceState::Known && grows_ && !builder.map.isEmpty())
+            setPlace(PlaceState::Told);
+    }
     /// The place in the map is not known: scans count as lost until it is found or told.
     void seek();
     /// What is known of the place in the map. Nothing is mapped but where it is Known.

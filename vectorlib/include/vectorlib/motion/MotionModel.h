@@ -83,9 +83,15 @@ class MotionModel {
 public:
     double maxGap =
         1.0; ///< after a longer pause, or a stamp that steps back, the velocity is forgotten; seconds
+    /// No robot is faster (m/s, rad/s): a step that would be tells of wrong stamps or poses, not of a
+    /// velocity.
+    static constexpr double fastest_mps = 30, fastest_radps = 20;
+    /// Between stamps that are nearer, the noise of the poses tells more than the motion; seconds.
+    double minGap = 0.005;
     double lastStepShare = 0.5; ///< of the last step in the velocity; less is smoother and later
 
-    /// The sensor was at `pose` at the time `stamp`; seconds.
+    /// The sensor was at `pose` at the time `stamp`; seconds. A step that tells no velocity leaves the one of
+    /// before.
     void update(const Pose2D &pose, double stamp);
     /// Puts the sensor somewhere else, standing still.
     void reset(const Pose2D &pose);
