@@ -33,11 +33,19 @@ enum class Trouble {
     OdometryJump,
     Scale,
     Blind,
-    Clock
+    Clock,
+    Crowd
 };
-const std::vector<const char *> troubles{
-    "nothing",     "carried",        "a wrong place is told", "another map",      "furniture moved", "people",
-    "wheels slip", "odometry jumps", "odometry scaled",       "no scans for 3 s", "the clock steps"};
+const std::vector<const char *> troubles{"nothing",          "carried",         "a wrong place is told",
+                                         "another map",      "furniture moved", "people",
+                                         "wheels slip",      "odometry jumps",  "odometry scaled",
+                                         "no scans for 3 s", "the clock steps", "stands in a crowd"};
+
+// Who goes by a robot: where, in its frame, and how fast.
+struct Passer {
+    double ahead, left, speed; // metres, m/s
+    bool isCart;
+};
 
 struct Building {
     ScanWorld world;
@@ -102,7 +110,7 @@ public:
         drive(b);
         if (trouble_ == Trouble::OtherMap)
             figures_.farthest = tracker_.builder.map.size() > known ? 100 : 0;
-        else if (isMapping_ && trouble_ != Trouble::People && !mayBend_)
+        else if (isMapping_ && trouble_ != Trouble::People && trouble_ != Trouble::Crowd && !mayBend_)
             judgeMap(b.world);
         figures_.drives = 1;
         figures_.failed = figures_.longest > longest_s || figures_.farthest > noWall_m;
@@ -164,9 +172,15 @@ private:
         std::vector<double> people(std::size_t(any(11)));
         for (double &angle : people)
             angle = between(0, 2 * pi);
+        std::vector<Passer> crowd(std::size_t(1 + any(8)));
+        for (Passer &passer : crowd)
+            passer = {between(-6, 6), between(-0.9, 0.9), between(0.5, 1.5) * (any(3) ? 1 : -1), any(3) == 0};
         for (std::size_t n = 0, at = 0; n < std::size_t(mostScans) && at + 1 < b.way.size(); ++n) {
             const bool isWrong = n >= when_ && n < when_ + 20, begins = n == when_;
-            if (n > 0) {
+            const bool stands = trouble_ == Trouble::Crowd && n > when_ && n < when_ + 80;
+            if (stands)
+                twist = {};
+            else if (n > 0) {
                 const Pose2D motion = b.way[at].inverse() * b.way[at + 1];
                 const double k =
                     scale * noise(random_) * (trouble_ == Trouble::Slip && isWrong ? 1 - slip : 1);
@@ -197,11 +211,30 @@ private:
                     seen.pillars.push_back(
                         {{b.way[at].x + far * std::cos(angle), b.way[at].y + far * std::sin(angle)}, 0.2});
                 }
+            if (trouble_ == Trouble::Crowd && n >= when_)
+                pass(crowd, b.way[at], seen);
             TimedScan scan = scanOf(seen, b.way[at]);
             scan.stamp = clock;
             if (hasOdometry_)
                 scan.odometry = odometry_.over(clock, clock);
             judge(scan, b.way[at], b.world);
+        }
+    }
+    // People, and carts of a metre, go by on both sides along the way, again and again.
+    void pass(std::vector<Passer> &crowd, const Pose2D &robot, ScanWorld &seen) {
+        for (Passer &passer : crowd) {
+            passer.ahead = std::remainder(passer.ahead + passer.speed * between_s, 16);
+            if (std::hypot(passer.ahead, passer.left) < 0.9)
+                continue;
+            const auto at = [&](double x, double y) {
+                const Pose2D p = robot * Pose2D{passer.ahead + x, passer.left + y, 0};
+                return Point(p.x, p.y);
+            };
+            if (!passer.isCart)
+                seen.pillars.push_back({at(0, 0), 0.2});
+            const Point corners[] = {at(-0.5, -0.3), at(-0.5, 0.3), at(0.5, 0.3), at(0.5, -0.3)};
+            for (int k = 0; passer.isCart && k < 4; ++k)
+                seen.walls.emplace_back(corners[k], corners[(k + 1) % 4]);
         }
     }
     // 1 to 7 m from a pose of the way.
@@ -337,9 +370,10 @@ private:
 class TestDoubt : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    // About one drive in sixty fails, and one right pose in twenty is doubted: so much is not reached yet.
+    // About one drive in fifty fails, and one right pose in twelve is doubted, more in crowds: so much is not
+    // reached yet.
     void aWrongPoseIsDoubted() {
-        constexpr int mostFailed = 33, mostDoubted = 12, few = 2;
+        constexpr int mostFailed = 33, mostDoubted = 9, few = 2;
         const int asked = qEnvironmentVariableIntValue("HERMES_CASES"), cases = asked > 0 ? asked : 50;
         const unsigned first = asked > 0 ? newSeed() : 1;
         std::vector<Figures> kinds(troubles.size());

@@ -127,8 +127,11 @@ VECTORLIB_BODY void MapBuilder::collectVisible(const Transformation2D &expected)
     reach = std::sqrt(reach) + std::max(track.settings.permitted.dx, track.settings.permitted.dy);
     const Vector2D<double> centre = expected.translation(), half(reach, reach);
     for (int number : map.near(centre - half, centre + half)) {
+        const MapEdge &edge = map.slots()[static_cast<std::size_t>(number)];
+        if (edge.observations < settings.leastObservations)
+            continue;
         numbers_.push_back(number);
-        static_.push_back(map.slots()[static_cast<std::size_t>(number)].segment);
+        static_.push_back(edge.segment);
     }
 }
 

@@ -100,15 +100,25 @@ VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan) {
 VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     against_ = knownAgainst_ = weighed_ = 0;
     const ScanReport &report = builder.report();
-    if (!settings_.seekWhereContradicted || builder.map.isEmpty())
+    if (!settings_.seekWhereContradicted || builder.map.isEmpty() || isDisputed_)
         return;
     const Transformation2D pose(report.pose);
     const bool isSurprising = byOdometry_ && isFar(guessed_.inverse() * pose, surprising_m, surprising_rad);
     const bool isShown =
         builder.isFollowed() &&
         (!builder.isExpectedByScan() || builder.matchPair.match().agreement.explained() >= fewExplained);
+    const bool isPaired = builder.isExpectedByScan() || !builder.isFollowed();
     break_.take(report.outcome, isWellExpected_ && !isFar(guessedWay_, near_m, near_rad),
-                isShown && !isSurprising);
+                isShown && !isSurprising,
+                isPaired ? std::optional(builder.matchPair.match().agreement.contradicted()) : std::nullopt);
+    if (break_.mayBeTorn())
+        builder.refuse();
+    if (break_.isTorn()) {
+        builder.refuse();
+        seek();
+        isBent_ = true;
+        return;
+    }
     const bool isDue = break_.isSuspect() || counts_.scans % eachNth == 0; // else it would cost half a match
     if (report.outcome == ScanReport::Outcome::Skipped || !isDue)
         return;
@@ -291,6 +301,16 @@ VECTORLIB_BODY bool ScanTracker::locate(TimedScan &scan, double begin, double en
     byOdometry_ = false;
     isWellExpected_ = lastStamp_ && scan.stamp > *lastStamp_ && scan.stamp - *lastStamp_ <= followed_s;
     Found found = find(scan, guess);
+    const bool isClose =
+        lastStamp_ && isMomentAgo(*lastStamp_, scan.stamp) && !isFar(guessedWay_, close_m, close_rad);
+    const auto off = guess.byOdometry && isClose ? disputed(guess) : std::nullopt;
+    isDisputed_ = off.has_value();
+    if (isDisputed_) {
+        open_.dispute(*off);
+        byOdometry_ = isWellExpected_ = true;
+        ++counts_.byOdometry;
+        return findByOdometry(scan, guess).straight;
+    }
     const bool doubtful = found.again || leaps(byMotion, guess, end - begin);
     if (scan.odometry && (found.score < 0 || (isStraightened(scan) && doubtful))) {
         const Found other = find(scan, byMotion);
@@ -303,6 +323,43 @@ VECTORLIB_BODY bool ScanTracker::locate(TimedScan &scan, double begin, double en
     isWellExpected_ = isWellExpected_ || guess.byOdometry;
     counts_.byOdometry += byOdometry_;
     return found.straight;
+}
+
+VECTORLIB_BODY std::optional<Vector2D<double>> ScanTracker::disputed(const Guess &guess) {
+    const Transformation2D pose(builder.report().pose);
+    const Vector2D<double> off = pose.translation() - Transformation2D(guess.pose).translation();
+    const double errs = (guess.deviations ? guess.deviations->xy : leastErr_m) +
+                        std::max(errsByWay, open_.slip()) * guessedWay_.translation().norm();
+    if (builder.report().outcome != ScanReport::Outcome::Matched || off.norm() < odometryErrs * errs)
+        return std::nullopt;
+    double xx = 0, xy = 0, yy = 0; // of the normals of walls that are known for long, by length
+    for (const CorrespondencePair &pair : builder.match().pairs) {
+        const MapEdge &wall = builder.map.slots()[std::size_t(builder.candidates()[std::size_t(pair.fixed)])];
+        if (wall.observations < knownForLong)
+            continue;
+        const Vector2D<double> n = wall.segment.normal();
+        const double length = builder.edges()[std::size_t(pair.moving)].segment.length();
+        xx += length * n.x * n.x;
+        xy += length * n.x * n.y;
+        yy += length * n.y * n.y;
+    }
+    const double sum = xx + yy,
+                 reliability = sum > 0 ? 2 * std::sqrt(std::max(0.0, xx * yy - xy * xy)) / sum : 0;
+    if (!(sum > 0) || reliability > openReliability)
+        return std::nullopt;
+    const double angle = 0.5 * std::atan2(2 * xy, xx - yy) + pi / 2;
+    const Vector2D<double> open(std::cos(angle), std::sin(angle));
+    const double along = open.dot(off);
+    return std::abs(along) > odometryErrs * errs ? std::optional(open * along) : std::nullopt;
+}
+
+VECTORLIB_BODY ScanTracker::Found ScanTracker::findByOdometry(TimedScan &scan, const Guess &guess) {
+    builder.settings.matchPrevious = false;
+    builder.settings.leastObservations = knownForLong;
+    const Found found = find(scan, guess);
+    builder.settings.matchPrevious = true;
+    builder.settings.leastObservations = 0;
+    return found;
 }
 
 VECTORLIB_BODY ScanTracker::Found ScanTracker::find(TimedScan &scan, const Guess &guess) {

@@ -9,6 +9,8 @@ VECTORLIB_BODY void OpenDirection::follow(const Transformation2D &pose, bool isO
                                           const Transformation2D &mount) {
     const double way = last_ ? (pose.translation() - last_->translation()).norm() : 0;
     last_ = pose;
+    if (!isOpen)
+        disputed_ = {};
     deviation_ = isOpen ? deviation_ + (isByOdometry ? slip_ : unguided) * way : 0;
     if (odometry && !isOpen)
         learn(pose, odometry->epoch(), odometry->at(stamp) * mount);

@@ -2,6 +2,8 @@
 
 #include "vectorlib/mapping/MapBuilder.h"
 
+#include <optional>
+
 namespace vectorlib {
 
 /// Watches whether a drive breaks while its map grows: two scans that were expected close together do not
@@ -12,6 +14,9 @@ public:
     /// By how much more of a scan may lie behind walls of the map than before the break; a share of its
     /// points.
     double mostHidden = 0.15;
+    /// By how much more of a scan than usual the scan before may contradict, where the two were taken close
+    /// together: it saw something farther away there. A share of its points, and how many times the usual.
+    double mostTorn = 0.06, usualTorn = 3;
 
     /// The sensor was put somewhere: nothing is suspicious before a scan is matched there.
     void place() {
@@ -21,9 +26,11 @@ public:
     }
     /// The map was made anew: what it hid does not count.
     void correct() { hidden_ = knownHidden_ = 0; }
-    /// Takes the outcome of a scan, whether it was expected near the one before, and whether that shows it.
-    void take(ScanReport::Outcome outcome, bool isNear, bool isFollowed) {
+    /// Takes the outcome of a scan, whether it was expected near the one before, and whether that shows it;
+    /// the share of it that the one before contradicts, where the two were compared.
+    void take(ScanReport::Outcome outcome, bool isNear, bool isFollowed, std::optional<double> contradicted) {
         const bool isLost = outcome == ScanReport::Outcome::Lost;
+        follow(isNear && contradicted, contradicted.value_or(0));
         if (!isSuspect_ && !isInsisted_ && isNear && (isLost || !isFollowed)) {
             isSuspect_ = true;
             knownHidden_ = hidden_;
@@ -32,6 +39,9 @@ public:
     }
     /// Whether the drive broke, and no scan has agreed with the map since.
     bool isSuspect() const { return isSuspect_; }
+    /// Whether the two show different places, whatever the map tells; the next scan decides, as people go on.
+    bool mayBeTorn() const { return torn_ > 0; }
+    bool isTorn() const { return isTorn_; }
     /// Takes the share of the scan's points that lie behind walls. True where the scan contradicts the map
     /// after a break, and also where the map does not know what the scan shows and nothing else tells its
     /// pose.
@@ -43,8 +53,19 @@ public:
     }
 
 private:
+    static constexpr double usualShare = 0.2; // by which the usual follows a scan
+    static constexpr double quiet = 0.3;      // of what tore the drive, in the scan after
+
+    void follow(bool isCompared, double contradicted) {
+        isTorn_ = isCompared && torn_ > 0 && contradicted < quiet * torn_;
+        const bool mayBeTorn =
+            isCompared && !isInsisted_ && contradicted > mostTorn + usualTorn * contradicted_;
+        torn_ = mayBeTorn ? contradicted : 0;
+        contradicted_ += usualShare * (contradicted - contradicted_);
+    }
     double hidden_ = 0, knownHidden_ = 0; // of one of the last scans, and before the break
-    bool isSuspect_ = false, isInsisted_ = false;
+    double contradicted_ = 0, torn_ = 0;  // usually, and where the drive may be torn
+    bool isSuspect_ = false, isInsisted_ = false, isTorn_ = false;
 };
 
 } // namespace vectorlib

@@ -44,6 +44,8 @@ struct MapBuilderSettings {
     /// How far a pose that such a match expects may be wrong: standard deviations; metres, radians.
     double previousDeviationXY = 0.01, previousDeviationAlpha = 0.005;
     TrackingSettings tracking; ///< from a pose that such a match expects
+    /// Edges of the map that fewer scans have seen take no part: they may be things that move.
+    std::int64_t leastObservations = 0;
 };
 
 /// Builds a vector map scan by scan: extract edges, predict, match, merge. Reads as the pipeline of thesis

@@ -196,6 +196,10 @@ private:
     static constexpr double openReliability = 0.1, coveredReliability = 0.7;
     static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
     // Two scans so close together must show about the same: less than this share of the points is suspicious.
+    static constexpr std::int64_t knownForLong = 10;        // scans
+    static constexpr double close_m = 0.2, close_rad = 0.2; // between two scans
+    static constexpr double odometryErrs = 2, leastErr_m = 0.01,
+                            errsByWay = 0.15; // deviations; metres, share
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
     static constexpr std::uint64_t eachNth = 5;                        // scan of a growing map is judged
     static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
@@ -228,6 +232,11 @@ private:
     // its points have times, the scan is sought where the motion so far leads, too, and the better place
     // counts.
     bool locate(TimedScan &scan, double begin, double end);
+    // How far the pose that was found is from where the odometry puts it, along a direction that walls known
+    // for long leave open, where that is more than it errs: what tells the pose there may move by itself.
+    std::optional<Vector2D<double>> disputed(const Guess &guess);
+    // Finds the scan by the odometry and by walls that are known for long.
+    Found findByOdometry(TimedScan &scan, const Guess &guess);
     // Straightens the scan by the velocity that is guessed, and again by what its points say of it then.
     Found find(TimedScan &scan, const Guess &guess);
     bool isStraightened(const TimedScan &scan) const {
@@ -289,7 +298,7 @@ private:
     PlaceState place_ = PlaceState::Known;
     bool grows_ = true;
     Transformation2D guessed_, guessedWay_; // the last scan, and from the one before
-    bool isOdometryGuess_ = false;
+    bool isOdometryGuess_ = false, isDisputed_ = false;
     DriveBreak break_;
     PlaceFitter withoutPeople_; // they are drawn, too: short walls do not speak against a pose
     OpenDirection open_;

@@ -18,14 +18,23 @@ public:
     /// it.
     void follow(const Transformation2D &pose, bool isOpen, bool isByOdometry,
                 const std::optional<OdometryTrack> &odometry, double stamp, const Transformation2D &mount);
+    /// The share of the way by which the odometry errs, as far as the drive tells.
+    double slip() const { return slip_; }
+    /// The scans told a pose so far from that of the odometry, which was taken (metres, map frame). What
+    /// moves about the sensor goes to and fro; slip adds up.
+    void dispute(const Vector2D<double> &off) { disputed_ = disputed_ + off; }
     /// The sensor was put somewhere, or the map was made anew: nothing is open there.
     void place() {
         deviation_ = 0;
+        disputed_ = {};
         last_.reset();
         from_.reset();
     }
     /// How probable it is that the pose is right within 0.3 m.
-    double belief() const { return deviation_ > 0 ? std::erf(right_m / (std::sqrt(2.0) * deviation_)) : 1; }
+    double belief() const {
+        const double deviation = std::hypot(deviation_, disputed_.norm());
+        return deviation > 0 ? std::erf(right_m / (std::sqrt(2.0) * deviation)) : 1;
+    }
 
 private:
     static constexpr double right_m = 0.3;
@@ -43,6 +52,7 @@ private:
     std::optional<Transformation2D> last_; // pose
     std::optional<From> from_;
     double deviation_ = 0, slip_ = firstSlip;
+    Vector2D<double> disputed_;
 };
 
 } // namespace vectorlib
