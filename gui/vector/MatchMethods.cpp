@@ -72,7 +72,7 @@ MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, const Eigen::
     MatchedSolution m;
     m.solution.pose = s.pose;
     m.solution.score = s.score;
-    m.solution.reliability = s.agreement.reliability();
+    m.solution.reliability = s.agreement.walls().reliability();
     m.solution.accepted = accepted;
     m.verdict = accepted ? "accepted" : verdict;
     m.probability = s.probability;

@@ -83,7 +83,7 @@ void writeCsv(std::ostream &out, const std::vector<GlobalPairResult> &pairs) {
             << describe(p.match.verdict) << "\"," << p.match.solutions.size() << ','
             << Number(p.probability()) << ',' << Number(agreement.score()) << ','
             << Number(agreement.explained()) << ',' << Number(agreement.contradicted()) << ','
-            << Number(agreement.reliability()) << ',' << Number(p.match.slideLoss) << ','
+            << Number(agreement.walls().reliability()) << ',' << Number(p.match.slideLoss) << ','
             << Number(agreement.length()) << ',' << p.match.searchedWidely << ',' << Number(p.microseconds)
             << '\n';
     }

@@ -110,9 +110,9 @@ void writeCsv(std::ostream &out, const std::vector<PairResult> &pairs) {
         for (const Transformation2D &motion : {p.match.pose, p.match.byLines, p.expected})
             out << ',' << Number(p.errorMetres(motion)) << ',' << Number(p.errorDegrees(motion));
         out << ',' << p.match.accepted << ',' << Number(p.match.agreement.explained()) << ','
-            << Number(p.match.agreement.contradicted()) << ',' << Number(p.match.agreement.reliability())
-            << ',' << p.match.linesSuffice << ',' << p.match.searchedAgain << ',' << Number(p.microseconds)
-            << '\n';
+            << Number(p.match.agreement.contradicted()) << ','
+            << Number(p.match.agreement.walls().reliability()) << ',' << p.match.linesSuffice << ','
+            << p.match.searchedAgain << ',' << Number(p.microseconds) << '\n';
     }
 }
 

@@ -53,7 +53,7 @@ GlobalPairMatcher::judge(PointSpan<float> fixed, PointSpan<float> moving, const 
 VECTORLIB_BODY Eigen::Matrix3d GlobalPairMatcher::covarianceOf(const GlobalPairSolution &s) const {
     Eigen::Matrix3d covariance = tellCovariance(refine, s.pose);
     if (match_.slideLoss < settings.openMargin) { // what seems to hold the scans there is noise
-        const Vector2D<double> way = s.agreement.openDirection();
+        const Vector2D<double> way = s.agreement.walls().weakest();
         const double half = 2 * settings.slideStep;
         covariance += square(half * half, Eigen::Vector3d(way.x, way.y, 0));
     }

@@ -54,10 +54,10 @@ VECTORLIB_BODY const ScanPairMatch &ScanPairMatcher::operator()(PointSpan<float>
 }
 
 VECTORLIB_BODY void ScanPairMatcher::leaveOpen() {
-    const double share = match_.agreement.weakestShare();
+    const double share = match_.agreement.walls().weakestShare();
     const double kept =
         std::clamp((share - settings.unknownShare) / (settings.knownShare - settings.unknownShare), 0.0, 1.0);
-    const Vector2D<double> along = match_.agreement.weakest();
+    const Vector2D<double> along = match_.agreement.walls().weakest();
     const Vector2D<double> off = match_.pose.translation() - expected_.pose.translation();
     match_.pose =
         Transformation2D(match_.pose.x() - (1 - kept) * along.dot(off) * along.x,
@@ -127,7 +127,7 @@ VECTORLIB_BODY bool ScanPairMatcher::isAcceptable() const {
     return match_.agreement.explainedPoints() >= settings.minPoints &&
            match_.agreement.explained() >= settings.minExplained &&
            match_.agreement.contradicted() <= settings.maxContradicted &&
-           match_.agreement.reliability() >= settings.minReliability &&
+           match_.agreement.walls().reliability() >= settings.minReliability &&
            (isGood() || surprise(match_.pose) <= surprising);
 }
 

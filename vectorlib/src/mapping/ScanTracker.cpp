@@ -6,26 +6,6 @@
 
 namespace vectorlib {
 
-VECTORLIB_BODY PoseTrust::Features PoseTrust::features(const Match &match, const Transformation2D &expected,
-                                                       double finalDistance) {
-    const Transformation2D off = expected.inverse() * match.pose;
-    const double far = off.translation().norm() + 0.5 * std::abs(off.alpha());
-    return {1,
-            within(match.reliability),
-            within(match.rms / finalDistance),
-            std::log(double(std::max<std::size_t>(1, match.pairs.size()))),
-            std::log(0.01 + within(far)),
-            within(match.matchedLength / match.visibleLength)};
-}
-
-VECTORLIB_BODY double PoseTrust::operator()(const Features &f) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < f.size(); ++i)
-        sum += weights[i] * f[i];
-    const double p = 1 / (1 + std::exp(-sum));
-    return p > 0 ? p : 0; // no number: nothing is known
-}
-
 VECTORLIB_BODY void ScanTracker::apply(const ScanTrackerSettings &settings) {
     settings_ = settings;
     builder.settings.matchPrevious = true;
@@ -332,23 +312,15 @@ VECTORLIB_BODY std::optional<Vector2D<double>> ScanTracker::disputed(const Guess
                         std::max(errsByWay, open_.slip()) * guessedWay_.translation().norm();
     if (builder.report().outcome != ScanReport::Outcome::Matched || off.norm() < odometryErrs * errs)
         return std::nullopt;
-    double xx = 0, xy = 0, yy = 0; // of the normals of walls that are known for long, by length
+    WallDirections known; // for long
     for (const CorrespondencePair &pair : builder.match().pairs) {
         const MapEdge &wall = builder.map.slots()[std::size_t(builder.candidates()[std::size_t(pair.fixed)])];
-        if (wall.observations < knownForLong)
-            continue;
-        const Vector2D<double> n = wall.segment.normal();
-        const double length = builder.edges()[std::size_t(pair.moving)].segment.length();
-        xx += length * n.x * n.x;
-        xy += length * n.x * n.y;
-        yy += length * n.y * n.y;
+        if (wall.observations >= knownForLong)
+            known.add(wall.segment.normal(), builder.edges()[std::size_t(pair.moving)].segment.length());
     }
-    const double sum = xx + yy,
-                 reliability = sum > 0 ? 2 * std::sqrt(std::max(0.0, xx * yy - xy * xy)) / sum : 0;
-    if (!(sum > 0) || reliability > openReliability)
+    if (known.isEmpty() || known.reliability() > openReliability)
         return std::nullopt;
-    const double angle = 0.5 * std::atan2(2 * xy, xx - yy) + pi / 2;
-    const Vector2D<double> open(std::cos(angle), std::sin(angle));
+    const Vector2D<double> open = known.weakest();
     const double along = open.dot(off);
     return std::abs(along) > odometryErrs * errs ? std::optional(open * along) : std::nullopt;
 }

@@ -97,9 +97,7 @@ VECTORLIB_BODY void PointAgreement::add(const ScanIndex &points, const Transform
             const float d = n.dot(p - other.point(k));
             ++explained_;
             distances_ += d * d / squaredGate;
-            xx_ += n.x * n.x;
-            xy_ += n.x * n.y;
-            yy_ += n.y * n.y;
+            walls_.add(n);
         } else if (other.looksPast(p))
             ++contradicted_;
     }

@@ -113,22 +113,13 @@ VECTORLIB_BODY void SurfaceAgreement::add(Scan scan, const Transformation2D &mot
                 const float q = 1 / (1 + (alone ? square : across * across) * inverse);
                 const float part = length * q * q * (square > beside * beside ? 0.5f : 1.0f);
                 explained_ += part;
-                xx_ += part * n.x * n.x;
-                xy_ += part * n.x * n.y;
-                yy_ += part * n.y * n.y;
+                walls_.add(n, part);
                 continue;
             }
         }
         if (other.looksPast(p))
             contradicted_ += length;
     }
-}
-
-VECTORLIB_BODY void SurfaceAgreement::turnDirections(const Transformation2D &pose) {
-    const double c = pose.cos(), s = pose.sin(), xx = xx_, xy = xy_, yy = yy_;
-    xx_ = c * c * xx - 2 * c * s * xy + s * s * yy;
-    yy_ = s * s * xx + 2 * c * s * xy + c * c * yy;
-    xy_ = c * s * (xx - yy) + (c * c - s * s) * xy;
 }
 
 VECTORLIB_BODY Transformation2D SurfaceRefinement::operator()(Transformation2D pose) const {

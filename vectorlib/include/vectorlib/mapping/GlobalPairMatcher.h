@@ -178,7 +178,7 @@ private:
     void keepDistinct(Solutions &list) const;
 
     GlobalPairSolution slid(const GlobalPairSolution &from, double metres) const {
-        const Vector2D<double> t = from.pose.translation() + from.agreement.openDirection() * metres;
+        const Vector2D<double> t = from.pose.translation() + from.agreement.walls().weakest() * metres;
         return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
     }
     double slideLossOf(const GlobalPairSolution &s) const {

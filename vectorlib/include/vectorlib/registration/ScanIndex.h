@@ -3,6 +3,7 @@
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/registration/WallDirections.h"
 #include "vectorlib/segmentation/ScanOrder.h"
 #include "vectorlib/simd/Lanes.h"
 
@@ -97,27 +98,13 @@ public:
     double contradictedOfAll() const { return points_ > 0 ? contradicted_ / points_ : 0; }
     /// In [-1, 1]: explained less contradicted points, and less the farther apart they are; 1 is perfect.
     double score() const { return points_ > 0 ? (explained_ - distances_ - contradicted_) / points_ : 0; }
-    /// In [0, 1], of the walls' directions as that of lines (paper (28)): small along a corridor.
-    double reliability() const {
-        const double sum = xx_ + yy_;
-        return sum > 0 ? 2 * std::sqrt(std::max(0.0, xx_ * yy_ - xy_ * xy_)) / sum : 0;
-    }
-    /// The direction in which the walls say least, of unit length, in the frame of the last scan that was
-    /// judged against.
-    Vector2D<double> weakest() const {
-        const double angle = 0.5 * std::atan2(2 * xy_, xx_ - yy_) + pi / 2;
-        return {std::cos(angle), std::sin(angle)};
-    }
-    /// The share of the walls that face that way, in [0, 0.5].
-    double weakestShare() const {
-        const double sum = xx_ + yy_, apart = std::hypot(xx_ - yy_, 2 * xy_);
-        return sum > 0 ? 0.5 * (1 - apart / sum) : 0;
-    }
+    /// How well the walls fix the motion, in the frame of the last scan that was judged against.
+    const WallDirections &walls() const { return walls_; }
 
 private:
     double points_ = 0, explained_ = 0, contradicted_ = 0;
-    double distances_ = 0;            // squared, in units of the gate
-    double xx_ = 0, xy_ = 0, yy_ = 0; // sums over the walls' normals
+    double distances_ = 0; // squared, in units of the gate
+    WallDirections walls_;
 };
 
 } // namespace vectorlib

@@ -4,6 +4,7 @@
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/registration/ScanIndex.h"
+#include "vectorlib/registration/WallDirections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +90,7 @@ public:
     /// from the other scan's wall, along the normal, is explained to two thirds of its length.
     SurfaceAgreement(Scan fixed, Scan moving, const Transformation2D &pose, double deviation, int sample) {
         add(fixed, pose.inverse(), moving.points, deviation, sample);
-        turnDirections(pose);
+        walls_.turn(pose); // from the moving frame to the fixed one
         add(moving, pose, fixed.points, deviation, sample);
     }
     /// Of all that was judged; metres.
@@ -104,17 +105,9 @@ public:
     /// The same with little weight, 0.15, on what is out of sight: the other scan says nothing of it. Two
     /// motions that fit alike what both scans could see are about equal, unless one hardly overlaps.
     double consistency() const { return balance(0.15); }
-    /// In [0, 1], of the directions of what is explained as that of lines (paper (28)): small along a
-    /// corridor.
-    double reliability() const {
-        const double sum = xx_ + yy_;
-        return sum > 0 ? 2 * std::sqrt(std::max(0.0, xx_ * yy_ - xy_ * xy_)) / sum : 0;
-    }
-    /// The direction in which the scans slide on each other most easily; fixed frame, unit length.
-    Vector2D<double> openDirection() const {
-        const double angle = 0.5 * std::atan2(2 * xy_, xx_ - yy_) + pi / 2;
-        return {std::cos(angle), std::sin(angle)};
-    }
+    /// How well what is explained fixes the motion, in the fixed frame: in the weakest direction the scans
+    /// slide on each other most easily.
+    const WallDirections &walls() const { return walls_; }
 
 private:
     // What is out of sight weighs `hidden` of its length.
@@ -123,11 +116,9 @@ private:
         return all > 0 ? (explained_ - contradicted_) / all : 0;
     }
     void add(Scan scan, const Transformation2D &motion, const ScanIndex &other, double deviation, int sample);
-    // The sums over the normals, from the moving frame to the fixed one.
-    void turnDirections(const Transformation2D &pose);
 
     double length_ = 0, explained_ = 0, contradicted_ = 0;
-    double xx_ = 0, xy_ = 0, yy_ = 0; // sums over the normals
+    WallDirections walls_;
 };
 
 /// Brings the surfaces of a scan onto those of another from half a metre and a few degrees away, roughly and
