@@ -74,15 +74,18 @@ CLI::Validator pictureName(const std::string &format) {
     return {check, ""};
 }
 
-CLI::Validator poseText(bool withinTurn) {
+CLI::Validator poseText(bool isOnRobot) {
+    constexpr double farthest_m = 100;
     return CLI::Validator(
-        [withinTurn](const std::string &text) {
+        [isOnRobot](const std::string &text) {
             const auto pose = readPose(text);
             if (!pose)
                 return "found " + vectorlib::quoted(text) +
                        ", expected three numbers x,y,theta (metres, radians or as 90deg)";
-            return withinTurn && isBeyondTurn(pose->theta)
-                       ? "found " + vectorlib::quoted(text) + ": " + beyondTurnText(pose->theta)
+            if (isOnRobot && isBeyondTurn(pose->theta))
+                return "found " + vectorlib::quoted(text) + ": " + beyondTurnText(pose->theta);
+            return isOnRobot && !(std::hypot(pose->x, pose->y) <= farthest_m)
+                       ? "found " + vectorlib::quoted(text) + ", expected a place on the robot, within 100 m"
                        : std::string();
         },
         "", "pose");

@@ -41,6 +41,7 @@ private Q_SLOTS:
         row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
         row("half a mount", {"map", log, "--sensor", "1,2"}, "--sensor: found \"1,2\"");
         row("mount in degrees", {"map", log, "--sensor", "0,0,180"}, "did you mean 3.142 rad (180 degrees)?");
+        row("off the robot", {"map", log, "--sensor", "1e9,0,0"}, "within 100 m");
         row("over a turn", {"map", log, "--sensor", "0,0,450deg"}, "is 1.25 turns");
         row("no angle", {"map", log, "--sensor", "0,0,deg"}, "--sensor");
         row("mount of one scan", {"map", log, "--sensor", "0,0,0", "--scan", "1"}, "--sensor");
