@@ -274,6 +274,7 @@ private Q_SLOTS:
         ScanTrackerSettings settings;
         settings.sensorOnRobot = {0, 0, pi / 2}; // it is not
         tracker->apply(settings);
+        tracker->place({-2, -1, 0}); // no piece begins before
         const auto drive = [this](int from, int to) {
             for (int i = from; i < to; ++i)
                 see({-2 + 0.05 * i, -1, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
