@@ -200,6 +200,7 @@ private Q_SLOTS:
         for (int i = 0; i < 3; ++i)
             scan(pillars(), {1, 0.9, 0});
         QCOMPARE(healthItem("tracking")["message"].toString().left(8), QString("on track"));
+        QCOMPARE(number("matched"), 3);
         QCOMPARE(number("map_segments"), int(pillars().size()));
     }
 

@@ -305,9 +305,14 @@ private Q_SLOTS:
         for (int i = 2; i < 60; ++i)
             see({-2, -1, 0}, 10 + 0.1 * i);
         QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Found && !tracker->wantsSearch());
-        VectorMap corrected = tracker->builder.map;
-        tracker->correct(corrected, {}); // moves no place
-        QVERIFY(!tracker->wantsSearch());
+        const Transformation2D moved(2, 0, 0); // the map, and the place with it
+        VectorMap corrected;
+        tracker->builder.map.forEach([&](const MapEdge &edge) { corrected.add(moved * EdgeRaw2D(edge)); });
+        for (const auto &[step, stamp] : {std::pair(moved, 15.93), std::pair(moved.inverse(), 15.96)}) {
+            tracker->correct(corrected, step); // and gives the one before
+            QCOMPARE(see({-2, -1, 0}, stamp).outcome, ScanReport::Outcome::Matched);
+            QVERIFY(!tracker->wantsSearch());
+        }
         QVERIFY(tracker->trust() < 0.5);
         int i = 60;
         for (; !tracker->wantsSearch() && i < 80; ++i)
@@ -315,6 +320,19 @@ private Q_SLOTS:
         QVERIFY(i >= 70 && tracker->wantsToConfirm());
         tracker->search();
         QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Known);
+    }
+
+    void aBreakIsToldByWhatTheMapHidesMore() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        QVERIFY(!drive.isContradicted(matched, 0.3, false)); // the map is bent
+        drive.take(matched, true, false);
+        QVERIFY(drive.isSuspect());
+        QVERIFY(!drive.isContradicted(matched, 0.4, false));
+        QVERIFY(!drive.isSuspect());
+        drive.correct(); // it is not bent any more
+        drive.take(matched, true, false);
+        QVERIFY(drive.isContradicted(matched, 0.3, false));
     }
 
     // The odometry knows nothing of it, and the map does not have the place.
