@@ -30,6 +30,7 @@ class TestScanTracker : public QObject {
 
 private Q_SLOTS:
     void init() {
+        scanner = SimulatedScanner<float>(5);
         tracker = std::make_unique<ScanTracker>();
         tracker->place({-2, -1, 0});
         QCOMPARE(see({-2, -1, 0}, 10, track({}, 10)).outcome, ScanReport::Outcome::Matched);
@@ -250,6 +251,36 @@ private Q_SLOTS:
         }
         QVERIFY2(wrong <= 10, qPrintable(QString::number(wrong)));
         QVERIFY2(isLost || lost == 0, qPrintable(QString::number(lost)));
+    }
+
+    void whatIsKnownAgainstAPlaceFadesWithTheWay() {
+        auto furnished = room;
+        furnished.push_back({{0, -3}, {0, -1.5f}});
+        tracker->grow(false);
+        tracker->place({-2, -1, 0});
+        see(furnished, {-2, -1, 0}, 10.1);
+        const double first = tracker->against();
+        for (int i = 2; i < 40; ++i)
+            see(furnished, {-2, -1, 0}, 10 + 0.1 * i);
+        const double known = tracker->against();
+        QVERIFY(known > 0.02 && first > 0.5 * known); // the first scan counts in full
+        tracker->place({-2, -1, 0}, known);
+        for (int i = 40; i < 80; ++i)
+            see(furnished, {-2, -1, 0}, 10 + 0.1 * i);
+        QVERIFY(tracker->against() < 0.1 * known);
+        for (int i = 80; i <= 100; ++i) // to and fro
+            see(furnished, {-2 + 0.1 * std::min(i - 80, 100 - i), -1, 0}, 10 + 0.1 * i);
+        QVERIFY(tracker->against() > 0.3 * known);
+    }
+
+    void aCorridorIsLeftOpenToTheOdometry() {
+        const std::vector<LineSegment2D<float>> corridor{{{-99, -1}, {99, -1}}, {{99, 1}, {-99, 1}}};
+        tracker = std::make_unique<ScanTracker>();
+        scanner.maxRange = 8; // its ends are never seen
+        for (int i = 0; i < 120; ++i)
+            see(corridor, {0.05 * i, 0, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
+        const double x = tracker->builder.report().pose.x;
+        QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, qPrintable(QString::number(x)));
     }
 
     void whatContradictedAMapDoesNotStopItsGrowth() {
