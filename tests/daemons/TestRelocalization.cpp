@@ -236,6 +236,26 @@ private Q_SLOTS:
         QCOMPARE(sure, 0);
     }
 
+    void nothingIsMappedWhereScansContradictTheMap() {
+        load(pillars());
+        Segments hall = pillars();
+        hall.resize(4); // without the pillars
+        int told = 0, accepted = 0;
+        client_->subscribe("scan", {}, [&](const TopicUpdate &update) {
+            ++told;
+            accepted += update.json().toObject()["match"].toObject()["accepted"].toBool(true);
+        });
+        QTRY_VERIFY(matcher->hasSubscribers("scan"));
+        call("pose.set", {{"x", 5.2}, {"y", 4}, {"theta", 1.5}});
+        for (int i = 0; i < 10; ++i)
+            scan(hall, {5.2, 4, 1.5});
+        QCOMPARE(lost(), 10);
+        QTRY_COMPARE(told, 10);
+        QCOMPARE(accepted, 0);
+        beginToMap();
+        QTRY_VERIFY(healthItem("tracking")["message"].toString().contains("is sought"));
+    }
+
     void aPersonMayInsistOnAPlace() {
         beginToMap();
         load(pillars());
