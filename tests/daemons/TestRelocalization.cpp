@@ -256,6 +256,18 @@ private Q_SLOTS:
         QTRY_VERIFY(healthItem("tracking")["message"].toString().contains("is sought"));
     }
 
+    void aToldPlaceIsNoMotionOfTheDrive() {
+        beginToMap();
+        for (int i = 0; i < 5; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QTRY_COMPARE(number("key_scans"), 1);
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0}}); // where it stands
+        for (int i = 0; i < 10; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("known"));
+        QTRY_COMPARE(number("key_scans"), 2); // another part begins
+    }
+
     void aPersonMayInsistOnAPlace() {
         beginToMap();
         load(pillars());
