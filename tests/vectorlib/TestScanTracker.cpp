@@ -383,6 +383,22 @@ private Q_SLOTS:
         QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
     }
 
+    // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads.
+    void whoIsCarriedToARoomAlikeMapsNothing() {
+        auto alike = room;
+        for (LineSegment2D<float> &wall : alike)
+            wall = {{wall.begin().x == 4 ? 4.3f : wall.begin().x, wall.begin().y},
+                    {wall.end().x == 4 ? 4.3f : wall.end().x, wall.end().y}};
+        tracker->place({1, 0, 0});
+        for (int i = 1; i < 6; ++i)
+            see({1, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        const std::size_t walls = tracker->builder.map.size();
+        for (int i = 6; i < 20; ++i)
+            see(alike, {0.5, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        QCOMPARE(tracker->builder.map.size(), walls);
+        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Sought);
+    }
+
     void trustIsAProbabilityWhateverComes() {
         const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
         const double hostile[] = {0, 1, -1, 1e300, -1e300, nan, infinite, -infinite};
