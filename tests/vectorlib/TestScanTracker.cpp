@@ -383,15 +383,32 @@ private Q_SLOTS:
         QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
     }
 
-    // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads.
+    // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads. Also
+    // where a map that was bent hid as much before it was corrected.
+    void whoIsCarriedToARoomAlikeMapsNothing_data() {
+        const Rows<bool> row("wasBent");
+        row("from a good map", false);
+        row("from one that was bent", true);
+    }
     void whoIsCarriedToARoomAlikeMapsNothing() {
+        QFETCH(bool, wasBent);
         auto alike = room;
         for (LineSegment2D<float> &wall : alike)
             wall = {{wall.begin().x == 4 ? 4.3f : wall.begin().x, wall.begin().y},
                     {wall.end().x == 4 ? 4.3f : wall.end().x, wall.end().y}};
         tracker->place({1, 0, 0});
-        for (int i = 1; i < 6; ++i)
+        for (int i = 1; i < 5; ++i)
             see({1, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        if (wasBent) {
+            VectorMap good = tracker->builder.map, bent;
+            good.forEach([&](const MapEdge &edge) {
+                const bool isRight = std::min(edge.segment.begin().x, edge.segment.end().x) > 3.9;
+                bent.add(Transformation2D(isRight ? -1 : 0, 0, 0) * EdgeRaw2D(edge));
+            });
+            tracker->correct(bent, {});
+            see({1, 0, 0}, 10.5, track({}, 10.5)); // the fifth scan, which is judged
+            tracker->correct(good, {});
+        }
         const std::size_t walls = tracker->builder.map.size();
         for (int i = 6; i < 20; ++i)
             see(alike, {0.5, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
