@@ -200,6 +200,7 @@ private Q_SLOTS:
         for (int i = 0; i < 3; ++i)
             scan(pillars(), {1, 0.9, 0});
         QCOMPARE(healthItem("tracking")["message"].toString().left(8), QString("on track"));
+        QCOMPARE(number("matched"), 3);
         QCOMPARE(number("map_segments"), int(pillars().size()));
     }
 
@@ -233,6 +234,38 @@ private Q_SLOTS:
         QCOMPARE(healthItem("tracking")["message"].toString(), QString("on track"));
         QTRY_VERIFY(doubtful > 0);
         QCOMPARE(sure, 0);
+    }
+
+    void nothingIsMappedWhereScansContradictTheMap() {
+        load(pillars());
+        Segments hall = pillars();
+        hall.resize(4); // without the pillars
+        int told = 0, accepted = 0;
+        client_->subscribe("scan", {}, [&](const TopicUpdate &update) {
+            ++told;
+            accepted += update.json().toObject()["match"].toObject()["accepted"].toBool(true);
+        });
+        QTRY_VERIFY(matcher->hasSubscribers("scan"));
+        call("pose.set", {{"x", 5.2}, {"y", 4}, {"theta", 1.5}});
+        for (int i = 0; i < 10; ++i)
+            scan(hall, {5.2, 4, 1.5});
+        QCOMPARE(lost(), 10);
+        QTRY_COMPARE(told, 10);
+        QCOMPARE(accepted, 0);
+        beginToMap();
+        QTRY_VERIFY(healthItem("tracking")["message"].toString().contains("is sought"));
+    }
+
+    void aToldPlaceIsNoMotionOfTheDrive() {
+        beginToMap();
+        for (int i = 0; i < 5; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QTRY_COMPARE(number("key_scans"), 1);
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0}}); // where it stands
+        for (int i = 0; i < 10; ++i)
+            scan(pillars(), {1, 0.9, 0});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("known"));
+        QTRY_COMPARE(number("key_scans"), 2); // another part begins
     }
 
     void aPersonMayInsistOnAPlace() {

@@ -121,6 +121,26 @@ def check(folder, name, settings, descriptors, work, count, told=""):
     assert status == 0, process.last_words()
 
 
+def check_log(folder):
+    """A crowd that is turned away for want of descriptors is told once a second."""
+    process = Process(BINARIES, "motorcontrol", free_port(0), folder, {})
+    try:
+        process.connect().close()
+        most = len(os.listdir(f"/proc/{process.process.pid}/fd")) + 4
+        resource.prlimit(process.process.pid, resource.RLIMIT_NOFILE, (most, most))
+        began = time.monotonic()
+        for _ in range(300):
+            with socket.create_connection(("127.0.0.1", process.port), LATEST_S) as connection:
+                assert connection.recv(1) == b"", "a client was not turned away"
+
+        def told():
+            return text_of(process.log_name).count("nearly no file descriptors are left")
+        wait_for("a warning in the log", told, 10)
+        assert told() <= time.monotonic() - began + 1, f"{told()} warnings"
+    finally:
+        process.stop()
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         make_keys(os.path.join(folder, "keys"), "init")
@@ -137,6 +157,7 @@ def main():
                     ("tcp, replies that nobody reads", {"limits.reply_bytes": 15 << 20}, 1024, unread, 16, "all clients together"),
                     ("tcp, requests of 128,000 values", {}, 1024, functools.partial(repeat, DEAREST), 20)):
             check(folder, *row)
+        check_log(folder)
 
 
 if __name__ == "__main__":

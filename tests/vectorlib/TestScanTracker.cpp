@@ -30,6 +30,7 @@ class TestScanTracker : public QObject {
 
 private Q_SLOTS:
     void init() {
+        scanner = SimulatedScanner<float>(5);
         tracker = std::make_unique<ScanTracker>();
         tracker->place({-2, -1, 0});
         QCOMPARE(see({-2, -1, 0}, 10, track({}, 10)).outcome, ScanReport::Outcome::Matched);
@@ -252,6 +253,36 @@ private Q_SLOTS:
         QVERIFY2(isLost || lost == 0, qPrintable(QString::number(lost)));
     }
 
+    void whatIsKnownAgainstAPlaceFadesWithTheWay() {
+        auto furnished = room;
+        furnished.push_back({{0, -3}, {0, -1.5f}});
+        tracker->grow(false);
+        tracker->place({-2, -1, 0});
+        see(furnished, {-2, -1, 0}, 10.1);
+        const double first = tracker->against();
+        for (int i = 2; i < 40; ++i)
+            see(furnished, {-2, -1, 0}, 10 + 0.1 * i);
+        const double known = tracker->against();
+        QVERIFY(known > 0.02 && first > 0.5 * known); // the first scan counts in full
+        tracker->place({-2, -1, 0}, known);
+        for (int i = 40; i < 80; ++i)
+            see(furnished, {-2, -1, 0}, 10 + 0.1 * i);
+        QVERIFY(tracker->against() < 0.1 * known);
+        for (int i = 80; i <= 100; ++i) // to and fro
+            see(furnished, {-2 + 0.1 * std::min(i - 80, 100 - i), -1, 0}, 10 + 0.1 * i);
+        QVERIFY(tracker->against() > 0.3 * known);
+    }
+
+    void aCorridorIsLeftOpenToTheOdometry() {
+        const std::vector<LineSegment2D<float>> corridor{{{-99, -1}, {99, -1}}, {{99, 1}, {-99, 1}}};
+        tracker = std::make_unique<ScanTracker>();
+        scanner.maxRange = 8; // its ends are never seen
+        for (int i = 0; i < 120; ++i)
+            see(corridor, {0.05 * i, 0, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
+        const double x = tracker->builder.report().pose.x;
+        QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, qPrintable(QString::number(x)));
+    }
+
     void whatContradictedAMapDoesNotStopItsGrowth() {
         float far = 4.5f; // walls that are not where the map has them, so far that some of it still matches
         for (; far < 12 && !tracker->isContradicted(); far += 0.5f) {
@@ -274,6 +305,7 @@ private Q_SLOTS:
         ScanTrackerSettings settings;
         settings.sensorOnRobot = {0, 0, pi / 2}; // it is not
         tracker->apply(settings);
+        tracker->place({-2, -1, 0}); // no piece begins before
         const auto drive = [this](int from, int to) {
             for (int i = from; i < to; ++i)
                 see({-2 + 0.05 * i, -1, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
@@ -304,9 +336,14 @@ private Q_SLOTS:
         for (int i = 2; i < 60; ++i)
             see({-2, -1, 0}, 10 + 0.1 * i);
         QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Found && !tracker->wantsSearch());
-        VectorMap corrected = tracker->builder.map;
-        tracker->correct(corrected, {}); // moves no place
-        QVERIFY(!tracker->wantsSearch());
+        const Transformation2D moved(2, 0, 0); // the map, and the place with it
+        VectorMap corrected;
+        tracker->builder.map.forEach([&](const MapEdge &edge) { corrected.add(moved * EdgeRaw2D(edge)); });
+        for (const auto &[step, stamp] : {std::pair(moved, 15.93), std::pair(moved.inverse(), 15.96)}) {
+            tracker->correct(corrected, step); // and gives the one before
+            QCOMPARE(see({-2, -1, 0}, stamp).outcome, ScanReport::Outcome::Matched);
+            QVERIFY(!tracker->wantsSearch());
+        }
         QVERIFY(tracker->trust() < 0.5);
         int i = 60;
         for (; !tracker->wantsSearch() && i < 80; ++i)
@@ -314,6 +351,19 @@ private Q_SLOTS:
         QVERIFY(i >= 70 && tracker->wantsToConfirm());
         tracker->search();
         QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Known);
+    }
+
+    void aBreakIsToldByWhatTheMapHidesMore() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        QVERIFY(!drive.isContradicted(matched, 0.3, false)); // the map is bent
+        drive.take(matched, true, false);
+        QVERIFY(drive.isSuspect());
+        QVERIFY(!drive.isContradicted(matched, 0.4, false));
+        QVERIFY(!drive.isSuspect());
+        drive.correct(); // it is not bent any more
+        drive.take(matched, true, false);
+        QVERIFY(drive.isContradicted(matched, 0.3, false));
     }
 
     // The odometry knows nothing of it, and the map does not have the place.
@@ -331,6 +381,39 @@ private Q_SLOTS:
         QCOMPARE(tracker->builder.map.size(), walls);
         QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Sought);
         QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
+    }
+
+    // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads. Also
+    // where a map that was bent hid as much before it was corrected.
+    void whoIsCarriedToARoomAlikeMapsNothing_data() {
+        const Rows<bool> row("wasBent");
+        row("from a good map", false);
+        row("from one that was bent", true);
+    }
+    void whoIsCarriedToARoomAlikeMapsNothing() {
+        QFETCH(bool, wasBent);
+        auto alike = room;
+        for (LineSegment2D<float> &wall : alike)
+            wall = {{wall.begin().x == 4 ? 4.3f : wall.begin().x, wall.begin().y},
+                    {wall.end().x == 4 ? 4.3f : wall.end().x, wall.end().y}};
+        tracker->place({1, 0, 0});
+        for (int i = 1; i < 5; ++i)
+            see({1, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        if (wasBent) {
+            VectorMap good = tracker->builder.map, bent;
+            good.forEach([&](const MapEdge &edge) {
+                const bool isRight = std::min(edge.segment.begin().x, edge.segment.end().x) > 3.9;
+                bent.add(Transformation2D(isRight ? -1 : 0, 0, 0) * EdgeRaw2D(edge));
+            });
+            tracker->correct(bent, {});
+            see({1, 0, 0}, 10.5, track({}, 10.5)); // the fifth scan, which is judged
+            tracker->correct(good, {});
+        }
+        const std::size_t walls = tracker->builder.map.size();
+        for (int i = 6; i < 20; ++i)
+            see(alike, {0.5, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        QCOMPARE(tracker->builder.map.size(), walls);
+        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Sought);
     }
 
     void trustIsAProbabilityWhateverComes() {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "gui/desktop/MainWindow.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 
 #include <QDockWidget>
@@ -55,6 +57,16 @@ public:
             if (daemon && (*i)->data(0, Qt::UserRole).value<QObject *>() == daemon)
                 return *i;
         return nullptr;
+    }
+    /// Whether the map shows something in the colour of what is well.
+    bool isGreenSeen() {
+        const QImage picture = window.map().view().grab().toImage().convertToFormat(QImage::Format_RGB32);
+        const QRgb green = theme::colour(Condition::Ready).rgb();
+        for (int y = 0; y < picture.height(); ++y)
+            for (int x = 0; x < picture.width(); ++x)
+                if (picture.pixel(x, y) == green)
+                    return true;
+        return false;
     }
     /// Clicks as soon as the button can be clicked.
     static void click(QWidget *panel, const QString &button) {

@@ -1,4 +1,3 @@
-#include "gui/desktop/Theme.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
@@ -15,7 +14,7 @@ private Q_SLOTS:
         robot_->startAll();
         open_ = std::make_unique<OpenWindow>(*robot_);
         QVERIFY(open_->show());
-        QTRY_VERIFY_WITH_TIMEOUT(map().pose() && isGreenSeen(), 20000);
+        QTRY_VERIFY_WITH_TIMEOUT(map().pose() && open_->isGreenSeen(), 20000);
         QTRY_COMPARE(label("measured0")->text(), QString("0.00"));
     }
 
@@ -63,13 +62,13 @@ private Q_SLOTS:
         FETCH(QString, who, bool, scansGoOn);
         robot_->signal(who, SIGSTOP);
         QTRY_VERIFY_WITH_TIMEOUT(!map().poseAge().isFresh(), 1500);
-        QTRY_VERIFY_WITH_TIMEOUT(!isGreenSeen(), 500);
+        QTRY_VERIFY_WITH_TIMEOUT(!open_->isGreenSeen(), 500);
         QTRY_VERIFY_WITH_TIMEOUT(
             map().poseAge().age_s() > 4 && map().poseAge().text().startsWith("no data for "), 6000);
         QCOMPARE(map().scanAge().isFresh(), scansGoOn);
-        QVERIFY(!isGreenSeen());
+        QVERIFY(!open_->isGreenSeen());
         robot_->signal(who, SIGCONT);
-        QTRY_VERIFY_WITH_TIMEOUT(map().poseAge().isFresh() && isGreenSeen(), 20000);
+        QTRY_VERIFY_WITH_TIMEOUT(map().poseAge().isFresh() && open_->isGreenSeen(), 20000);
     }
 
     // What comes once a second is not old after half a second.
@@ -87,17 +86,6 @@ private:
     const MapModel &map() const { return open_->window.map().model(); }
     DaemonLink *daemon(const QString &name) const { return open_->fleet.robot()->withName(name); }
     QString badge(const QString &name) const { return open_->row(daemon(name))->text(1); }
-    /// Whether the map shows something in the colour of what is well.
-    bool isGreenSeen() const {
-        const QImage picture =
-            open_->window.map().view().grab().toImage().convertToFormat(QImage::Format_RGB32);
-        const QRgb green = theme::colour(Condition::Ready).rgb();
-        for (int y = 0; y < picture.height(); ++y)
-            for (int x = 0; x < picture.width(); ++x)
-                if (picture.pixel(x, y) == green)
-                    return true;
-        return false;
-    }
 
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> open_;

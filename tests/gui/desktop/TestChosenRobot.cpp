@@ -39,6 +39,24 @@ private Q_SLOTS:
         QTRY_COMPARE(model.edges().size(), 1);
     }
 
+    /// However reliable the match is.
+    void onlyATrustedPoseIsGreen() {
+        Mischief robot = withMap();
+        robot.topics["graph"] = "{}"; // without one there is no trust
+        FakeDaemon daemon(robot);
+        OpenWindow open;
+        QVERIFY(open.show());
+        QVERIFY(open.fleet.add(addressOf(daemon)));
+        const MapModel &model = open.window.map().model();
+        QTRY_COMPARE(model.reliability(), 0.5);
+        for (const bool isTrusted : {true, false}) {
+            const QByteArray pose = R"({"x":0,"y":0,"theta":0,"outcome":"matched","scan":1,"trust":)" +
+                                    QByteArray(isTrusted ? "0.9}" : "0.3}");
+            QTRY_VERIFY(
+                (daemon.say("pose", pose), model.poseAge().isFresh() && open.isGreenSeen() == isTrusted));
+        }
+    }
+
     void recordingsOfOneAreNotOfTheOther() {
         Mischief recorded = robot("red");
         recorded.results["record.list"] =

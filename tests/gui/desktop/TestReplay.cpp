@@ -222,10 +222,17 @@ private Q_SLOTS:
         sessions->setFocus();
         QTest::keyClick(sessions, Qt::Key_Return);
         QTRY_VERIFY(areBoth("state", "replay"));
-        for (QWidget *const part :
-             std::initializer_list<QWidget *>{line(), find("pauseReplay"), find<QComboBox>("replaySpeed")})
-            QTRY_VERIFY2(part->visibleRegion().boundingRect() == part->rect(),
-                         qPrintable(part->objectName()));
+        for (const bool isLowAgain : {false, true}) {
+            if (isLowAgain) {
+                open_->window.resize(before);
+                QTest::qWait(100);
+                open_->window.resize(1024, 600);
+            }
+            for (QWidget *const part : std::initializer_list<QWidget *>{line(), find("pauseReplay"),
+                                                                        find<QComboBox>("replaySpeed")})
+                QTRY_VERIFY2(part->visibleRegion().boundingRect() == part->rect(),
+                             qPrintable(part->objectName()));
+        }
         open_->window.resize(before);
     }
 
