@@ -32,7 +32,6 @@ CLI::Validator aboveZero();
 CLI::Validator pictureName(const std::string &format = ".svg");
 /// Three finite numbers `x,y,theta`; theta may be degrees: `90deg`. Of a sensor on a robot, no heading beyond a
 /// turn and no place beyond 100 m.
-
 CLI::Validator poseText(bool isOnRobot = false);
 /// The pose in a text that poseText() has let through; metres, radians. Warns on stderr of a heading beyond a
 /// full turn.
