@@ -357,13 +357,32 @@ private Q_SLOTS:
         const auto matched = ScanReport::Outcome::Matched;
         DriveBreak drive;
         QVERIFY(!drive.isContradicted(matched, 0.3, false)); // the map is bent
-        drive.take(matched, true, false);
+        drive.take(matched, true, false, 0);
         QVERIFY(drive.isSuspect());
         QVERIFY(!drive.isContradicted(matched, 0.4, false));
         QVERIFY(!drive.isSuspect());
         drive.correct(); // it is not bent any more
-        drive.take(matched, true, false);
+        drive.take(matched, true, false, 0);
         QVERIFY(drive.isContradicted(matched, 0.3, false));
+    }
+
+    // Who is carried contradicts one scan, who walks beside the sensor one after another.
+    void aDriveTearsBetweenTwoScans() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak carried, walked;
+        carried.take(matched, true, true, 0.2);
+        QVERIFY(carried.mayBeTorn() && !carried.isTorn());
+        carried.take(matched, true, true, 0.01);
+        QVERIFY(carried.isTorn());
+        for (int i = 0; i < 5; ++i) {
+            walked.take(matched, true, true, 0.2);
+            QVERIFY(!walked.isTorn());
+        }
+        QVERIFY(!walked.mayBeTorn());
+        DriveBreak bent;
+        bent.take(matched, true, true, 0.2);
+        bent.take(matched, true, true, std::nullopt); // there was nothing to compare
+        QVERIFY(!bent.isTorn());
     }
 
     // The odometry knows nothing of it, and the map does not have the place.
