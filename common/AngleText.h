@@ -26,20 +26,20 @@ inline bool isBeyondTurn(double angle) {
     return std::abs(angle) > 2 * vectorlib::pi;
 }
 
-/// "90 rad is 14.3 turns; did you mean 1.571 rad (90 degrees)?"
+/// "90 rad is 14.3 turns; did you mean 1.571 rad (90 degrees)?", asked only of whole numbers, which are
+/// likely degrees.
 inline std::string beyondTurnText(double angle) {
-    std::ostringstream text;
-    text.precision(3);
-    text << std::abs(angle) / (2 * vectorlib::pi);
-    const std::string turns = text.str();
-    text.str({});
-    text.precision(4);
-    text << angle * vectorlib::pi / 180;
-    const std::string meant = text.str();
-    text.str({});
-    text.precision(6);
-    text << angle;
-    return text.str() + " rad is " + turns + " turns; did you mean " + meant + " rad (" + text.str() +
+    const auto number = [](double value, int digits) {
+        std::ostringstream text;
+        text.precision(digits);
+        text << value;
+        return text.str();
+    };
+    const double turns = std::abs(angle) / (2 * vectorlib::pi);
+    const std::string text = number(angle, 6) + " rad is " + number(turns, turns < 1.1 ? 5 : 3) + " turns";
+    if (angle != std::round(angle) || std::abs(angle) > 360)
+        return text + ", expected is one at most";
+    return text + "; did you mean " + number(angle * vectorlib::pi / 180, 4) + " rad (" + number(angle, 6) +
            " degrees)?";
 }
 

@@ -5,6 +5,9 @@
 
 #include <QDir>
 
+#include <algorithm>
+#include <utility>
+
 namespace hermes::scanmatcher {
 
 namespace {
@@ -163,10 +166,20 @@ void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap 
 }
 
 void ScanMatcher::remember(UndoStep step) {
+    std::vector<UndoStep> gone = std::exchange(history_.redone, {});
     history_.undone.push_back(std::move(step));
-    if (history_.undone.size() > mostSteps)
+    if (history_.undone.size() > mostSteps) {
+        gone.push_back(std::move(history_.undone.front()));
         history_.undone.erase(history_.undone.begin());
-    history_.redone.clear();
+    }
+    const auto maps =
+        std::count_if(gone.begin(), gone.end(), [](const UndoStep &s) { return s.map && !s.map->isEmpty(); });
+    if (maps > 0)
+        QMetaObject::invokeMethod(this, [maps] {
+            logWarning("map",
+                       QString("map.undo cannot bring back %1 map(s) any more, as other commands came after")
+                           .arg(maps));
+        });
     tellSteps();
 }
 
@@ -208,9 +221,10 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply 
     std::vector<UndoStep> &from = again ? history_.redone : history_.undone,
                           &to = again ? history_.undone : history_.redone;
     if (from.empty())
-        return reply.error({ErrorCode::NotReady, again ? "nothing was undone since the last command"
-                                                       : "there is nothing to undo: no command has replaced "
-                                                         "the map or put the sensor elsewhere"});
+        return reply.error(
+            {ErrorCode::NotReady, again ? "nothing was undone since the last command"
+                                        : "there is nothing more to undo: no command of the last "
+                                          "eight replaced the map or put the sensor elsewhere"});
     UndoStep step = std::move(from.back());
     from.pop_back();
     const vectorlib::Pose2D now = tracker.motion().pose();
@@ -223,6 +237,8 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply 
         tracker.builder.map = std::move(*step.map);
         newMap_ = NewMap::No;
         mapNumber_ = ++mapsBegun_;
+        for (UndoStep &older : from) // where the sensor is in this map is not known
+            older.wasSought = older.wasSought || !step.isPose;
     }
     to.push_back(std::move(back));
     tellSteps();
@@ -296,8 +312,11 @@ void ScanMatcher::bringLiveMapBack() {
     const auto replayed = worker_->exchange(std::move(live.tracker));
     vectorlib::ScanTracker &tracker = worker_->tracker();
     history_ = std::move(live.history);
-    if (!replayed->builder.map.isEmpty())
+    if (!replayed->builder.map.isEmpty()) { // what was undone before it can still be carried out again
+        std::vector<UndoStep> redone = std::exchange(history_.redone, {});
         remember({"replay", std::move(replayed->builder.map), false, {}, {}, false});
+        history_.redone = std::move(redone);
+    }
     tellSteps();
     keepsLiveMap_ = false;
     setUp(tracker);

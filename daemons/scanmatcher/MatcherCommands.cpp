@@ -7,6 +7,8 @@ namespace hermes::scanmatcher {
 
 namespace {
 
+constexpr double farthestPlace_m = 1e7; // that a map file holds
+
 // Points alone will do.
 QJsonObject scanSchema() {
     QJsonObject schema = schemaOf<ScanMessage>();
@@ -75,8 +77,8 @@ void ScanMatcher::declareMatcherCommands() {
     addCommand(Command("pose.set",
                        "Tells where the sensor is, standing still, in the map's frame. While the map "
                        "grows, nothing is mapped until some scans agree with the place")
-                   .param(Field::number("x", "Position").unit("m"))
-                   .param(Field::number("y", "Position").unit("m"))
+                   .param(Field::number("x", "Position").unit("m").range(-farthestPlace_m, farthestPlace_m))
+                   .param(Field::number("y", "Position").unit("m").range(-farthestPlace_m, farthestPlace_m))
                    .param(Field::angle("theta", "Heading"))
                    .param(Field::boolean("confirm",
                                          "A person has looked: the place is right, whatever the scans say")

@@ -75,7 +75,10 @@ QString ScanMatcher::unsavedText() const {
 void ScanMatcher::updateMapHealth() {
     const QString unsaved = unsavedText();
     health().set("map", HealthLevel::Ok,
-                 unsaved.isEmpty() ? QString("nothing to save") : unsaved + "; map.save writes it",
+                 unsaved.isEmpty()
+                     ? QString("nothing to save")
+                     : unsaved + (liveView_ ? "; while a replay is mapped, map.save writes that of the replay"
+                                            : "; map.save writes it"),
                  {{"segments", qint64(mirror_.size())}, {"saved", unsaved.isEmpty()}});
 }
 

@@ -208,6 +208,8 @@ void ScanMatcher::begin(bool toMap) {
 void ScanMatcher::pause() {
     active_ = false;
     skipped_ = {};
+    doubtedSince_.reset();
+    doubted_s_ = 0;
     source_.close();
     odometry_.close();
     setState(DaemonState::Ready);

@@ -268,6 +268,12 @@ private Q_SLOTS:
         const QJsonObject loaded = call("map.undo");
         QCOMPARE(loaded["command"].toString(), QString("map.load"));
         QCOMPARE(loaded["segments"].toInt(), walls);
+        call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0}});
+        call("map.clear");
+        QCOMPARE(call("map.undo")["segments"].toInt(), walls);
+        QVERIFY(!call("map.undo")["pose"].toBool()); // where the sensor is in that map is not known
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("sought"));
+        QVERIFY(failure("pose.set", {{"x", 1e15}, {"y", 0}, {"theta", 0}}).is(ErrorCode::InvalidParams));
     }
 
     void mapsAreListed() {

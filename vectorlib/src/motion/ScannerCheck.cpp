@@ -35,7 +35,8 @@ VECTORLIB_BODY void ScannerCheck::add(const Transformation2D &odometry, const Tr
 VECTORLIB_BODY std::optional<double> ScannerCheck::turned() const {
     const double angle = std::atan2(directions_.y, directions_.x);
     // The scan's way is the odometry's, turned back by what the mount is turned.
-    if (way_m_ < enough_m || directions_.norm() < alike * lengths_ || std::abs(angle) < leastTurned)
+    if (isMirrored() || way_m_ < enough_m || directions_.norm() < alike * lengths_ ||
+        std::abs(angle) < leastTurned)
         return std::nullopt;
     return -angle;
 }
