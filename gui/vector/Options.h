@@ -30,8 +30,8 @@ CLI::Validator aboveZero();
 /// A file that a picture may go to: its name ends with the extension of its format, or has none, as `-` and
 /// /dev/stdout.
 CLI::Validator pictureName(const std::string &format = ".svg");
-/// Three finite numbers `x,y,theta`; theta may be degrees: `90deg`. Of a sensor on a robot, no heading beyond a
-/// turn and no place beyond 100 m.
+/// Three finite numbers `x,y,theta`; theta may be degrees: `90deg`. Of a sensor on a robot, no heading beyond
+/// a turn and no place beyond 100 m.
 CLI::Validator poseText(bool isOnRobot = false);
 /// The pose in a text that poseText() has let through; metres, radians. Warns on stderr of a heading beyond a
 /// full turn.
