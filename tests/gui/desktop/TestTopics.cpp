@@ -83,7 +83,7 @@ private Q_SLOTS:
         QVERIFY(window_->fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
         QTRY_VERIFY(row("free"));
         chooseMessage("free");
-        QTRY_COMPARE(at({"long"}).value(0), QString("15000 in a list"));
+        QTRY_COMPARE_WITH_TIMEOUT(at({"long"}).value(0), QString("15000 in a list"), 20000);
         QCOMPARE(at({"long", "39"}).value(0), QString("0.123456"));
         QVERIFY(!at({"long", "and 14960 more"}).isEmpty());
         QVERIFY(at({"text"}).value(0).size() < 200);
