@@ -5,16 +5,14 @@
 
 #include <QDir>
 
-#include <algorithm>
 #include <utility>
 
 namespace hermes::scanmatcher {
 
 namespace {
 
-constexpr double longestGap_s = 1;   // between scans that follow each other
-constexpr std::size_t mostSteps = 8; // that can be undone
-constexpr int mostFiles = 4;         // that may wait to be written, each with its copy of the map
+constexpr double longestGap_s = 1; // between scans that follow each other
+constexpr int mostFiles = 4;       // that may wait to be written, each with its copy of the map
 
 } // namespace
 
@@ -158,97 +156,65 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
 // The one of now is kept, unless it is empty.
 void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command) {
     if (!tracker.builder.map.isEmpty())
-        remember({command, std::move(tracker.builder.map), false, {}, {}, false});
+        tellSteps(history_.add({command, std::move(tracker.builder.map), false, {}, {}, false}));
     tracker.clear();
     newMap_ = NewMap::No;
     tracker.builder.map = std::move(map);
     mapNumber_ = ++mapsBegun_;
 }
 
-void ScanMatcher::remember(UndoStep step) {
-    std::vector<UndoStep> gone = std::exchange(history_.redone, {});
-    history_.undone.push_back(std::move(step));
-    if (history_.undone.size() > mostSteps) {
-        gone.push_back(std::move(history_.undone.front()));
-        history_.undone.erase(history_.undone.begin());
-    }
-    const auto maps =
-        std::count_if(gone.begin(), gone.end(), [](const UndoStep &s) { return s.map && !s.map->isEmpty(); });
-    if (maps > 0)
-        QMetaObject::invokeMethod(this, [maps] {
-            logWarning("map",
-                       QString("map.undo cannot bring back %1 map(s) any more, as other commands came after")
-                           .arg(maps));
-        });
-    tellSteps();
-}
-
 void ScanMatcher::rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought) {
-    remember({command, std::nullopt, true, before, worker_->tracker().motion().pose(), wasSought});
-    keepMapOfStep(worker_->tracker());
+    const vectorlib::ScanTracker &tracker = worker_->tracker();
+    tellSteps(history_.add({command, std::nullopt, true, before, tracker.motion().pose(), wasSought}));
+    keepMapOfStep(tracker);
 }
 
-// Before anything is mapped from where the sensor was put.
 void ScanMatcher::keepMapOfStep(const vectorlib::ScanTracker &tracker) {
-    if (history_.undone.empty() || !grows_ ||
-        tracker.placeState() != vectorlib::ScanTracker::PlaceState::Known)
-        return;
-    UndoStep &last = history_.undone.back();
-    if (!last.map)
-        last.map = tracker.builder.map;
+    if (grows_ && tracker.placeState() == vectorlib::ScanTracker::PlaceState::Known)
+        history_.keepMap(tracker.builder.map);
 }
 
-// The map that they are of was corrected.
-void ScanMatcher::moveSteps(const vectorlib::Transformation2D &moved) {
-    for (std::vector<UndoStep> *steps : {&history_.undone, &history_.redone})
-        for (auto step = steps->rbegin(); step != steps->rend() && !step->map; ++step) {
-            step->before = (moved * vectorlib::Transformation2D(step->before)).pose();
-            step->told = (moved * vectorlib::Transformation2D(step->told)).pose();
-        }
-}
-
-void ScanMatcher::tellSteps() {
-    const auto next = [](const std::vector<UndoStep> &steps) {
-        return steps.empty() ? QString() : steps.back().command;
-    };
-    QMetaObject::invokeMethod(this, [this, undoes = next(history_.undone), redoes = next(history_.redone)] {
+void ScanMatcher::tellSteps(std::size_t mapsGone) {
+    QMetaObject::invokeMethod(this, [this, mapsGone, undoes = history_.next(false),
+                                     redoes = history_.next(true)] {
         undoes_ = undoes;
         redoes_ = redoes;
+        if (mapsGone > 0)
+            logWarning("map",
+                       QString("map.undo cannot bring back %1 map(s) any more, as other commands came after")
+                           .arg(mapsGone));
     });
 }
 
 void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply) {
-    std::vector<UndoStep> &from = again ? history_.redone : history_.undone,
-                          &to = again ? history_.undone : history_.redone;
-    if (from.empty())
-        return reply.error(
-            {ErrorCode::NotReady, again ? "nothing was undone since the last command"
-                                        : "there is nothing more to undo: no command of the last "
-                                          "eight replaced the map or put the sensor elsewhere"});
-    UndoStep step = std::move(from.back());
-    from.pop_back();
+    std::optional<MapHistory::Step> step = history_.take(again);
+    if (!step)
+        return reply.error({ErrorCode::NotReady,
+                            again
+                                ? QString("nothing was undone since the last command")
+                                : QString("there is nothing more to undo: no command of the last %1 replaced "
+                                          "the map or put the sensor elsewhere")
+                                      .arg(MapHistory::mostSteps)});
     const vectorlib::Pose2D now = tracker.motion().pose();
-    const vectorlib::Pose2D target = step.isPose ? step.before * step.told.inverse() * now : now;
-    UndoStep back{step.command, std::nullopt, step.isPose,
-                  now,          target,       place_ == vectorlib::ScanTracker::PlaceState::Sought};
-    if (step.map) {
+    const vectorlib::Pose2D target = step->isPose ? step->before * step->told.inverse() * now : now;
+    MapHistory::Step back{step->command, std::nullopt, step->isPose,
+                          now,           target,       place_ == vectorlib::ScanTracker::PlaceState::Sought};
+    if (step->map) {
         back.map = std::move(tracker.builder.map);
         tracker.clear();
-        tracker.builder.map = std::move(*step.map);
+        tracker.builder.map = std::move(*step->map);
         newMap_ = NewMap::No;
         mapNumber_ = ++mapsBegun_;
-        for (UndoStep &older : from) // where the sensor is in this map is not known
-            older.wasSought = older.wasSought || !step.isPose;
     }
-    to.push_back(std::move(back));
+    history_.put(std::move(back), again);
     tellSteps();
     tracker.claim(target);
-    if (!tracker.builder.map.isEmpty() && (step.isPose ? step.wasSought : true))
+    if (!tracker.builder.map.isEmpty() && (!step->isPose || step->wasSought))
         seek(tracker);
     place_ = tracker.placeState();
-    BroughtBack answer{step.command, step.map.has_value(), step.isPose && !step.wasSought, 0, target};
+    BroughtBack answer{step->command, step->map.has_value(), step->isPose && !step->wasSought, 0, target};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
-    if (!step.map)
+    if (!step->map)
         return reply.result(asJson(answer));
     forgetDrive();
     showNewMap(tracker, reply, asJson(answer));
@@ -312,12 +278,7 @@ void ScanMatcher::bringLiveMapBack() {
     const auto replayed = worker_->exchange(std::move(live.tracker));
     vectorlib::ScanTracker &tracker = worker_->tracker();
     history_ = std::move(live.history);
-    if (!replayed->builder.map.isEmpty()) { // what was undone before it can still be carried out again
-        std::vector<UndoStep> redone = std::exchange(history_.redone, {});
-        remember({"replay", std::move(replayed->builder.map), false, {}, {}, false});
-        history_.redone = std::move(redone);
-    }
-    tellSteps();
+    tellSteps(replayed->builder.map.isEmpty() ? 0 : history_.addReplay(std::move(replayed->builder.map)));
     keepsLiveMap_ = false;
     setUp(tracker);
     mapNumber_ = live.number;
@@ -345,12 +306,15 @@ void ScanMatcher::showMapAgain(const vectorlib::ScanTrackerCounts &counts) {
     swapLiveView();
     liveView_.reset();
     publishSnapshot("map");
+    countFrom(counts);
+    logInfo("replay", "the live map and its drive are back; map.undo brings back the map of the replay");
+}
+
+void ScanMatcher::countFrom(const vectorlib::ScanTrackerCounts &counts) {
     counts_ = counts;
     lostInARow_ = 0;
-    doubtedSince_.reset();
-    doubted_s_ = 0;
+    doubt_ = {};
     lastRecovery_.reset();
-    logInfo("replay", "the live map and its drive are back; map.undo brings back the map of the replay");
 }
 
 // One that was sought goes on elsewhere in its map, or where nobody was as yet: to expect it where the last
@@ -387,11 +351,7 @@ void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optiona
         [&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
     QMetaObject::invokeMethod(
         this, [this, edges = std::move(edges), number = mapNumber_, reply, answer, isSaved]() mutable {
-            counts_ = vectorlib::ScanTrackerCounts();
-            lostInARow_ = 0;
-            doubtedSince_.reset();
-            doubted_s_ = 0;
-            lastRecovery_.reset();
+            countFrom({});
             mirror_.replace(*edges, number);
             mirror_.setSaved(isSaved);
             if (worker_) // where the old map is freed, which takes its time too

@@ -134,12 +134,12 @@ void ScanMatcher::noteSkipped(const Outcome &outcome) {
 
 // Time is that of the scans.
 void ScanMatcher::noteTrust(const ScanResult &result) {
-    trust_ = result.pose.trust;
-    if (trust_ >= doubtful)
-        doubtedSince_.reset();
-    else if (!doubtedSince_ || result.stamp < *doubtedSince_) // or the clock was set back
-        doubtedSince_ = result.stamp;
-    doubted_s_ = doubtedSince_ ? result.stamp - *doubtedSince_ : 0;
+    doubt_.trust = result.pose.trust;
+    if (doubt_.trust >= doubtful)
+        doubt_.since.reset();
+    else if (!doubt_.since || result.stamp < *doubt_.since) // or the clock was set back
+        doubt_.since = result.stamp;
+    doubt_.seconds = doubt_.since ? result.stamp - *doubt_.since : 0;
 }
 
 bool ScanMatcher::isBlind() const {
@@ -162,10 +162,10 @@ void ScanMatcher::updateTrackingHealth() {
     QString message =
         lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
         : isBlind()     ? blindText()
-        : doubted_s_ >= longestDoubt_s
+        : doubt_.seconds >= longestDoubt_s
             ? QString("the pose is doubtful for %1 s: its trust is %2, expected are %3 at least")
-                  .arg(doubted_s_, 0, 'f', 0)
-                  .arg(trust_, 0, 'f', 2)
+                  .arg(doubt_.seconds, 0, 'f', 0)
+                  .arg(doubt_.trust, 0, 'f', 2)
                   .arg(doubtful)
             : QString("on track");
     if (lastRecovery_)
@@ -182,13 +182,13 @@ void ScanMatcher::updateTrackingHealth() {
                    "mapped. Drive to where the map shows the same, or tell the place with pose.set";
     const HealthLevel level =
         lostInARow_ >= 3 ? HealthLevel::Failed
-        : isBlind() || doubted_s_ >= longestDoubt_s ||
+        : isBlind() || doubt_.seconds >= longestDoubt_s ||
                 (place != PlaceState::Known && (mapping_ || place == PlaceState::Sought))
             ? HealthLevel::Warn
             : HealthLevel::Ok;
     health().set("tracking", level, message,
                  {{"lost_in_a_row", lostInARow_},
-                  {"trust", trust_},
+                  {"trust", doubt_.trust},
                   {"skipped_in_a_row", skipped_.count},
                   {"recoveries", qint64(recoveries_)},
                   {"recovered", qint64(recovered_)}});

@@ -208,8 +208,7 @@ void ScanMatcher::begin(bool toMap) {
 void ScanMatcher::pause() {
     active_ = false;
     skipped_ = {};
-    doubtedSince_.reset();
-    doubted_s_ = 0;
+    doubt_ = {};
     source_.close();
     odometry_.close();
     setState(DaemonState::Ready);
@@ -312,7 +311,7 @@ void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Co
     }
     const vectorlib::Transformation2D before(tracker.motion().pose());
     if (corrector_->apply(tracker, *correction)) {
-        moveSteps(vectorlib::Transformation2D(tracker.motion().pose()) * before.inverse());
+        history_.move(vectorlib::Transformation2D(tracker.motion().pose()) * before.inverse());
         corrected_ = true;
         QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
             showCorrection(correction, since);

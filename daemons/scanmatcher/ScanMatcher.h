@@ -5,6 +5,7 @@
 #include "common/daemon/PastFaults.h"
 #include "daemons/scanmatcher/MapCorrector.h"
 #include "daemons/scanmatcher/MapFile.h"
+#include "daemons/scanmatcher/MapHistory.h"
 #include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/OdometrySource.h"
 #include "daemons/scanmatcher/Worker.h"
@@ -50,16 +51,10 @@ private:
         std::size_t segments = 0, points = 0; ///< of the last
     };
 
-    /// What a command that changed map or pose did away with.
-    struct UndoStep {
-        QString command;
-        std::optional<vectorlib::VectorMap> map; ///< none: it is still the same
-        bool isPose = false;                     ///< the sensor was put elsewhere
-        vectorlib::Pose2D before, told;          ///< of the sensor, then and instead of that
-        bool wasSought = false;                  ///< the place before
-    };
-    struct History {
-        std::vector<UndoStep> undone, redone; ///< what can be; the last is the next
+    /// The scans in a row that are trusted little.
+    struct Doubt {
+        std::optional<double> since;   ///< stamp of the first
+        double seconds = 0, trust = 0; ///< until the last, and of that
     };
 
     void declareSettings();
@@ -101,11 +96,9 @@ private:
     // In the worker's thread:
     void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command);
     void undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply);
-    void remember(UndoStep step);
     void rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought);
     void keepMapOfStep(const vectorlib::ScanTracker &tracker);
-    void moveSteps(const vectorlib::Transformation2D &moved);
-    void tellSteps();
+    void tellSteps(std::size_t mapsGone = 0);
     void setUp(vectorlib::ScanTracker &tracker);
     void followDrive();
     void forgetDrive();
@@ -117,6 +110,7 @@ private:
     void showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
                     const QJsonValue &answer, bool isSaved = false);
     void showMapAgain(const vectorlib::ScanTrackerCounts &counts);
+    void countFrom(const vectorlib::ScanTrackerCounts &counts);
     void swapLiveView();
     void matchTwo(const Call &call, const Reply &reply);
     MapPath mapPath(const Call &call);
@@ -127,7 +121,7 @@ private:
     std::unique_ptr<Worker> worker_;
     std::unique_ptr<MapCorrector> corrector_;
     bool corrected_ = false;  ///< since the last scan; the worker's
-    History history_;         ///< the worker's
+    MapHistory history_;      ///< the worker's
     QString undoes_, redoes_; ///< the commands that map.undo would undo, and carry out again; empty: none
     /// What live scans go on with after a replay. Its drive rests meanwhile.
     struct LiveDrive {
@@ -135,7 +129,7 @@ private:
         vectorlib::Pose2D pose;
         qint64 number = 0;                      ///< of the map
         std::shared_ptr<Correction> correction; ///< not applied yet
-        History history;
+        MapHistory history;
     };
     /// The same for the main thread.
     struct LiveView {
@@ -175,9 +169,8 @@ private:
     int lostInARow_ = 0;
     vectorlib::ScannerCheck scanner_;
     SkippedScans skipped_;
-    std::optional<double> doubtedSince_; ///< stamp of the first of the scans in a row that are trusted little
-    double doubted_s_ = 0, trust_ = 0;   ///< how long so far, and of the last scan
-    bool relocalizing_ = false;          ///< for a command
+    Doubt doubt_;
+    bool relocalizing_ = false; ///< for a command
     quint64 recoveries_ = 0,
             recovered_ = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost

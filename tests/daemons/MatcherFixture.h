@@ -61,6 +61,13 @@ protected:
         return DaemonClient::call(method, params).toObject();
     }
 
+    /// Scans of the room on the way, from that number to before this one.
+    void drive(int from, int to) {
+        for (int i = from; i < to; ++i)
+            source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+        QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
+    }
+
     std::unique_ptr<QTemporaryDir> folder;
     std::unique_ptr<ScanSource> source;
     std::unique_ptr<ScanMatcher> matcher;
