@@ -78,7 +78,7 @@ VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan) {
 
 // The sensor may have been carried.
 VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
-    against_ = knownAgainst_ = weighed_ = 0;
+    evidence_.forget();
     const ScanReport &report = builder.report();
     if (!settings_.seekWhereContradicted || builder.map.isEmpty() || isDisputed_)
         return;
@@ -91,14 +91,10 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     break_.take(report.outcome, isWellExpected_ && !isFar(guessedWay_, near_m, near_rad),
                 isShown && !isSurprising,
                 isPaired ? std::optional(builder.matchPair.match().agreement.contradicted()) : std::nullopt);
+    if (break_.isTorn())
+        return breakOff();
     if (break_.mayBeTorn())
         builder.refuse();
-    if (break_.isTorn()) {
-        builder.refuse();
-        seek();
-        isBent_ = true;
-        return;
-    }
     const bool isDue = break_.isSuspect() || counts_.scans % eachNth == 0; // else it would cost half a match
     if (report.outcome == ScanReport::Outcome::Skipped || !isDue)
         return;
@@ -107,9 +103,13 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     const bool isUnknown = !byOdometry_ && fit.explainedShare() < fewKnown;
     if (!break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown))
         return;
+    if (lostInARow_ + 1 >= builder.settings.lostBeforeRestart)
+        return breakOff();
     builder.refuse();
-    if (lostInARow_ + 1 < builder.settings.lostBeforeRestart)
-        return;
+}
+
+VECTORLIB_BODY void ScanTracker::breakOff() {
+    builder.refuse();
     seek();
     isBent_ = true;
 }
@@ -119,12 +119,7 @@ VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan) {
     const PlaceFit fit =
         search_.judge(builder.map.slots(), builder.edges(), scan.points, Transformation2D(pose), search_.fit);
     const double since_s = lastStamp_ ? std::max(0.0, scan.stamp - *lastStamp_) : 0;
-    const double share = std::max({leastShare, 1 - std::exp(-since_s / against_s), 1.0 / ++weighed_});
-    against_ += share * (fit.against() - against_);
-    if (std::hypot(pose.x - weighedAt_.x, pose.y - weighedAt_.y) < forgetting_m)
-        return;
-    knownAgainst_ *= 1 - forgottenShare;
-    weighedAt_ = pose;
+    evidence_.take(fit.against(), pose, since_s);
 }
 
 VECTORLIB_BODY void ScanTracker::setPlace(PlaceState place) {
@@ -170,9 +165,8 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     isPlaced_ = true;
     setPlace(PlaceState::Known);
     agreed_ = 0;
-    weighed_ = lostInARow_ = 0;
-    weighedAt_ = pose;
-    against_ = knownAgainst_ = against;
+    lostInARow_ = 0;
+    evidence_.place(pose, against);
     motion_.reset(pose);
     odometry_.reset();
     check_.restart();

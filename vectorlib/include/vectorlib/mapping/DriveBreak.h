@@ -21,7 +21,8 @@ public:
     /// The sensor was put somewhere: nothing is suspicious before a scan is matched there.
     void place() {
         correct();
-        isSuspect_ = false;
+        torn_ = 0;
+        isSuspect_ = isTorn_ = false;
         isInsisted_ = true;
     }
     /// The map was made anew: what it hid does not count.

@@ -7,6 +7,7 @@
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/mapping/CounterEvidence.h"
 #include "vectorlib/mapping/DriveBreak.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/PoseTrust.h"
@@ -145,10 +146,8 @@ public:
                    ? poseTrust(*features) * belief() * (grows_ && place_ != PlaceState::Known ? claimed : 1)
                    : 0;
     }
-    /// What speaks against the pose in a finished map: of the points of the last scans the share that is seen
-    /// through walls, and half of the share that lies on none. Less what was known when the place was found,
-    /// as the world may have changed. 0 while the map grows.
-    double against() const { return builder.settings.grow ? 0 : std::max(0.0, against_ - knownAgainst_); }
+    /// What speaks against the pose in a finished map, as of CounterEvidence; 0 while the map grows.
+    double against() const { return builder.settings.grow ? 0 : evidence_.value(); }
     /// Whether little does.
     bool agrees() const { return against() < 0.5 * settings_.mostAgainst; }
     /// Whether that is too much for the pose to be right: the scan then counts as lost.
@@ -175,11 +174,11 @@ private:
     // Below that reliability the walls leave a direction open; that of a pose that the odometry tells there.
     static constexpr double openReliability = 0.1, coveredReliability = 0.7;
     static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
-    // Two scans so close together must show about the same: less than this share of the points is suspicious.
     static constexpr std::int64_t knownForLong = 10;        // scans
     static constexpr double close_m = 0.2, close_rad = 0.2; // between two scans
     static constexpr double odometryErrs = 2, leastErr_m = 0.01,
                             errsByWay = 0.15; // deviations; metres, share
+    // Two scans so close together must show about the same: less than this share of the points is suspicious.
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
     static constexpr std::uint64_t eachNth = 5;                        // scan of a growing map is judged
     static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
@@ -188,11 +187,7 @@ private:
     static constexpr double confirmed_m = 1, confirmed_rad = 0.6, same_m = 0.5, same_rad = 0.17;
     static constexpr double bend_m = 2, bend_rad = 0.5; // so far a growing map may bend
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
-    static constexpr double against_s = 0.5;  // over which what speaks against a pose is smoothed
-    static constexpr double leastShare = 0.2; // by which the mean follows a scan
-    static constexpr double forgetting_m = 0.1,
-                            forgottenShare = 0.1; // of what was known, each so many metres
-    static constexpr double muchBetter = 1.02;    // a score, where the odometry tells otherwise
+    static constexpr double muchBetter = 1.02; // a score, where the odometry tells otherwise
 
     // Where the sensor is thought to be, how it moves, and how sure that is.
     struct Guess {
@@ -230,6 +225,8 @@ private:
     void weigh(const TimedScan &scan);
     // A scan that too much speaks against, or whose place is sought, is lost.
     void judge(const TimedScan &scan);
+    // The map does not go on: the place is sought, nearby first, as the growing map may be bent.
+    void breakOff();
     // In a growing map: a scan that the one before does not show, where the two were taken close together.
     void judgeBreak(const TimedScan &scan);
     void followOpen(const TimedScan &scan);
@@ -285,9 +282,7 @@ private:
     bool isBent_ = false;      // what contradicts the place may be the growing map itself: it is found nearby
     int agreed_ = 0;           // scans in a row with the place
     Transformation2D foundAt_; // where it was searched last
-    Pose2D weighedAt_;         // what was known is forgotten from there on
-    int weighed_ = 0;          // scans since the sensor was put somewhere
-    double against_ = 0, knownAgainst_ = 0; // shares of the last scans, and of them what the search knew of
+    CounterEvidence evidence_;
     Clock::time_point nextSearch_;
 };
 
