@@ -9,7 +9,8 @@ using PlaceState = vectorlib::ScanTracker::PlaceState;
 namespace {
 
 constexpr double longestSilence_s = 3, longestBlindness_s = 3, longestDoubt_s = 3;
-constexpr double doubtful = 0.5; // trust; as in the window
+constexpr double longestStep_s = 10; // between scans in a row
+constexpr double doubtful = 0.5;     // trust; as in the window
 
 // What of a source's messages is no message at all, as one with a number that is not finite.
 QString unreadable(const Client::Rejected &rejected) {
@@ -43,7 +44,8 @@ void ScanMatcher::updateHealth() {
         health().set("source", pastBadScans_.level(double(badScans_)),
                      QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));
     else
-        health().set("source", HealthLevel::Ok, "connected to " + address);
+        health().set("source", pastUnreadable_.level(double(source_.rejected().unreadable)),
+                     "connected to " + address + unreadable(source_.rejected()));
     health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
                  !replayed_ ? QString("live scans are matched")
                  : keepsLiveMap_
@@ -132,14 +134,12 @@ void ScanMatcher::noteSkipped(const Outcome &outcome) {
     skipped_.points = outcome.points;
 }
 
-// Time is that of the scans.
+// Time is that of the scans; a clock that was set says nothing.
 void ScanMatcher::noteTrust(const ScanResult &result) {
-    doubt_.trust = result.pose.trust;
-    if (doubt_.trust >= doubtful)
-        doubt_.since.reset();
-    else if (!doubt_.since || result.stamp < *doubt_.since) // or the clock was set back
-        doubt_.since = result.stamp;
-    doubt_.seconds = doubt_.since ? result.stamp - *doubt_.since : 0;
+    const double step = doubt_.stamp ? result.stamp - *doubt_.stamp : 0;
+    const bool isStep = step > 0 && step < longestStep_s;
+    doubt_ = {result.stamp, result.pose.trust,
+              result.pose.trust < doubtful ? doubt_.seconds + (isStep ? step : 0) : 0};
 }
 
 bool ScanMatcher::isBlind() const {

@@ -51,10 +51,10 @@ private:
         std::size_t segments = 0, points = 0; ///< of the last
     };
 
-    /// The scans in a row that are trusted little.
+    /// How long scans in a row have been trusted little.
     struct Doubt {
-        std::optional<double> since;   ///< stamp of the first
-        double seconds = 0, trust = 0; ///< until the last, and of that
+        std::optional<double> stamp; ///< of the last scan
+        double trust = 0, seconds = 0;
     };
 
     void declareSettings();
@@ -175,7 +175,7 @@ private:
             recovered_ = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost
     quint64 badScans_ = 0, droppedBySource_ = 0, unknownFields_ = 0;
-    PastFaults pastBadScans_, pastDrops_;
+    PastFaults pastBadScans_, pastDrops_, pastUnreadable_;
     double lastScan_ = 0; // monotonic; or when it began to wait for one
     QString sourceFault_; // why there will be none
     QString lastBadScan_;

@@ -131,6 +131,10 @@ private Q_SLOTS:
         QTRY_COMPARE(call("matcher.state")["refused"].toInt(), 2);
         QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
         drive(0, 3); // and goes on
+        QTRY_COMPARE(healthItem("source")["level"].toString(), QString("warn"));
+        source->publish("scan2d", roomScan(onTheWay(3), 300), 3e11); // milliseconds
+        drive(3, 4);
+        QTRY_VERIFY(healthItem("source")["message"].toString().contains("1 messages could not be read"));
     }
 
     void aWrongSourceIsNamed() {
@@ -242,15 +246,17 @@ private Q_SLOTS:
             x << (i < 200 ? -4 + 0.04 * i : 4 - 0.04 * (i - 200));
             y << (i < 200 ? -1.0 : 1.0);
         }
-        const auto show = [&](int from, int to) {
+        const auto show = [&](int from, int to, double ahead = 0) {
             for (int i = from; i < to; ++i)
-                source->publish("scan2d", QJsonObject{{"stamp", 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}},
-                                0.1 * i);
+                source->publish("scan2d",
+                                QJsonObject{{"stamp", ahead + 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}},
+                                ahead + 0.1 * i);
             QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
         };
-        show(0, 30); // 2.9 s
+        show(0, 29);        // 2.8 s
+        show(29, 30, 3600); // the clock was set
         QCOMPARE(healthItem("tracking")["level"].toString(), QString("ok"));
-        show(30, 40);
+        show(30, 42, 3600);
         const QString message = healthItem("tracking")["message"].toString();
         QVERIFY2(message.startsWith("the pose is doubtful for 4 s: its trust is 0."), qPrintable(message));
         QCOMPARE(healthItem("tracking")["level"].toString(), QString("warn"));
