@@ -83,9 +83,8 @@ private:
             std::cerr << "hermes-vector: " << options.source.path
                       << ": the map is empty: no scan showed a wall\n";
         warnOfLost(run.tracker.counts());
-        tellContradictions(run.tracker.counts(), json);
+        json.update(tellContradictions(run.tracker, report.mount));
         run.warnOfBreaks(std::cerr);
-        run.warnOfScanner(std::cerr, report.mount);
         conclude(json, begin, summaryFile);
         files.commit();
     }
@@ -109,8 +108,11 @@ private:
                     progress.update(double(number + 1), double(total));
             });
         report.warn(std::cerr);
+        const nlohmann::ordered_json contradictions =
+            tellContradictions(run.localizer.tracker, report.mount); // also where no place was found
         run.finish(options.source.path);
         nlohmann::ordered_json json = run.summary();
+        json.update(contradictions);
         json.update(report.summary());
         const std::vector<vectorlib::StampedPose> trajectory = run.trajectory();
         if (svgFile)
@@ -171,13 +173,32 @@ private:
                 << " scans were lost: what the map shows of them stands where they were expected, which may "
                    "be far off\n";
     }
-    static void tellContradictions(const vectorlib::ScanTrackerCounts &counts, nlohmann::ordered_json &json) {
-        if (counts.contradicted == 0)
-            return;
-        json["contradicted"] = counts.contradicted;
-        std::cerr << "hermes-vector: odometry and scans contradict each other " << counts.contradicted
-                  << " time(s): the sensor is mounted otherwise on the robot (--sensor), or the odometry is "
-                     "wrong (--odometry ignore)\n";
+    /// Where odometry and scans contradict each other: tells the option that mends it; the same for the
+    /// summary.
+    static nlohmann::ordered_json tellContradictions(const vectorlib::ScanTracker &tracker,
+                                                     const vectorlib::Pose2D &mount) {
+        nlohmann::ordered_json json = nlohmann::ordered_json::object();
+        if (const auto times = tracker.counts().contradicted; times > 0) {
+            json["contradicted"] = times;
+            std::cerr
+                << "hermes-vector: odometry and scans contradict each other " << times
+                << " time(s): the sensor is mounted otherwise on the robot (--sensor), its angles count "
+                   "clockwise (--mirrored), or the odometry is wrong (--odometry ignore)\n";
+        }
+        const auto turned = tracker.scanner().turned();
+        if (tracker.scanner().isMirrored()) {
+            json["mirrored"] = true;
+            std::cerr << "hermes-vector: the scans turn the other way than the odometry: their angles count "
+                         "clockwise (--mirrored)\n";
+        } else if (turned) {
+            json["sensor_turned_rad"] = *turned;
+            std::cerr
+                << "hermes-vector: the scans do not go where the odometry leads: the sensor is turned on "
+                   "the robot (--sensor "
+                << vectorlib::Number(mount.x) << ',' << vectorlib::Number(mount.y) << ','
+                << std::lround(vectorlib::wrapAngle(mount.theta + *turned) * 180 / vectorlib::pi) << "deg)\n";
+        }
+        return json;
     }
     static void writeTrajectory(std::ostream &out, const std::vector<vectorlib::StampedPose> &trajectory,
                                 nlohmann::ordered_json &json) {

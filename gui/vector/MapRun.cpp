@@ -169,10 +169,6 @@ nlohmann::ordered_json MapRun::summary() const {
     if (!trust_.empty())
         json["trust"] = {{"mean", std::accumulate(trust_.begin(), trust_.end(), 0.0) / double(trust_.size())},
                          {"percentile_5", quantile(trust_, 0.05)}};
-    if (tracker.scanner().isMirrored())
-        json["mirrored"] = true;
-    if (const auto turned = tracker.scanner().turned())
-        json["sensor_turned_rad"] = *turned;
     const vectorlib::LoopCounts loops = drive_.loops.counts();
     json["refined"] = isRefined_;
     json["closures"] = loops.closed;
@@ -209,19 +205,6 @@ void MapRun::warnOfBreaks(std::ostream &out) const {
         if (!part.isJoined)
             out << "hermes-vector: poses " << part.begin << " to " << part.end - 1
                 << " are laid beside the map: no walls tell where they belong (map-merge joins two maps)\n";
-}
-
-void MapRun::warnOfScanner(std::ostream &out, const vectorlib::Pose2D &mount) const {
-    const auto turned = tracker.scanner().turned();
-    if (tracker.scanner().isMirrored())
-        out << "hermes-vector: the scans turn the other way than the odometry: their angles count clockwise "
-               "(--mirrored)\n";
-    else if (turned)
-        out << "hermes-vector: the scans do not go where the odometry leads: the sensor is turned on the "
-               "robot "
-               "(--sensor "
-            << vectorlib::Number(mount.x) << ',' << vectorlib::Number(mount.y) << ','
-            << std::lround(vectorlib::wrapAngle(mount.theta + *turned) * 180 / vectorlib::pi) << "deg)\n";
 }
 
 nlohmann::ordered_json MapRun::parts() const {

@@ -86,8 +86,6 @@ public:
 
     /// For people: where the way is not known, a line each; nothing where the drive never broke.
     void warnOfBreaks(std::ostream &out) const;
-    /// For people: that the scanner is not on the robot as it is said to be, at `mount`.
-    void warnOfScanner(std::ostream &out, const vectorlib::Pose2D &mount) const;
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Of each pose of the trajectory, as ScanTracker::trust told it when the pose was tracked.
