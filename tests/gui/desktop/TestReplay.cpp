@@ -224,8 +224,10 @@ private Q_SLOTS:
         QTRY_VERIFY(areBoth("state", "replay"));
         for (const bool isLowAgain : {false, true}) {
             if (isLowAgain) {
+                const QWidget *const map = open_->window.centralWidget();
+                const int low = map->height();
                 open_->window.resize(before);
-                QTest::qWait(100);
+                QTRY_VERIFY(map->height() > low); // it is laid out
                 open_->window.resize(1024, 600);
             }
             for (QWidget *const part : std::initializer_list<QWidget *>{line(), find("pauseReplay"),
