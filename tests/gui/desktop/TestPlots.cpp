@@ -92,7 +92,7 @@ private Q_SLOTS:
 
     void setsAreKept() {
         QTemporaryDir folder;
-        const QString file = folder.filePath("gui.ini");
+        const QString file = folder.filePath("gui.json");
         for (int start = 0; start < 3; ++start) {
             MainWindow window(window_->fleet, window_->drive, file);
             window.show();
