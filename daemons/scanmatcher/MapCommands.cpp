@@ -170,7 +170,7 @@ void ScanMatcher::rememberPose(const char *command, const vectorlib::Pose2D &bef
 }
 
 void ScanMatcher::keepMapOfStep(const vectorlib::ScanTracker &tracker) {
-    if (grows_ && tracker.placeState() == vectorlib::ScanTracker::PlaceState::Known)
+    if (grows_ && tracker.placeState() == vectorlib::PlaceState::Known)
         history_.keepMap(tracker.builder.map);
 }
 
@@ -198,7 +198,7 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply 
     const vectorlib::Pose2D now = tracker.motion().pose();
     const vectorlib::Pose2D target = step->isPose ? step->before * step->told.inverse() * now : now;
     MapHistory::Step back{step->command, std::nullopt, step->isPose,
-                          now,           target,       place_ == vectorlib::ScanTracker::PlaceState::Sought};
+                          now,           target,       place_ == vectorlib::PlaceState::Sought};
     if (step->map) {
         back.map = std::move(tracker.builder.map);
         tracker.clear();

@@ -4,7 +4,7 @@
 
 namespace hermes::scanmatcher {
 
-using PlaceState = vectorlib::ScanTracker::PlaceState;
+using PlaceState = vectorlib::PlaceState;
 
 namespace {
 

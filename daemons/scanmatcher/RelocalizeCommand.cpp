@@ -5,7 +5,7 @@
 namespace hermes::scanmatcher {
 
 using vectorlib::Relocalized;
-using PlaceState = vectorlib::ScanTracker::PlaceState;
+using PlaceState = vectorlib::PlaceState;
 
 namespace {
 

@@ -19,15 +19,15 @@ QString toText(ScanReport::Outcome outcome) {
     return QString(texts[int(outcome)]); // in the order of the enumeration
 }
 
-QString toText(ScanTracker::PlaceState place) {
+QString toText(PlaceState place) {
     switch (place) {
-    case ScanTracker::PlaceState::Found:
+    case PlaceState::Found:
         return "found";
-    case ScanTracker::PlaceState::Told:
+    case PlaceState::Told:
         return "told";
-    case ScanTracker::PlaceState::Sought:
+    case PlaceState::Sought:
         return "sought";
-    case ScanTracker::PlaceState::Known:
+    case PlaceState::Known:
         break;
     }
     return "known";
@@ -137,7 +137,7 @@ Result<void> ScanMatcher::start() {
                                                 settings().text("map.journal"));
     worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
         const std::optional<vectorlib::Relocalized> recovery = find(tracker);
-        if (place_ != ScanTracker::PlaceState::Known)
+        if (place_ != PlaceState::Known)
             isInterrupted_ = true;
         else if (!keepsLiveMap_) // else the drive is that of the live map
             corrector_->add(tracker, scan.data.points, std::exchange(isInterrupted_, false));

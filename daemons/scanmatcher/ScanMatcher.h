@@ -155,9 +155,8 @@ private:
     NewMap newMap_ = NewMap::No; ///< the worker's
     void seek(vectorlib::ScanTracker &tracker, NewMap newMap = NewMap::No);
     bool isInterrupted_ = false; ///< scans were not remembered since the last that was; the worker's
-    std::atomic<vectorlib::ScanTracker::PlaceState> place_{
-        vectorlib::ScanTracker::PlaceState::Known}; ///< set by the worker
-    bool grows_ = true;                             ///< the map, while the place is known; the worker's
+    std::atomic<vectorlib::PlaceState> place_{vectorlib::PlaceState::Known}; ///< set by the worker
+    bool grows_ = true; ///< the map, while the place is known; the worker's
     Client source_;
     int subscription_ = 0;
     OdometrySource odometry_;

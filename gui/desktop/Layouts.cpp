@@ -265,8 +265,10 @@ QByteArray Layouts::json() const {
                              {"names", objectWith(robots_.names)},
                              {"places", objectWith(robots_.places)},
                              {"chosen", robots_.chosen}};
-    return QJsonDocument(
-               {{"layout", current_}, {"layouts", layouts}, {"robots", robots}, {"kept", objectWith(values_)}})
+    return QJsonDocument({{"layout", current_},
+                          {"layouts", layouts},
+                          {"robots", robots},
+                          {"kept", objectWith(values_)}})
         .toJson();
 }
 
