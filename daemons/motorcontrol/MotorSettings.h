@@ -6,6 +6,7 @@
 #include "daemons/motorcontrol/EncoderMonitor.h"
 #include "daemons/motorcontrol/Odometry.h"
 #include "daemons/motorcontrol/Threshold.h"
+#include "protocol/roboclaw/Command.h"
 
 namespace hermes::motorcontrol {
 
@@ -14,7 +15,7 @@ constexpr int controllerCount = 2;
 /// Where one motor controller is.
 struct ControllerAddress {
     QString url; ///< of its serial line; controllers with the same one share it
-    int address = 128;
+    int address = roboclaw::firstAddress;
 };
 
 /// Which motor turns a wheel.
@@ -27,7 +28,7 @@ struct WheelMount {
 /// Velocity control of a controller; the same for every motor.
 struct VelocityPid {
     double p = 1, i = 0.5, d = 0.25;
-    int qpps = 44000; ///< counts/s at full duty
+    int qpps = 150000; ///< counts/s at full duty
 
     bool operator==(const VelocityPid &o) const { return p == o.p && i == o.i && d == o.d && qpps == o.qpps; }
 };
@@ -36,15 +37,16 @@ struct VelocityPid {
 struct MotorSettings {
     Drive::Settings drive;
     OdometryNoise odometry;
-    std::array<ControllerAddress, controllerCount> controllers;
+    std::array<ControllerAddress, controllerCount> controllers{
+        {{roboclaw::usualLine, roboclaw::firstAddress}, {roboclaw::usualLine, roboclaw::firstAddress + 1}}};
     std::array<WheelMount, wheelCount> wheels;
     double countsPerTurn = 38000; ///< of a wheel
     double wheelRadius = 0.1;
     VelocityPid pid;
     double serialTimeout_s = 0.2;     ///< after which the controllers stop by themselves
     double emergencyDeceleration = 4; ///< m/s^2 at the rim
-    Threshold::Settings battery, current, temperature;
-    EncoderMonitor::Settings encoder;
+    Threshold::Settings battery{23, 21.5}, current{30, 45}, temperature{70, 85}; ///< V, A, degrees Celsius
+    EncoderMonitor::Settings encoder{0.5, 0.25, 0.7};
     BatteryGauge::Settings gauge;
     double batteryWarning_s = 600;
 

@@ -4,6 +4,7 @@
 #include "common/files/FilesSetting.h"
 #include "common/files/NamedFile.h"
 #include "common/world/World.h"
+#include "daemons/simulator/SimulatorSettings.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/wire/Fields.h"
 #include "vectorlib/geometry/Angle.h"
@@ -57,7 +58,8 @@ Simulator::Simulator()
         });
         return answers;
     }) {
-    declareSettings();
+    SimulatorSettings().declare([this](const Field &field) { addSetting(field); });
+    addSetting(namedFilesField());
     declareTopics();
     declareCommands();
     health().provide(healthItem, [this] { updateHealth(); });
@@ -148,20 +150,20 @@ void Simulator::declareCommands() {
 }
 
 Result<void> Simulator::start() {
-    QStringList links{settings().text("motors.link")};
-    if (!settings().text("motors.link2").isEmpty())
-        links.append(settings().text("motors.link2"));
-    for (const Result<void> &opened : {lines_.open(links), gpsLine_.open(settings().text("gps.link"))}) {
+    const SimulatorSettings wanted(settings().inForce());
+    QStringList links{wanted.link};
+    if (!wanted.link2.isEmpty())
+        links.append(wanted.link2);
+    for (const Result<void> &opened : {lines_.open(links), gpsLine_.open(wanted.gpsLink)}) {
         if (!opened)
             return opened;
     }
-    const QString world = settings().text("world");
-    if (world.isEmpty()) {
+    if (wanted.world.isEmpty()) {
         setState(DaemonState::Ready);
         return {};
     }
-    const Result<void> loaded = loadNamed(world, {"/"});
-    if (loaded && settings().flag("robot.autostart"))
+    const Result<void> loaded = loadNamed(wanted.world, {"/"});
+    if (loaded && wanted.autostart)
         drive(false);
     return loaded;
 }
@@ -195,9 +197,10 @@ Result<void> Simulator::load(const QString &path, const Outcome<World> &world) {
         return Error(ErrorCode::InputOutput, QString::fromStdString(world.error()),
                      QJsonObject{{"path", path}});
     settings().takeWaiting(takenAtTheStart);
-    const Outcome<void> started = pump_.start(*world, options(), settings().text("lidar.host").toStdString(),
-                                              quint16(settings().integer("lidar.port")),
-                                              quint16(settings().integer("lidar.position_port")));
+    SimulatorSettings wanted(settings().inForce());
+    wanted.simulation.drivetrain.ownLines = lines_.count() > 1;
+    const Outcome<void> started = pump_.start(*world, wanted.simulation, wanted.lidarHost.toStdString(),
+                                              wanted.lidarPort, wanted.positionPort);
     if (!started) {
         setState(DaemonState::Fault);
         return Error(ErrorCode::InputOutput, QString::fromStdString(started.error()));
@@ -209,8 +212,8 @@ Result<void> Simulator::load(const QString &path, const Outcome<World> &world) {
                              .arg(path)
                              .arg(world_.edges.size())
                              .arg(world_.poses.size())
-                             .arg(settings().text("lidar.host"))
-                             .arg(settings().integer("lidar.port")));
+                             .arg(wanted.lidarHost)
+                             .arg(wanted.lidarPort));
     return {};
 }
 

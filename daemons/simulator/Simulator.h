@@ -23,18 +23,9 @@ protected:
     void settingsChanged(const QStringList &paths) override;
 
 private:
-    void declareSettings();
-    /// A setting that has effect at the next start.
-    void addNumber(const char *group, const char *name, const char *text, const char *unit, double least,
-                   double most, double value);
-    void declareMotorSettings();
-    void declareGpsSettings();
     void declareTopics();
     void declareCommands();
 
-    Simulation::Options options();
-    Drivetrain::Options drivetrainOptions();
-    GpsModel::Options gpsOptions();
     /// Puts the robot at the first pose of a world file and begins to send.
     Result<void> loadNamed(const QString &name, const QStringList &folders);
     Result<void> load(const QString &path, const Outcome<World> &world);

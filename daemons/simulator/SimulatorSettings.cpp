@@ -1,95 +1,102 @@
-#include "common/files/FilesSetting.h"
-#include "daemons/simulator/Simulator.h"
+#include "daemons/simulator/SimulatorSettings.h"
 
 namespace hermes::simulator {
 
-void Simulator::addNumber(const char *group, const char *name, const char *text, const char *unit,
-                          double least, double most, double value) {
-    addSetting(Field::number(name, text)
-                   .unit(unit)
-                   .range(least, most)
-                   .byDefault(value)
-                   .appliesOnRestart()
-                   .group(group));
+SimulatorSettings::SimulatorSettings() {
+    Simulation::Options &robot = simulation;
+    LidarModel::Options &lidar = simulation.lidar;
+    group("World", Applies::OnRestart);
+    add("world", world, "World file to load at the start; empty: none until sim.load");
+    add("seed", robot.seed, "Of the noise: the same seed gives the same noise").range(0, 4294967295.0);
+    add("wall_height_m", lidar.wallHeight, "Height of the walls; beams above them return nothing", "m", 0.01,
+        100);
+    group("Robot", Applies::OnRestart);
+    add("robot.speed_mps", robot.speed, "Largest speed along the path", "m/s", 0.01, 20);
+    add("robot.acceleration_mps2", robot.acceleration, "When speeding up and slowing down", "m/s^2", 0.01,
+        50);
+    add("robot.turn_rate_rps", robot.turnRate, "Largest turn rate", "rad/s", 0.01, 20);
+    add("robot.radius_m", robot.radius, "Of its outline, which walls stop", "m", 0.01, 5);
+    add("robot.autostart", autostart, "Follow the path at once, without sim.drive");
+    group("Lidar", Applies::OnRestart);
+    add("lidar.host", lidarHost, "IPv4 address that packets are sent to");
+    add("lidar.port", lidarPort, "UDP port that packets are sent to").range(1, 65535);
+    add("lidar.position_port", positionPort, "UDP port that position packets are sent to; 0: none are")
+        .range(0, 65535);
+    add("lidar.rpm", robot.rpm, "Turns of the head a minute", "1/min", 300, 1200);
+    add("lidar.height_m", lidar.sensorHeight, "Of the sensor above the floor", "m", 0.01, 10);
+    add("lidar.min_range_m", lidar.minRange, "Nearer things return nothing", "m", 0, 10);
+    add("lidar.max_range_m", lidar.maxRange, "Farther things return nothing", "m", 1, 131);
+    group("Lidar");
+    add("lidar.sigma_m", lidar.sigma, "Standard deviation of the range", "m", 0, 1);
+    add("lidar.dropouts", lidar.dropouts, "Share of the returns that do not come").range(0, 1);
+    add("lidar.outliers", lidar.outliers, "Share of the returns with a wrong range, up to twice as far")
+        .range(0, 1);
+    addMotors();
+    addGps();
 }
 
-void Simulator::declareSettings() {
-    addSetting(Field::text("world", "World file to load at the start; empty: none until sim.load")
-                   .byDefault("")
-                   .appliesOnRestart()
-                   .group("World"));
-    addSetting(namedFilesField());
-    addSetting(Field::integer("seed", "Of the noise: the same seed gives the same noise")
-                   .range(0, 4294967295.0)
-                   .byDefault(1)
-                   .appliesOnRestart()
-                   .group("World"));
-    addNumber("World", "wall_height_m", "Height of the walls; beams above them return nothing", "m", 0.01,
-              100, 2.5);
-    addNumber("Robot", "robot.speed_mps", "Largest speed along the path", "m/s", 0.01, 20, 0.8);
-    addNumber("Robot", "robot.acceleration_mps2", "When speeding up and slowing down", "m/s^2", 0.01, 50,
-              0.8);
-    addNumber("Robot", "robot.turn_rate_rps", "Largest turn rate", "rad/s", 0.01, 20, 1.0);
-    addNumber("Robot", "robot.radius_m", "Of its outline, which walls stop", "m", 0.01, 5, 0.3);
-    addSetting(Field::boolean("robot.autostart", "Follow the path at once, without sim.drive")
-                   .byDefault(false)
-                   .appliesOnRestart()
-                   .group("Robot"));
-    addSetting(Field::text("lidar.host", "IPv4 address that packets are sent to")
-                   .byDefault("127.0.0.1")
-                   .appliesOnRestart()
-                   .group("Lidar"));
-    addSetting(Field::integer("lidar.port", "UDP port that packets are sent to")
-                   .range(1, 65535)
-                   .byDefault(velodyne::dataPort)
-                   .appliesOnRestart()
-                   .group("Lidar"));
-    addSetting(
-        Field::integer("lidar.position_port", "UDP port that position packets are sent to; 0: none are")
-            .range(0, 65535)
-            .byDefault(velodyne::positionPort)
-            .appliesOnRestart()
-            .group("Lidar"));
-    addNumber("Lidar", "lidar.rpm", "Turns of the head a minute", "1/min", 300, 1200, 600);
-    addNumber("Lidar", "lidar.height_m", "Of the sensor above the floor", "m", 0.01, 10, 0.5);
-    addNumber("Lidar", "lidar.min_range_m", "Nearer things return nothing", "m", 0, 10, 0.05);
-    addNumber("Lidar", "lidar.max_range_m", "Farther things return nothing", "m", 1, 131, 100);
-    addSetting(Field::number("lidar.sigma_m", "Standard deviation of the range")
-                   .unit("m")
-                   .range(0, 1)
-                   .byDefault(0.01)
-                   .group("Lidar"));
-    addSetting(Field::number("lidar.dropouts", "Share of the returns that do not come")
-                   .range(0, 1)
-                   .byDefault(0)
-                   .group("Lidar"));
-    addSetting(Field::number("lidar.outliers", "Share of the returns with a wrong range, up to twice as far")
-                   .range(0, 1)
-                   .byDefault(0)
-                   .group("Lidar"));
-    declareMotorSettings();
-    declareGpsSettings();
+void SimulatorSettings::addMotors() {
+    Drivetrain::Options &drivetrain = simulation.drivetrain;
+    MotorChannel::Motor &motor = drivetrain.controller[0].motor;
+    group("Motors", Applies::OnRestart);
+    add("motors.link", link,
+        "Link to the pseudo-terminal of the motor controllers; none: sim.state tells its name");
+    add("motors.link2", link2, "Link to one of its own for the second controller; none: both share one");
+    for (std::size_t i = 0; i < drivetrain.controller.size(); ++i)
+        add(qPrintable(QString("motors.address%1").arg(i + 1)), drivetrain.controller[i].address,
+            "Of this controller on its line")
+            .range(roboclaw::firstAddress, roboclaw::lastAddress);
+    const auto &versions = RoboClawEmulator::firmwareVersions;
+    add("motors.firmware", firmware,
+        "Of the controllers: 4.1.28 tells its status in 16 bits, 4.3.6 does not know commands 0 to 13")
+        .choices(QStringList(versions.begin(), versions.end()));
+    add("motors.full_speed", motor.fullSpeed, "Encoder counts a second at full duty and 24 V", "1/s", 100,
+        2e7);
+    add("motors.lag_s", motor.lag, "Time constant with which a wheel follows", "s", 0.001, 10);
+    add("battery.capacity_ah", drivetrain.battery.capacity_Ah, "Charge of the battery", "Ah", 0.001, 10000);
+    add("battery.full_v", drivetrain.battery.full, "Its voltage when full, without load", "V", 0, 34);
+    add("battery.empty_v", drivetrain.battery.empty,
+        "Its voltage when empty, without load; below 5 % of the charge it falls to 20 V", "V", 0, 34);
+    group("Wheels", Applies::OnRestart);
+    add("frame.layout", layout, "How the wheels move the robot").choices({"mecanum", "differential"});
+    add("frame.wheel_radius_m", drivetrain.base.radius, "Radius of a wheel", "m", 0.01, 1);
+    add("frame.half_base_m", drivetrain.base.halfBase, "From the centre to an axle", "m", 0.01, 5);
+    add("frame.half_track_m", drivetrain.base.halfTrack, "From the centre to the middle of a wheel", "m",
+        0.01, 5);
+    add("frame.counts_per_turn", drivetrain.countsPerTurn, "Encoder counts in one turn of a wheel", "", 1,
+        1e7);
+    add("frame.slip", drivetrain.slip, "Share of the wheels' way that the robot does not make", "", 0, 1);
+    add("frame.slip_spread", drivetrain.slipSpread,
+        "Standard deviation of each wheel's slip, drawn anew for each metre it rolls", "", 0, 1);
 }
 
-Simulation::Options Simulator::options() {
-    const Settings &values = settings();
-    Simulation::Options options;
-    options.speed = values.number("robot.speed_mps");
-    options.acceleration = values.number("robot.acceleration_mps2");
-    options.turnRate = values.number("robot.turn_rate_rps");
-    options.rpm = values.number("lidar.rpm");
-    options.lidar.sigma = values.number("lidar.sigma_m");
-    options.lidar.dropouts = values.number("lidar.dropouts");
-    options.lidar.outliers = values.number("lidar.outliers");
-    options.lidar.sensorHeight = values.number("lidar.height_m");
-    options.lidar.wallHeight = values.number("wall_height_m");
-    options.lidar.minRange = values.number("lidar.min_range_m");
-    options.lidar.maxRange = values.number("lidar.max_range_m");
-    options.radius = values.number("robot.radius_m");
-    options.drivetrain = drivetrainOptions();
-    options.gps = gpsOptions();
-    options.seed = std::uint64_t(values.number("seed"));
-    return options;
+void SimulatorSettings::addGps() {
+    GpsModel::Options &gps = simulation.gps;
+    group("GPS", Applies::OnRestart);
+    add("gps.link", gpsLink,
+        "Link to the pseudo-terminal of the GPS receiver; none: sim.state tells its name");
+    add("gps.rate_hz", gps.rate_hz, "Fixes a second", "Hz", 1, 10);
+    add("gps.latitude_deg", gps.origin.latitude_deg,
+        "Of the world's origin, north positive; x points east, y north", "deg", -89, 89);
+    add("gps.longitude_deg", gps.origin.longitude_deg, "Of the world's origin, east positive", "deg", -180,
+        180);
+    add("gps.altitude_m", gps.altitude, "Of the receiver above the sea", "m", -500, 9000);
+    group("GPS");
+    add("gps.sigma_m", gps.sigma, "Standard deviation of each coordinate of a fix", "m", 0, 1000);
+}
+
+SimulatorSettings::SimulatorSettings(const QJsonObject &settings)
+    : SimulatorSettings() {
+    read(settings);
+    Drivetrain::Options &drivetrain = simulation.drivetrain;
+    if (layout == "differential")
+        drivetrain.base.kind = WheelBase::Kind::Differential;
+    drivetrain.seed = simulation.gps.seed = simulation.seed;
+    drivetrain.controller[1].motor = drivetrain.controller[0].motor;
+    for (std::size_t i = 0; i < drivetrain.controller.size(); ++i) {
+        drivetrain.controller[i].setFirmware(firmware.toStdString());
+        drivetrain.controller[i].seed = simulation.seed + i;
+    }
 }
 
 } // namespace hermes::simulator

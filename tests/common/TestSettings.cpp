@@ -1,11 +1,29 @@
 #include "common/settings/DottedPath.h"
 #include "common/settings/Settings.h"
+#include "common/settings/SettingsTable.h"
 
 #include <cerrno>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 
 using namespace hermes;
+
+struct ChargeSettings : SettingsTable {
+    double low_v = 21, full_v = 25;
+    std::uint16_t port = 7000;
+    QString name = "left";
+    bool on = true;
+
+    ChargeSettings() {
+        group("Battery");
+        add("battery.low_v", low_v, "Low", "V", 0, 60);
+        add("battery.full_v", full_v, "Full", "V", 0, 60);
+        add("name", name, "Which").choices({"left", "right"});
+        group("Net", Applies::OnRestart);
+        add("port", port, "Where").range(1, 65535);
+        add("on", on, "Whether");
+    }
+};
 
 class TestSettings : public QObject {
     Q_OBJECT
@@ -51,6 +69,35 @@ private Q_SLOTS:
         QVERIFY2(result.error().message.startsWith(path + " is "), qPrintable(result.error().message));
         QCOMPARE(settings->values(), before);
         QCOMPARE(changed.count(), 0);
+    }
+
+    void tableDeclaresAndFills() {
+        Settings declared;
+        ChargeSettings table;
+        table.declare([&](const Field &field) { declared.declare(field); });
+        QCOMPARE(declared.values(), QJsonObject({{"battery", QJsonObject{{"low_v", 21}, {"full_v", 25}}},
+                                                 {"name", "left"},
+                                                 {"port", 7000},
+                                                 {"on", true}}));
+        QCOMPARE(declared.schema()["properties"].toObject()["port"].toObject(),
+                 QJsonObject({{"type", "integer"},
+                              {"description", "Where"},
+                              {"minimum", 1},
+                              {"maximum", 65535},
+                              {"default", 7000},
+                              {"group", "Net"},
+                              {"x-applies", "restart"}}));
+        QVERIFY(declared.set(
+            {{"battery", QJsonObject{{"low_v", 26.5}}}, {"name", "right"}, {"port", 65535}, {"on", false}}));
+        table.read(declared.inForce());
+        QVERIFY(table.low_v == 26.5 && table.full_v == 25 && table.name == "right" && table.port == 65535 &&
+                !table.on);
+        table.atMost(table.low_v, table.full_v);
+        table.atLeast(table.low_v, table.full_v);
+        table.require(false, table.name, "left");
+        QCOMPARE(toString(table.violations()),
+                 QString("battery.low_v is 26.5, expected at most battery.full_v; "
+                         "name is \"right\", expected left"));
     }
 
     void appliesPartialObject() {

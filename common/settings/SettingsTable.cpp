@@ -1,0 +1,43 @@
+#include "common/settings/SettingsTable.h"
+
+#include "common/settings/DottedPath.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+Field &SettingsTable::append(const char *name, const void *member, const char *description,
+                             const QJsonObject &schema, const QJsonValue &initial,
+                             const std::function<void(const QJsonValue &value)> &take) {
+    Field field = Field::schema(QString::fromUtf8(name), QString::fromUtf8(description), schema)
+                      .byDefault(initial)
+                      .group(heading_);
+    if (applies_ == Applies::OnRestart)
+        field.appliesOnRestart();
+    entries_.push_back({field, member, take});
+    return entries_.back().field;
+}
+
+void SettingsTable::declare(const std::function<void(const Field &)> &declare) const {
+    for (const Entry &entry : entries_)
+        declare(entry.field);
+}
+
+void SettingsTable::read(const QJsonObject &settings) {
+    read_ = settings;
+    for (const Entry &entry : entries_)
+        entry.take(valueAt(settings, entry.field.name()));
+}
+
+QString SettingsTable::nameOf(const void *member) const {
+    return std::find_if(entries_.begin(), entries_.end(),
+                        [member](const Entry &entry) { return entry.member == member; })
+        ->field.name();
+}
+
+void SettingsTable::refuse(const void *member, const QString &expected) {
+    const QString name = nameOf(member);
+    violations_.push_back({name, valueAt(read_, name), expected});
+}
+
+} // namespace hermes
