@@ -65,18 +65,18 @@ void MotorController::bar(const QString &reason) {
 void MotorController::release() {
     if (!std::exchange(barred_, false))
         return;
-    const bool isTold = attempts_ > 0;
+    const bool wasTold = isToldToStand();
     lose("was released, and has to stand before it is set up");
-    attempts_ = isTold ? 1 : 0; // no new stop shortens the silence in which it stops by itself
-    silentUntil_ = barStop_ + silence_s();
+    if (wasTold) // no new stop shortens the silence in which it stops by itself
+        stopStep_ = nextAttempt();
+    silentUntil_ = setPointSent_ + silence_s();
 }
 
 void MotorController::lose(const QString &reason) {
     state_ = State::Stopping;
     error_ = reason;
-    attempts_ = 0;
-    stopAcknowledged_ = timeoutSaid_ = false;
-    nextAttempt_ = brakeUntil_ = 0;
+    stopStep_ = StopStep::Tell;
+    nextStop_ = brakeUntil_ = 0;
     watch_.doubt();
     rate_.restart();
     readings_.countsTime = 0;
@@ -144,7 +144,7 @@ void MotorController::watchStandstill() {
 
 bool MotorController::isToStop() const {
     if (state_ == State::Stopping)
-        return attempts_ == 0;
+        return !isToldToStand();
     return isReady() && toldToTurn_ && speeds_ == zero;
 }
 
@@ -161,31 +161,19 @@ std::optional<MotorController::Ask> MotorController::next(Task task, double now)
     if (*asked_ == Command::SpeedAccel || *asked_ == Command::Duty) {
         sent_ = commanded_;
         toldToTurn_ = isReady() && speeds_ != zero;
-        barStop_ = now;
+        setPointSent_ = now;
+        isFirstStop_ = !isToldToStand();
+        stopStep_ = nextAttempt();
         if (toldToTurn_) // what it acknowledged before does not count
             watch_.doubt();
-        timeoutSaid_ = false;
-        if (!isReady())
-            ++attempts_;
     }
     return asked;
 }
 
 std::optional<MotorController::Ask> MotorController::due(Task task, double now) const {
-    const bool first = attempts_ == 0;
     switch (state_) {
     case State::Stopping:
-        // First with the ramp, and not waiting for long; then by taking the power away, and in silence.
-        if (task == Task::SetPoint && first)
-            return barred_ ? ask(Command::Duty, shortestPatience_s, {0, 0})
-                           : ask(Command::SpeedAccel, shortestPatience_s, {deceleration_, 0, 0});
-        if (task != Task::Background || first || now < nextAttempt_)
-            return std::nullopt;
-        if (stopAcknowledged_)
-            return ask(Command::ReadEncoders, silence_s());
-        if (!timeoutKnown_ && !timeoutSaid_) // silence stops only one that has a time-out
-            return ask(Command::SetSerialTimeout, shortestPatience_s, {setup_.timeoutTenths()});
-        return ask(Command::Duty, silence_s(), {0, 0});
+        return dueStop(task, now);
     case State::SetUp:
         if (task != Task::Background)
             return std::nullopt;
@@ -194,6 +182,23 @@ std::optional<MotorController::Ask> MotorController::due(Task task, double now) 
         break;
     }
     return dueReady(task);
+}
+
+std::optional<MotorController::Ask> MotorController::dueStop(Task task, double now) const {
+    if (task != (isToldToStand() ? Task::Background : Task::SetPoint) || now < nextStop_)
+        return std::nullopt;
+    switch (stopStep_) {
+    case StopStep::Tell: // with the ramp, and not waiting for long
+        return barred_ ? ask(Command::Duty, shortestPatience_s, {0, 0})
+                       : ask(Command::SpeedAccel, shortestPatience_s, {deceleration_, 0, 0});
+    case StopStep::SetTimeout:
+        return ask(Command::SetSerialTimeout, shortestPatience_s, {setup_.timeoutTenths()});
+    case StopStep::CutPower:
+        return ask(Command::Duty, silence_s(), {0, 0});
+    case StopStep::Look:
+        return ask(Command::ReadEncoders, silence_s());
+    }
+    return std::nullopt;
 }
 
 std::optional<MotorController::Ask> MotorController::dueReady(Task task) const {
@@ -242,36 +247,36 @@ void MotorController::keepSilent(const Bus::Outcome &outcome) {
 
 void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome, double now) {
     if (command == Command::SetSerialTimeout) {
-        timeoutSaid_ = true;
+        stopStep_ = StopStep::CutPower;
         return;
     }
     if (barred_) {
         error_ = barReason_; // the line may have been closed meanwhile
-        silentUntil_ = barStop_ + barredSilence_s;
+        silentUntil_ = setPointSent_ + barredSilence_s;
         return;
     }
     if (outcome.result != Bus::Result::Done) {
         watch_.doubt();
-        stopAcknowledged_ = false;
-        if (attempts_ == 1) // it is told again at once
+        stopStep_ = nextAttempt();
+        if (isFirstStop_) // it is told again at once
             return;
         error_ = failureText(command, failure_, heard_);
         return keepSilent(outcome); // what came in spite of it may be late, or another one's
     }
     if (command != Command::ReadEncoders) {
-        stopAcknowledged_ = true;
-        if (attempts_ == 1)
+        stopStep_ = StopStep::Look;
+        if (isFirstStop_)
             brakeUntil_ = now + brakingTime();
         return watch_.acknowledged();
     }
     watch_.read({quint32(outcome.reply[0]), quint32(outcome.reply[1])}, outcome.received);
-    nextAttempt_ = now + readingPause_s;
+    nextStop_ = now + readingPause_s;
     if (watch_.isMoving()) {
         if (now < brakeUntil_)
             return;
         error_ = "was told to stop and its wheels turn";
         watch_.doubt();
-        stopAcknowledged_ = false;
+        stopStep_ = nextAttempt();
         return keepSilent(outcome);
     }
     if (!watch_.stands() || now < nextSetup_)

@@ -74,7 +74,7 @@ public:
     /// Its last requests were not answered as they should; one alone may be damaged on any line.
     bool isFailing() const { return failures_ > 1; }
     /// The last command was acknowledged, or, where it is not ready, that it shall stand was said.
-    bool hasObeyed() const { return isReady() ? obeyed_ == commanded_ : attempts_ > 0; }
+    bool hasObeyed() const { return isReady() ? obeyed_ == commanded_ : isToldToStand(); }
     /// What it did though it was told to stand; empty when nothing. Asking forgets it.
     QString takeDisobedience() { return std::exchange(disobedience_, QString()); }
     /// "controller 1 (0x80 on serial:///dev/ttyS1)"
@@ -90,9 +90,16 @@ public:
 
 private:
     enum class State { Stopping, SetUp, Ready };
+    enum class StopStep {
+        Tell,       ///< to stand, at once
+        SetTimeout, ///< silence stops only one that has a time-out
+        CutPower,   ///< and wait for the answer in silence
+        Look,       ///< whether its encoders say that it stands: it has acknowledged that it shall
+    };
     static constexpr double longestDrivingPatience_s = 0.06;
 
     std::optional<Ask> due(Task task, double now) const;
+    std::optional<Ask> dueStop(Task task, double now) const;
     std::optional<Ask> dueReady(Task task) const;
     void stopAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
     void setupAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
@@ -105,6 +112,9 @@ private:
     void missSlow();
     /// Seconds until it is seen to stand after it was told to.
     double brakingTime() const;
+    bool isToldToStand() const { return stopStep_ != StopStep::Tell; }
+    /// How it is told again to stand.
+    StopStep nextAttempt() const { return timeoutKnown_ ? StopStep::CutPower : StopStep::SetTimeout; }
     void keepSilent(const roboclaw::Bus::Outcome &outcome);
     void watchStandstill();
     void watchAnswers();
@@ -131,15 +141,14 @@ private:
     double clock_ = 0;     // seconds of cycles in which it could be asked
 
     // Stopping and set-up.
-    bool barred_ = false;
-    double barStop_ = 0;                              // monotonic: the last stop while it is barred
-    bool timeoutKnown_ = false, timeoutSaid_ = false; // it was read back; it was told in this attempt
-    double brakeUntil_ = 0;                           // monotonic: so long its wheels may turn
-    int attempts_ = 0;                                // set-points of zero since it was lost
-    bool stopAcknowledged_ = false;                   // the last one was
-    double timeoutAtMost_s_ = longestTimeout_s;       // that it may have
-    double silentUntil_ = 0, nextAttempt_ = 0, nextSetup_ = 0; // monotonic
-    std::array<double, ControllerSetup::steps> replyTimes_{};  // seconds
+    StopStep stopStep_ = StopStep::Tell;
+    bool isFirstStop_ = true;                                 // since it was lost
+    bool barred_ = false, timeoutKnown_ = false;              // its time-out was read back
+    double setPointSent_ = 0;                                 // monotonic
+    double brakeUntil_ = 0;                                   // monotonic: so long its wheels may turn
+    double timeoutAtMost_s_ = longestTimeout_s;               // that it may have
+    double silentUntil_ = 0, nextStop_ = 0, nextSetup_ = 0;   // monotonic
+    std::array<double, ControllerSetup::steps> replyTimes_{}; // seconds
     std::size_t replies_ = 0;
 
     // What is asked, and since when nothing was heard; by clock_.
