@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::chrono::seconds writePeriod(4);
 constexpr std::size_t scansOfBlock = 200, scansOfWrite = 5000;
-constexpr int mostJournals = 100000;
+constexpr int maxJournals = 100000;
 
 /// The tables of a block.
 class BlockWriter {
@@ -264,7 +264,7 @@ bool DriveJournal::File::open(QString &fault) {
         return false;
     }
     const int dot = name.lastIndexOf('.');
-    for (int i = 1; i < mostJournals; ++i) {
+    for (int i = 1; i < maxJournals; ++i) {
         const QString numbered =
             i == 1 ? name : QString("%1-%2%3").arg(name.left(dot)).arg(i).arg(name.mid(dot));
         path = QDir(folder).absoluteFilePath(numbered);

@@ -20,7 +20,7 @@ using vectorlib::Transformation2D;
 namespace {
 
 constexpr double farthest_m = 1e6, farthestSeen_m = 1e4, most = 1e15;
-constexpr double mostOfScan = 100000; // points, edges
+constexpr double maxOfScan = 100000; // points, edges
 
 /// The numbers of a table, row by row.
 template <typename T>
@@ -189,7 +189,7 @@ private:
             const bool isKey = key < keyEnd() && keys_[key - memory.keys.size()][0] == double(scan);
             key += isKey;
             if (key == 0 || v[0] != double(key - 1) || !areMotion(v + 1) || !(v[4] >= 0) ||
-                !(v[5] >= 0 && v[5] <= 1) || !isCount(v[6], mostOfScan) || v[6] > double(edgesLeft))
+                !(v[5] >= 0 && v[5] <= 1) || !isCount(v[6], maxOfScan) || v[6] > double(edgesLeft))
                 return false;
             edgesLeft -= std::size_t(v[6]);
         }
@@ -203,7 +203,7 @@ private:
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             const double *const v = keys_[k];
             if (!areMotion(v + 1) || !(v[4] >= 0 && v[5] >= 0 && v[6] >= 0) || !areMotion(v + 7) ||
-                !(v[10] >= 0 && v[11] >= 0) || !isCount(v[12], mostOfScan) || v[12] > double(left))
+                !(v[10] >= 0 && v[11] >= 0) || !isCount(v[12], maxOfScan) || v[12] > double(left))
                 return false;
             left -= std::size_t(v[12]);
         }

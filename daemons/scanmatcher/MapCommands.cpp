@@ -12,7 +12,7 @@ namespace hermes::scanmatcher {
 namespace {
 
 constexpr double longestGap_s = 1; // between scans that follow each other
-constexpr int mostFiles = 4;       // that may wait to be written, each with its copy of the map
+constexpr int maxFiles = 4;        // that may wait to be written, each with its copy of the map
 
 } // namespace
 
@@ -87,9 +87,9 @@ MapPath ScanMatcher::mapPath(const Call &call) {
 
 // The worker gives a copy of the map as it is after the commands before this one, and goes on matching.
 void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &reply) {
-    if (filesUnderWay_ >= mostFiles)
+    if (filesUnderWay_ >= maxFiles)
         return reply.error(
-            {ErrorCode::NotReady, QString("%1 files are being written already").arg(mostFiles)});
+            {ErrorCode::NotReady, QString("%1 files are being written already").arg(maxFiles)});
     ++filesUnderWay_;
     const auto map = std::make_shared<vectorlib::MapDrawing>();
     if (format == "svg")
@@ -194,7 +194,7 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply 
                                 ? QString("nothing was undone since the last command")
                                 : QString("there is nothing more to undo: no command of the last %1 replaced "
                                           "the map or put the sensor elsewhere")
-                                      .arg(MapHistory::mostSteps)});
+                                      .arg(MapHistory::maxSteps)});
     const vectorlib::Pose2D now = tracker.motion().pose();
     const vectorlib::Pose2D target = step->isPose ? step->before * step->told.inverse() * now : now;
     MapHistory::Step back{step->command, std::nullopt, step->isPose,

@@ -319,7 +319,7 @@ void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Co
     } else {
         corrector_->dispose(correction);
     }
-    corrector_->goOn(); // what it tells from now on comes behind the correction
+    corrector_->resume(); // what it tells from now on comes behind the correction
 }
 
 void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, const MapChanges &since) {

@@ -53,7 +53,7 @@ private:
         if (hasSecondWord(line_.arguments.command))
             return commands(line_.arguments.command + QLatin1Char(' '));
         const Subcommand *const command = findSubcommand(line_.arguments.command);
-        if (!command || line_.arguments.words.size() >= command->mostWords || command->words.empty())
+        if (!command || line_.arguments.words.size() >= command->maxWords || command->words.empty())
             return {};
         const auto place = std::min(std::size_t(line_.arguments.words.size()), command->words.size() - 1);
         return ofWord(command->words[place]);

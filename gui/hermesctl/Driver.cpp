@@ -94,7 +94,7 @@ void Driver::tick() {
 
 void Driver::send() {
     ++sent_;
-    QJsonObject command = wish_();
+    QJsonObject command = request_();
     command["stamp"] = stampNow() + clock_.seconds();
     client_.call(
         method_, command,

@@ -23,7 +23,7 @@ enum class Word {
 struct Subcommand {
     const char *name; ///< two words for those of `record` and `keys`
     int leastWords;
-    int mostWords;
+    int maxWords;
     const char *usage;
     const char *summary;
     std::vector<Word> words; ///< the last one stands for those that follow, too

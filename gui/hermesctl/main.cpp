@@ -124,7 +124,7 @@ int run(Arguments arguments) {
     if (!command)
         return usageError(unknownCommand(arguments.command), arguments.json);
     const bool ofAll = arguments.all && command->ofDaemon == document;
-    const int least = ofAll ? 0 : command->leastWords, most = ofAll ? 0 : command->mostWords;
+    const int least = ofAll ? 0 : command->leastWords, most = ofAll ? 0 : command->maxWords;
     if (arguments.words.size() < least || arguments.words.size() > most)
         return usageError(QStringLiteral("usage: hermesctl %1").arg(QLatin1String(command->usage)),
                           arguments.json);

@@ -102,7 +102,7 @@ void addRingCommand(CLI::App &app) {
     CLI::Option *laser = sub->add_option("--laser", command->laser,
                                          "Which laser, else the one that looks nearest to the horizon (" +
                                              velodyne::horizonLasers() + ")")
-                             ->transform(wholeNumber(0, velodyne::mostLasers() - 1))
+                             ->transform(wholeNumber(0, velodyne::maxLasers() - 1))
                              ->type_name("ID");
     sub->add_option("--model", command->model,
                     "The sensor, or auto: as the packets say (hdl32e where they do not)")
