@@ -2,8 +2,6 @@
 
 #include "daemons/scanmatcher/DriveJournal.h"
 
-#include <vector>
-
 namespace hermes::scanmatcher {
 
 /// The numbers of a block's tables; of a drive of one scan that saw one wall.

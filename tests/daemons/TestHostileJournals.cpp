@@ -11,8 +11,7 @@ class TestHostileJournals : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void hostileTablesAreRefused_data() {
-        QTest::addColumn<QByteArray>("bytes");
-        QTest::addColumn<bool>("isRead");
+        Rows<QByteArray, bool>("bytes", "isRead");
         const QByteArray first = firstItem();
         QTest::newRow("one scan") << first + item(Tables().content()) << true;
         const QByteArray two = Tables().addKey().addMotion().content();
@@ -72,8 +71,7 @@ private Q_SLOTS:
         const auto read = readDriveJournal(bytes, "hostile.journal");
         QCOMPARE(read.ok(), isRead);
         if (!isRead) {
-            QVERIFY2(read.error().message.startsWith("hostile.journal: byte "),
-                     qPrintable(read.error().message));
+            VERIFY_STARTS(read.error().message, "hostile.journal: byte ");
             return;
         }
         QCOMPARE(read->leftOut, qint64(0));
@@ -122,6 +120,3 @@ private Q_SLOTS:
         QVERIFY(std::hypot(p.x - 2, p.y - 2) < 2);
     }
 };
-
-QTEST_GUILESS_MAIN(TestHostileJournals)
-#include "TestHostileJournals.moc"

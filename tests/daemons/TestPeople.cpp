@@ -64,6 +64,3 @@ private Q_SLOTS:
         QVERIFY(std::abs(pose.x - (2 - robotRadius - People::radius)) < 1e-6);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPeople)
-#include "TestPeople.moc"
