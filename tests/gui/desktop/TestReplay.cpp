@@ -59,35 +59,6 @@ private Q_SLOTS:
         QVERIFY2(row->text(3).endsWith("MiB"), qPrintable(row->text(3)));
     }
 
-    /// Two here: the tab of the panel, and a double click at the recording; with a real mouse.
-    void threeClicks() {
-        if (QGuiApplication::platformName() != "xcb")
-            QSKIP("needs a display: tests/gui/desktop/with_display");
-        open_->window.findChild<QDockWidget *>("daemons")->raise(); // as the window begins
-        QTabBar *tabs = nullptr;
-        int tab = -1;
-        for (auto *const bar : open_->window.findChildren<QTabBar *>())
-            for (int i = 0; i < bar->count(); ++i)
-                if (bar->tabText(i).startsWith("Recordings")) {
-                    tabs = bar;
-                    tab = i;
-                }
-        QVERIFY(tabs);
-        const auto click = [](const QWidget *widget, const QPoint &place) {
-            const QPoint at = widget->mapToGlobal(place);
-            QProcess::startDetached(
-                "xdotool", {"mousemove", QString::number(at.x()), QString::number(at.y()), "click", "1"});
-        };
-        auto *const sessions = find<QTreeWidget>("sessions");
-        click(tabs, tabs->tabRect(tab).center());
-        QTRY_VERIFY(!sessions->visibleRegion().isEmpty());
-        click(sessions->viewport(), sessions->visualItemRect(sessions->topLevelItem(0)).center());
-        QTest::qWait(50);
-        click(sessions->viewport(), sessions->visualItemRect(sessions->topLevelItem(0)).center());
-        QTRY_VERIFY(areBoth("state", "replay"));
-        QTRY_VERIFY(line()->isVisible());
-    }
-
     void aDragSeeksInAllLoggers() {
         play();
         QTRY_VERIFY(areBoth("state", "replay"));
