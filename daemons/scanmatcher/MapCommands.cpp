@@ -156,16 +156,17 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
 // The one of now is kept, unless it is empty.
 void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command) {
     if (!tracker.builder.map.isEmpty())
-        tellSteps(history_.add({command, std::move(tracker.builder.map), false, {}, {}, false}));
+        tellSteps(history_.add({command, std::move(tracker.builder.map), false, {}, {}}));
     tracker.clear();
     newMap_ = NewMap::No;
     tracker.builder.map = std::move(map);
     mapNumber_ = ++mapsBegun_;
 }
 
-void ScanMatcher::rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought) {
+void ScanMatcher::rememberPose(const char *command, const vectorlib::Pose2D &before,
+                               vectorlib::PlaceState place) {
     const vectorlib::ScanTracker &tracker = worker_->tracker();
-    tellSteps(history_.add({command, std::nullopt, true, before, tracker.motion().pose(), wasSought}));
+    tellSteps(history_.add({command, std::nullopt, true, before, tracker.motion().pose(), place}));
     keepMapOfStep(tracker);
 }
 
@@ -197,8 +198,7 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply 
                                       .arg(MapHistory::mostSteps)});
     const vectorlib::Pose2D now = tracker.motion().pose();
     const vectorlib::Pose2D target = step->isPose ? step->before * step->told.inverse() * now : now;
-    MapHistory::Step back{step->command, std::nullopt, step->isPose,
-                          now,           target,       place_ == vectorlib::PlaceState::Sought};
+    MapHistory::Step back{step->command, std::nullopt, step->isPose, now, target, place_};
     if (step->map) {
         back.map = std::move(tracker.builder.map);
         tracker.clear();
@@ -208,11 +208,15 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, bool again, const Reply 
     }
     history_.put(std::move(back), again);
     tellSteps();
-    tracker.claim(target);
-    if (!tracker.builder.map.isEmpty() && (!step->isPose || step->wasSought))
+    const bool isSought = !step->isPose || step->place == vectorlib::PlaceState::Sought;
+    if (step->place == vectorlib::PlaceState::Found)
+        tracker.find(target);
+    else
+        tracker.claim(target);
+    if (isSought && !tracker.builder.map.isEmpty())
         seek(tracker);
     place_ = tracker.placeState();
-    BroughtBack answer{step->command, step->map.has_value(), step->isPose && !step->wasSought, 0, target};
+    BroughtBack answer{step->command, step->map.has_value(), !isSought, 0, target};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
     if (!step->map)
         return reply.result(asJson(answer));

@@ -90,10 +90,10 @@ void ScanMatcher::declareMatcherCommands() {
                        worker_->post([this, pose, isSure = call.flag("confirm"),
                                       reply](vectorlib::ScanTracker &tracker) {
                            const Pose2D before = tracker.motion().pose();
-                           const bool wasSought = place_ == vectorlib::PlaceState::Sought;
+                           const vectorlib::PlaceState placeBefore = place_;
                            isSure ? tracker.place(pose, 1) : tracker.claim(pose);
                            place_ = tracker.placeState();
-                           rememberPose("pose.set", before, wasSought);
+                           rememberPose("pose.set", before, placeBefore);
                            reply.result(QJsonValue());
                        });
                    }));

@@ -35,11 +35,11 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     relocalizing_ = true;
     worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
         const Pose2D before = tracker.motion().pose();
-        const bool wasSought = place_ == PlaceState::Sought;
+        const PlaceState placeBefore = place_;
         const Relocalized found = tracker.relocalize(apply);
         place_ = tracker.placeState();
         if (apply && found.isFound())
-            rememberPose("pose.relocalize", before, wasSought);
+            rememberPose("pose.relocalize", before, placeBefore);
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing_ = false;
             RelocalizeAnswer answer;

@@ -96,7 +96,7 @@ private:
     // In the worker's thread:
     void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map, const char *command);
     void undo(vectorlib::ScanTracker &tracker, bool again, const Reply &reply);
-    void rememberPose(const char *command, const vectorlib::Pose2D &before, bool wasSought);
+    void rememberPose(const char *command, const vectorlib::Pose2D &before, vectorlib::PlaceState place);
     void keepMapOfStep(const vectorlib::ScanTracker &tracker);
     void tellSteps(std::size_t mapsGone = 0);
     void setUp(vectorlib::ScanTracker &tracker);
