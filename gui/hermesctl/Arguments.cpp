@@ -14,7 +14,7 @@ Result<double> positive(const QString &option, const QString &text) {
     if (!ok || !std::isfinite(value) || value <= 0 || value > 1e9)
         return Error(
             ErrorCode::InvalidParams,
-            QStringLiteral("option %1 is \"%2\", expected a number above 0, at most 1e9").arg(option, text));
+            QString("option %1 is \"%2\", expected a number above 0, at most 1e9").arg(option, text));
     return value;
 }
 
@@ -33,7 +33,7 @@ const Flag allFlags[] = {
 
 bool *flagOf(Arguments &arguments, const QString &option) {
     for (const Flag &flag : allFlags) {
-        if (option == QLatin1String(flag.name))
+        if (option == flag.name)
             return &(arguments.*flag.member);
     }
     return nullptr;
@@ -47,13 +47,13 @@ void takeTimeout(Arguments &arguments, double value) {
 Result<void> takeWhole(Arguments &arguments, const QString &option, const QString &text, double value) {
     if (value != std::floor(value))
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option %1 is %2, expected a whole number").arg(option, text));
-    if (option == QStringLiteral("--port") && value > 65535)
+                     QString("option %1 is %2, expected a whole number").arg(option, text));
+    if (option == "--port" && value > 65535)
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option --port is %1, expected at most 65535").arg(text));
-    if (option == QStringLiteral("--port"))
+                     QString("option --port is %1, expected at most 65535").arg(text));
+    if (option == "--port")
         arguments.port = int(value);
-    else if (option == QStringLiteral("--days"))
+    else if (option == "--days")
         arguments.days = int(std::min(value, 36500.0));
     else
         arguments.count = int(value);
@@ -64,13 +64,13 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
     const auto value = positive(option, text);
     if (!value)
         return value.error();
-    if (option == QStringLiteral("--rate"))
+    if (option == "--rate")
         arguments.rate_hz = *value;
-    else if (option == QStringLiteral("--speed"))
+    else if (option == "--speed")
         arguments.speed = *value;
-    else if (option == QStringLiteral("--for"))
+    else if (option == "--for")
         arguments.for_s = std::min(*value, 1e6);
-    else if (option == QStringLiteral("--timeout"))
+    else if (option == "--timeout")
         takeTimeout(arguments, *value);
     else
         return takeWhole(arguments, option, text, *value);
@@ -78,26 +78,25 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
 }
 
 Result<void> takeHost(Arguments &arguments, const QString &text) {
-    static const QRegularExpression withPort(QStringLiteral("^[^:]*:[0-9]*$"));
+    static const QRegularExpression withPort("^[^:]*:[0-9]*$");
     if (text.isEmpty() || withPort.match(text).hasMatch())
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("option --host is \"%1\", expected a name or address without a port; a daemon "
-                           "at another port is named as HOST:PORT")
-                .arg(text));
+        return Error(ErrorCode::InvalidParams,
+                     QString("option --host is \"%1\", expected a name or address without a port; a daemon "
+                             "at another port is named as HOST:PORT")
+                         .arg(text));
     arguments.host = text;
     return {};
 }
 
 Result<void> takeValue(Arguments &arguments, const QString &option, const QString &text) {
-    if (option == QStringLiteral("--host"))
+    if (option == "--host")
         return takeHost(arguments, text);
-    if (option == QStringLiteral("--out"))
+    if (option == "--out")
         arguments.out = text;
-    else if (option == QStringLiteral("--role"))
+    else if (option == "--role")
         arguments.role = text;
-    else if (option == QStringLiteral("--daemons"))
-        arguments.daemons = text.split(QLatin1Char(','));
+    else if (option == "--daemons")
+        arguments.daemons = text.split(',');
     else
         return takeNumber(arguments, option, text);
     return {};
@@ -108,33 +107,31 @@ Result<void> takeValue(Arguments &arguments, const QString &option, const QStrin
 QStringList Arguments::flags() {
     QStringList names;
     for (const Flag &flag : allFlags)
-        names.append(QLatin1String(flag.name));
+        names.append(flag.name);
     return names;
 }
 
 QStringList Arguments::optionsWithValue() {
-    return {QStringLiteral("--rate"),  QStringLiteral("--timeout"), QStringLiteral("--count"),
-            QStringLiteral("--speed"), QStringLiteral("--host"),    QStringLiteral("--daemons"),
-            QStringLiteral("--out"),   QStringLiteral("--role"),    QStringLiteral("--days"),
-            QStringLiteral("--port"),  QStringLiteral("--for")};
+    return {"--rate", "--timeout", "--count", "--speed", "--host", "--daemons",
+            "--out",  "--role",    "--days",  "--port",  "--for"};
 }
 
 bool hasSecondWord(const QString &command) {
-    return command == QStringLiteral("record") || command == QStringLiteral("keys");
+    return command == "record" || command == "keys";
 }
 
 Result<Arguments> Arguments::parse(const QStringList &list) {
     Arguments result;
     for (int i = 0; i < list.size(); ++i) {
         const QString &word = list.at(i);
-        if (!word.startsWith(QLatin1Char('-'))) {
+        if (!word.startsWith('-')) {
             if (result.command.isEmpty())
                 result.command = word;
             else
                 result.words.append(word);
             continue;
         }
-        const QString option = word.section(QLatin1Char('='), 0, 0);
+        const QString option = word.section('=', 0, 0);
         result.given.append(option);
         bool *const flag = flagOf(result, word);
         if (flag) {
@@ -142,13 +139,13 @@ Result<Arguments> Arguments::parse(const QStringList &list) {
             continue;
         }
         if (!optionsWithValue().contains(option))
-            return Error(ErrorCode::InvalidParams,
-                         QStringLiteral("unknown option %1%2")
-                             .arg(word, didYouMean(option, flags() + optionsWithValue())));
-        const bool inOne = word.contains(QLatin1Char('='));
+            return Error(
+                ErrorCode::InvalidParams,
+                QString("unknown option %1%2").arg(word, didYouMean(option, flags() + optionsWithValue())));
+        const bool inOne = word.contains('=');
         if (!inOne && i + 1 == list.size())
-            return Error(ErrorCode::InvalidParams, QStringLiteral("option %1 needs a value").arg(option));
-        const QString value = inOne ? word.section(QLatin1Char('='), 1) : list.at(++i);
+            return Error(ErrorCode::InvalidParams, QString("option %1 needs a value").arg(option));
+        const QString value = inOne ? word.section('=', 1) : list.at(++i);
         const auto taken = takeValue(result, option, value);
         if (!taken)
             return taken.error();

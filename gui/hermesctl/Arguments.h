@@ -11,7 +11,7 @@ namespace hermes::ctl {
 struct Arguments {
     QString command;
     QStringList words; ///< what follows the command, options taken out
-    QString host = QStringLiteral("127.0.0.1");
+    QString host = "127.0.0.1";
     std::chrono::milliseconds timeout{5000};
     bool timeoutIsGiven = false;
     double rate_hz = 0; ///< 0: every message

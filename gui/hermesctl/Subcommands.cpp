@@ -284,14 +284,14 @@ const std::vector<Subcommand> &subcommands() {
 QStringList subcommandNames() {
     QStringList names;
     for (const Subcommand &one : subcommands())
-        names.append(QString::fromLatin1(one.name).section(QLatin1Char(' '), 0, 0));
+        names.append(QString::fromLatin1(one.name).section(' ', 0, 0));
     names.removeDuplicates();
     return names;
 }
 
 const Subcommand *findSubcommand(const QString &name) {
     for (const Subcommand &one : subcommands()) {
-        if (name == QLatin1String(one.name))
+        if (name == one.name)
             return &one;
     }
     return nullptr;
@@ -302,22 +302,19 @@ QStringList commonOptions() {
 }
 
 QString foreignOption(const Subcommand &command, const QStringList &given) {
-    const QStringList own = QString::fromLatin1(command.options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
+    const QStringList own = QString::fromLatin1(command.options).split(' ', Qt::SkipEmptyParts);
     for (const QString &option : given)
         if (!commonOptions().contains(option) && !own.contains(option))
-            return QStringLiteral("%1 is no option of \"%2\"%3")
-                .arg(option, QLatin1String(command.name),
-                     own.isEmpty() ? QString()
-                                   : QStringLiteral(", which has ") + own.join(QStringLiteral(", ")));
+            return QString("%1 is no option of \"%2\"%3")
+                .arg(option, command.name, own.isEmpty() ? QString() : ", which has " + own.join(", "));
     return {};
 }
 
 QString helpText() {
-    QString text = QLatin1String(helpBegin);
+    QString text = helpBegin;
     for (const Subcommand &one : subcommands())
-        text +=
-            QStringLiteral("  %1 %2\n").arg(QLatin1String(one.usage), -30).arg(QLatin1String(one.summary));
-    return text + QLatin1String(helpEnd);
+        text += QString("  %1 %2\n").arg(one.usage, -30).arg(one.summary);
+    return text + helpEnd;
 }
 
 } // namespace hermes::ctl

@@ -13,9 +13,9 @@ QStringList splitLine(const QString &line) {
         const QChar c = line[i];
         if (!quote.isNull() && c == quote)
             quote = QChar();
-        else if (quote.isNull() && (c == QLatin1Char('"') || c == QLatin1Char('\'')))
+        else if (quote.isNull() && (c == '"' || c == '\''))
             quote = c;
-        else if (c == QLatin1Char('\\') && i + 1 < line.size() && quote != QLatin1Char('\''))
+        else if (c == '\\' && i + 1 < line.size() && quote != '\'')
             words.last() += line[++i];
         else if (quote.isNull() && c.isSpace())
             words.append(QString());
@@ -28,17 +28,17 @@ QStringList splitLine(const QString &line) {
 }
 
 void take(Arguments &arguments, const QString &option, const QString &value) {
-    if (option == QStringLiteral("--host"))
+    if (option == "--host")
         arguments.host = value;
-    else if (option == QStringLiteral("--daemons"))
-        arguments.daemons = value.split(QLatin1Char(','));
+    else if (option == "--daemons")
+        arguments.daemons = value.split(',');
 }
 
 void takeWord(Arguments &arguments, const QString &word) {
     if (arguments.command.isEmpty())
         arguments.command = word;
     else if (hasSecondWord(arguments.command))
-        arguments.command += QLatin1Char(' ') + word;
+        arguments.command += ' ' + word;
     else
         arguments.words.append(word);
 }
@@ -52,10 +52,10 @@ TypedLine TypedLine::read(const QString &line) {
         result.current = words.takeLast();
     for (int i = 0; i < words.size(); ++i) {
         const QString &word = words[i];
-        if (!word.startsWith(QLatin1Char('-')))
+        if (!word.startsWith('-'))
             takeWord(result.arguments, word);
         else if (!Arguments::optionsWithValue().contains(word))
-            take(result.arguments, word.section(QLatin1Char('='), 0, 0), word.section(QLatin1Char('='), 1));
+            take(result.arguments, word.section('=', 0, 0), word.section('=', 1));
         else if (i + 1 == words.size())
             result.pendingOption = word;
         else
@@ -66,7 +66,7 @@ TypedLine TypedLine::read(const QString &line) {
 
 bool TypedLine::isGiven(const QString &name) const {
     return std::any_of(arguments.words.begin(), arguments.words.end(),
-                       [&name](const QString &word) { return word.startsWith(name + QLatin1Char('=')); });
+                       [&name](const QString &word) { return word.startsWith(name + '='); });
 }
 
 } // namespace hermes::ctl
