@@ -50,23 +50,17 @@ private:
                               : options();
         if (line_.arguments.command.isEmpty())
             return commands(QString());
-        if (hasSecondWord(line_.arguments.command))
+        if (!subcommandNames(line_.arguments.command).isEmpty())
             return commands(line_.arguments.command + ' ');
         const Subcommand *const command = findSubcommand(line_.arguments.command);
-        if (!command || line_.arguments.words.size() >= command->mostWords || command->words.empty())
-            return {};
-        const auto place = std::min(std::size_t(line_.arguments.words.size()), command->words.size() - 1);
-        return ofWord(command->words[place]);
+        return command ? ofWord(command->meaning(line_.arguments.words.size())) : Candidates();
     }
 
     static Candidates commands(const QString &begin) {
         Candidates found;
         for (const Subcommand &one : subcommands()) {
-            const QString name = one.name;
-            if (!begin.isEmpty() && !name.startsWith(begin))
-                continue;
-            const QString word = name.mid(begin.size()).section(' ', 0, 0);
-            if (found.empty() || found.back().text != word)
+            const QString word = one.name().mid(begin.size()).section(' ', 0, 0);
+            if (one.name().startsWith(begin) && (found.empty() || found.back().text != word))
                 found.push_back({word, one.summary});
         }
         return found;
@@ -75,7 +69,7 @@ private:
     Candidates options() const {
         QStringList names = commonOptions();
         if (const Subcommand *command = findSubcommand(line_.arguments.command))
-            names += QString::fromLatin1(command->options).split(' ', Qt::SkipEmptyParts);
+            names += command->options();
         else
             names.append("--version");
         return plain(names);
@@ -102,32 +96,27 @@ private:
         return found;
     }
 
-    Candidates ofWord(Word word) {
-        switch (word) {
-        case Word::Nothing:
-            return {};
-        case Word::Daemon:
+    /// word is one of the usage of a command.
+    Candidates ofWord(const QString &word) {
+        if (word == "D")
             return daemons();
-        case Word::Method:
+        if (word == "METHOD")
             return described(askList("rpc.discover", "methods"));
-        case Word::Parameter:
+        if (word == "NAME=VALUE")
             return parameters();
-        case Word::SettingPath:
+        if (word == "PATH")
             return plain(settingPaths(ask("settings.schema").toObject(), true));
-        case Word::SettingValue:
+        if (word == "PATH=VALUE")
             return assignments(ask("settings.schema").toObject());
-        case Word::Topic:
+        if (word == "TOPIC")
             return described(ask("topics.list").toArray());
-        case Word::Session:
+        if (word == "SESSION")
             return sessions();
-        case Word::Shell:
-            return plain(completionShells());
-        case Word::Sample:
+        if (word == "SAMPLE")
             return samples();
-        case Word::Velocity:
+        if (word.endsWith('='))
             return velocities();
-        }
-        return {};
+        return word.contains('|') ? plain(word.split('|')) : Candidates();
     }
 
     Candidates daemons() const {

@@ -27,22 +27,6 @@ QStringList splitLine(const QString &line) {
     return words << last;
 }
 
-void take(Arguments &arguments, const QString &option, const QString &value) {
-    if (option == "--host")
-        arguments.host = value;
-    else if (option == "--daemons")
-        arguments.daemons = value.split(',');
-}
-
-void takeWord(Arguments &arguments, const QString &word) {
-    if (arguments.command.isEmpty())
-        arguments.command = word;
-    else if (hasSecondWord(arguments.command))
-        arguments.command += ' ' + word;
-    else
-        arguments.words.append(word);
-}
-
 } // namespace
 
 TypedLine TypedLine::read(const QString &line) {
@@ -52,14 +36,17 @@ TypedLine TypedLine::read(const QString &line) {
         result.current = words.takeLast();
     for (int i = 0; i < words.size(); ++i) {
         const QString &word = words[i];
+        const Option *const option = findOption(word.section('=', 0, 0));
         if (!word.startsWith('-'))
-            takeWord(result.arguments, word);
-        else if (!Arguments::optionsWithValue().contains(word))
-            take(result.arguments, word.section('=', 0, 0), word.section('=', 1));
+            result.arguments.takeWord(word);
+        else if (!option)
+            continue;
+        else if (!option->hasValue() || word.contains('='))
+            option->take(result.arguments, word.section('=', 1));
         else if (i + 1 == words.size())
             result.pendingOption = word;
         else
-            take(result.arguments, word, words[++i]);
+            option->take(result.arguments, words[++i]);
     }
     return result;
 }

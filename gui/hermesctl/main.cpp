@@ -64,16 +64,10 @@ int finish(const Result<void> &result, const QStringList &advice, const Argument
     return 1;
 }
 
-/// The words that are to be NAME=VALUE.
-QStringList assignmentsOf(const Subcommand &command, const QStringList &words) {
-    const bool assigns = command.words.back() == Word::Parameter ||
-                         command.words.back() == Word::SettingValue || command.words.back() == Word::Velocity;
-    return assigns ? words.mid(int(command.words.size()) - 1) : QStringList();
-}
-
 int runDaemonCommand(const Subcommand &command, const Arguments &arguments) {
-    for (const QString &word : assignmentsOf(command, arguments.words)) {
-        if (word.indexOf('=') <= 0)
+    for (int i = 0; i < arguments.words.size(); ++i) {
+        const QString &word = arguments.words[i];
+        if (command.meaning(i).contains('=') && word.indexOf('=') <= 0)
             return usageError(QString("\"%1\": expected NAME=VALUE").arg(word), arguments.json);
     }
     if (const auto checked = command.check ? command.check(arguments) : Result<void>(); !checked)
@@ -88,43 +82,35 @@ int runDaemonCommand(const Subcommand &command, const Arguments &arguments) {
         return connection.error().is(ErrorCode::InvalidParams)
                    ? usageError(connection.error().message, arguments.json)
                    : finish(connection, adviceFor(connection.error(), arguments), arguments);
-    const Result<void> result = command.ofDaemon(client, arguments);
+    const Result<void> result = std::get<DaemonCommand>(command.run)(client, arguments);
     const QStringList advice = result ? QStringList() : adviceFor(result.error(), client, arguments);
     return finish(result, advice, arguments);
 }
 
 int runRobotCommand(const Subcommand &command, const Arguments &arguments) {
-    const Result<void> result = command.ofRobot(arguments);
+    const Result<void> result = std::get<RobotCommand>(command.run)(arguments);
     return !result && result.error().is(ErrorCode::InvalidParams)
                ? usageError(result.error().message, arguments.json)
                : finish(result, {}, arguments);
 }
 
 QString unknownCommand(const QString &command) {
-    const QString first = command.section(' ', 0, 0);
-    if (!hasSecondWord(first))
+    const QString first = command.section(' ', 0, 0), list = subcommandNames(first).join(", ");
+    if (list.isEmpty())
         return QString("unknown command \"%1\"%2").arg(command, didYouMean(command, subcommandNames()));
-    QStringList seconds;
-    for (const Subcommand &one : subcommands())
-        if (QString::fromLatin1(one.name).startsWith(first + ' '))
-            seconds.append(QString::fromLatin1(one.name).section(' ', 1));
-    const QString list = seconds.join(", ");
     return command == first ? QString("after \"%1\" one of these is expected: %2").arg(first, list)
                             : QString("unknown command \"%1\", there is %2").arg(command, list);
 }
 
-int run(Arguments arguments) {
-    if (hasSecondWord(arguments.command) && !arguments.words.isEmpty())
-        arguments.command += ' ' + arguments.words.takeFirst();
+int run(const Arguments &arguments) {
     std::optional<PrivateFiles> owners;
     if (arguments.command.startsWith("keys "))
         owners.emplace();
     const Subcommand *const command = findSubcommand(arguments.command);
     if (!command)
         return usageError(unknownCommand(arguments.command), arguments.json);
-    const bool ofAll = arguments.all && command->ofDaemon == document;
-    const int least = ofAll ? 0 : command->leastWords, most = ofAll ? 0 : command->mostWords;
-    if (arguments.words.size() < least || arguments.words.size() > most)
+    const bool ofAll = arguments.all && command->name() == "doc";
+    if (ofAll ? !arguments.words.isEmpty() : !command->takes(arguments.words.size()))
         return usageError(QString("usage: hermesctl %1").arg(command->usage), arguments.json);
     if (const QString foreign = foreignOption(*command, arguments.given); !foreign.isEmpty())
         return usageError(foreign, arguments.json);
@@ -139,7 +125,8 @@ int run(Arguments arguments) {
     }
     if (ofAll)
         return finish(documentAll(arguments), {}, arguments);
-    return command->ofRobot ? runRobotCommand(*command, arguments) : runDaemonCommand(*command, arguments);
+    return std::holds_alternative<RobotCommand>(command->run) ? runRobotCommand(*command, arguments)
+                                                              : runDaemonCommand(*command, arguments);
 }
 
 void printVersion(bool json) {
