@@ -64,10 +64,10 @@ bool speaksPlainText(const InterfaceUrl &url) {
 QStringList aboutTls(const Error &error, const InterfaceUrl &url) {
     const QString keys = url.option("keys", KeyFolder::usual());
     if (error.message.contains("not accepted"))
-        return {QString("its keys and yours in %1 are of different authorities, or its keys have expired; "
-                        "one authority must issue both (hermesctl keys issue), and HERMES_KEYS=FOLDER "
-                        "chooses yours")
-                    .arg(keys)};
+        return {
+            QString("its keys and yours in %1 are of different authorities, or its keys have expired; one "
+                    "authority must issue both (hermesctl keys issue), and HERMES_KEYS=FOLDER chooses yours")
+                .arg(keys)};
     if (error.message.contains("SSL") && speaksPlainText(url))
         return {QString("the daemon there speaks plain text, no TLS; name it as %1").arg(placeOf(url))};
     if (!error.message.contains("closed by the peer"))
@@ -75,8 +75,8 @@ QStringList aboutTls(const Error &error, const InterfaceUrl &url) {
     return {QString("the daemon refuses your keys in %1: they may be revoked, expired, or of another "
                     "authority; its log tells which")
                 .arg(keys),
-            "hermesctl keys list, where they were made, tells which are good; hermesctl keys issue "
-            "makes new ones"};
+            "hermesctl keys list, where they were made, tells which are good; hermesctl keys issue makes new "
+            "ones"};
 }
 
 /// Why a connection has ended before its reply.
@@ -85,9 +85,10 @@ QStringList wasClosed(const Error &error, const Arguments &arguments) {
     if (url && url->scheme == "tls")
         return aboutTls(error, *url);
     if (url && url->scheme == "tcp" && speaksTls(*url))
-        return {QString("the port is one for TLS; name the daemon as tls://%1; your keys are in %2 "
-                        "($HERMES_KEYS)")
-                    .arg(placeOf(*url), KeyFolder::usual())};
+        return {
+            QString(
+                "the port is one for TLS; name the daemon as tls://%1; your keys are in %2 ($HERMES_KEYS)")
+                .arg(placeOf(*url), KeyFolder::usual())};
     return {};
 }
 
@@ -100,20 +101,19 @@ QStringList nobodyThere(const Error &error, const Arguments &arguments) {
                     .arg(url->host)};
     const bool isRefused = error.message.contains("Connection refused");
     if (url->scheme == "tcp" && !isRefused)
-        return {
-            QString("this computer does not reach %1: are both in the same network (ip address, ping %1)? A "
-                    "firewall there may also drop what comes to port %2")
-                .arg(url->host)
-                .arg(url->port)};
+        return {QString("this computer does not reach %1: are both in the same network (ip address, ping "
+                        "%1)? A firewall there may also drop what comes to port %2")
+                    .arg(url->host)
+                    .arg(url->port)};
     if (url->scheme == "tls" && !isRefused) // somebody listens, or keys are missing here
         return aboutTls(error, *url);
     const QString program = programAt(*url);
     if (program.isEmpty())
-        return {QString("no daemon listens at %1; start one there: hermes-NAME --listen "
-                        "'%1?protocol=%2'; hermesctl list shows those at the default ports")
+        return {QString("no daemon listens at %1; start one there: hermes-NAME --listen '%1?protocol=%2'; "
+                        "hermesctl list shows those at the default ports")
                     .arg(url->toString(), url->protocol())};
-    QStringList lines{QString("start %1 on %2 (it listens at port %3 by default, on loopback only); "
-                              "one that listens elsewhere is named as HOST:PORT")
+    QStringList lines{QString("start %1 on %2 (it listens at port %3 by default, on loopback only); one that "
+                              "listens elsewhere is named as HOST:PORT")
                           .arg(program, url->host)
                           .arg(url->port)};
     if (program != "hermes-supervisor")
@@ -141,8 +141,8 @@ QStringList otherFraming(const Arguments &arguments) {
         return {QString("the daemon at %1 speaks %2, and was spoken to in %3; name it as '%4'")
                     .arg(url->toString(), framing, url->protocol(), other)};
     }
-    return {"the connection is open, but what is at the other end does not answer: it is busy "
-            "or stopped, or is no daemon of Hermes; --timeout S waits longer"};
+    return {"the connection is open, but what is at the other end does not answer: it is busy or stopped, or "
+            "is no daemon of Hermes; --timeout S waits longer"};
 }
 
 QStringList aboutMethod(Client &client, const Arguments &arguments) {
@@ -224,14 +224,14 @@ QStringList aboutControl(const Error &error, const Arguments &arguments) {
     const QJsonValue holder = error.data["holder"];
     QStringList lines;
     if (holder.isString())
-        lines.append(QString("%1 holds the control until it calls control.release, disconnects, or sends no "
-                             "motion command for the time that it asked for; hermesctl call %2 control.state "
-                             "shows it")
-                         .arg(holder.toString(), theDaemon(arguments)));
+        lines.append(
+            QString("%1 holds the control until it calls control.release, disconnects, or sends no motion "
+                    "command for the time that it asked for; hermesctl call %2 control.state shows it")
+                .arg(holder.toString(), theDaemon(arguments)));
     if (arguments.command != "drive")
-        lines.append("the control belongs to one connection, and ends with it: hermesctl drive "
-                     "takes it and keeps it; a client that drives calls control.acquire first, "
-                     "with take_over=true to take it from another one; the robot stops then");
+        lines.append("the control belongs to one connection, and ends with it: hermesctl drive takes it and "
+                     "keeps it; a client that drives calls control.acquire first, with take_over=true to "
+                     "take it from another one; the robot stops then");
     return lines;
 }
 
@@ -243,9 +243,10 @@ QStringList aboutFiles(const Error &error, const Arguments &arguments) {
         const QString here = QFileInfo(path).absoluteFilePath();
         if (!path.isEmpty() && QDir::isRelativePath(path) && QFileInfo::exists(here) &&
             error.data["path"].toString() != here)
-            lines.append(QString("a relative path begins in the folder of the daemon; for the file in this "
-                                 "folder: %1=%2")
-                             .arg(name, here));
+            lines.append(
+                QString(
+                    "a relative path begins in the folder of the daemon; for the file in this folder: %1=%2")
+                    .arg(name, here));
     }
     return lines;
 }
@@ -265,8 +266,8 @@ QStringList adviceFor(const Error &error, Client &client, const Arguments &argum
         if (!client.callAndWait("daemon.info", QJsonObject(), patience))
             return otherFraming(arguments);
         return arguments.timeoutIsGiven && isCall
-                   ? QStringList("the daemon answers other requests: this one takes longer; "
-                                 "without --timeout hermesctl waits for it")
+                   ? QStringList("the daemon answers other requests: this one takes longer; without "
+                                 "--timeout hermesctl waits for it")
                    : QStringList();
     }
     if (error.is(ErrorCode::Disconnected))

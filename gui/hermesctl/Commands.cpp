@@ -51,11 +51,12 @@ Result<QJsonObject> assignments(const QStringList &words) {
 void printChanged(const QJsonValue &result, const QString &daemon) {
     const QJsonArray restart = result["restart"].toArray();
     for (const QJsonValue &path : result["changed"].toArray())
-        printLine(path.toString() + (restart.contains(path)
-                                         ? QString(" changed, from the next start on once saved "
-                                                   "(hermesctl call %1 settings.save)")
-                                               .arg(daemon)
-                                         : " changed"));
+        printLine(
+            path.toString() +
+            (restart.contains(path)
+                 ? QString(" changed, from the next start on once saved (hermesctl call %1 settings.save)")
+                       .arg(daemon)
+                 : " changed"));
 }
 
 using SchemaOf = std::function<QJsonObject(const QJsonValue &)>;
@@ -222,11 +223,12 @@ Result<void> listDaemons(const Arguments &arguments) {
     for (const auto &client : all)
         if (!client->problem().contains("Connection refused")) // by a host that cannot be asked
             return Error(ErrorCode::Disconnected, client->problem());
-    return Error(ErrorCode::Disconnected,
-                 QString("no daemon answers at its default port on %1; start one, as "
-                         "hermes-simulator; on a robot see systemctl status hermes-supervisor; "
-                         "--host HOST asks another computer, --network all of them")
-                     .arg(arguments.host));
+    return Error(
+        ErrorCode::Disconnected,
+        QString(
+            "no daemon answers at its default port on %1; start one, as hermes-simulator; on a robot see "
+            "systemctl status hermes-supervisor; --host HOST asks another computer, --network all of them")
+            .arg(arguments.host));
 }
 
 Result<void> discover(Client &client, const Arguments &arguments) {

@@ -120,13 +120,11 @@ Result<void> checkDrive(const Arguments &arguments) {
         return velocity.error();
     if (!*velocity && !isTerminal(StandardStream::Input))
         return Error(ErrorCode::InvalidParams,
-                     "drive needs a velocity (vx=, vy= in m/s, omega= in rad/s), or a "
-                     "terminal for keys");
+                     "drive needs a velocity (vx=, vy= in m/s, omega= in rad/s), or a terminal for keys");
     if (*velocity && arguments.for_s <= 0 && !qEnvironmentVariableIsEmpty("SSH_CONNECTION"))
-        return Error(
-            ErrorCode::InvalidParams,
-            "over ssh a drive with a velocity needs --for S: if the network fails, the robot drives on "
-            "until then; by keys it stops at once");
+        return Error(ErrorCode::InvalidParams,
+                     "over ssh a drive with a velocity needs --for S: if the network fails, the robot drives "
+                     "on until then; by keys it stops at once");
     return {};
 }
 

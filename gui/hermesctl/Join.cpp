@@ -73,8 +73,8 @@ Result<KeyBundle> take(PairingStream &stream, NewKeyFolder &folder) {
         return staged.error();
     if (const auto agreed = agree(stream, deadline); !agreed)
         return Error(ErrorCode(agreed.error().code),
-                     QString("%1; nothing was kept here: see with hermesctl keys list there whether "
-                             "the certificate is revoked")
+                     QString("%1; nothing was kept here: see with hermesctl keys list there whether the "
+                             "certificate is revoked")
                          .arg(agreed.error().message));
     if (const auto kept = folder.keep(); !kept)
         return kept.error();

@@ -61,11 +61,10 @@ Result<void> keysIssue(const Arguments &arguments) {
     if (arguments.json)
         printJson(QJsonObject{{"folder", *folder}, {"name", name}, {"role", arguments.role}});
     else
-        printLine(QString("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to "
-                          "where its programs look for keys (usually ~/.config/hermes/keys), and delete it "
-                          "here. For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
-                          ".config/hermes/keys\n  scp -p %1/* "
-                          "%2:.config/hermes/keys/")
+        printLine(QString("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to where "
+                          "its programs look for keys (usually ~/.config/hermes/keys), and delete it here. "
+                          "For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
+                          ".config/hermes/keys\n  scp -p %1/* %2:.config/hermes/keys/")
                       .arg(*folder, name));
     return {};
 }
@@ -78,8 +77,8 @@ Result<void> keysRevoke(const Arguments &arguments) {
     if (arguments.json)
         printJson(QJsonObject{{"revoked", *count}, {"file", file}});
     else
-        printLine(QString("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect "
-                          "within a second, also on those who are connected.")
+        printLine(QString("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect within a "
+                          "second, also on those who are connected.")
                       .arg(*count)
                       .arg(file));
     return {};

@@ -33,11 +33,9 @@ QJsonObject textsOf(const QVariant &records) {
 }
 
 Error absent(const QString &what) {
-    return {
-        ErrorCode::Disconnected,
-        QString("the network cannot be asked: %1; start avahi-daemon here, or ask one computer: hermesctl "
-                "list --host HOST")
-            .arg(what)};
+    return {ErrorCode::Disconnected, QString("the network cannot be asked: %1; start avahi-daemon here, or "
+                                             "ask one computer: hermesctl list --host HOST")
+                                         .arg(what)};
 }
 
 } // namespace

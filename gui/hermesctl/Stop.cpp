@@ -56,8 +56,8 @@ public:
             printJson(told_);
         if (told_.isEmpty())
             return Error(ErrorCode::Disconnected,
-                         QString("no robot is there: no daemon at %1, or announced on the network, has "
-                                 "%2; hermesctl call HOST:PORT %2 calls another one")
+                         QString("no robot is there: no daemon at %1, or announced on the network, has %2; "
+                                 "hermesctl call HOST:PORT %2 calls another one")
                              .arg(arguments_.host, method_));
         return unconfirmed_.isEmpty() ? Result<void>()
                                       : Error(ErrorCode::DeviceFault, unconfirmed_.join("; "));

@@ -116,8 +116,8 @@ private:
 
     void tellWhatIsMissing() const {
         if (const quint64 all = droppedBefore_ + dropped_; all > 0)
-            note(QString("%1 messages are missing: they were dropped because they were not read in "
-                         "time (column or member dropped)")
+            note(QString("%1 messages are missing: they were dropped because they were not read in time "
+                         "(column or member dropped)")
                      .arg(all));
         if (interruptions_ > 0)
             note(QString("the connection was lost %1 times: what was published meanwhile is missing")
