@@ -45,10 +45,11 @@ QString takePort(Arguments &arguments, const QString &text) {
 
 QString takeTimeout(Arguments &arguments, const QString &text) {
     double seconds = 0;
-    const QString wrong = readNumber(text, seconds);
+    if (const QString wrong = readNumber(text, seconds); !wrong.isEmpty())
+        return wrong;
     arguments.timeout = std::chrono::milliseconds(int(std::min(seconds, 1e6) * 1000));
     arguments.timeoutIsGiven = true;
-    return wrong;
+    return {};
 }
 
 QString takeHost(Arguments &arguments, const QString &text) {
