@@ -1,5 +1,7 @@
 #include "gui/desktop/LayoutKeeper.h"
 
+#include <QDir>
+#include <QFileInfo>
 #include <memory>
 
 namespace hermes::desktop {
@@ -27,10 +29,11 @@ Error changedElsewhere(const QString &file) {
 LayoutKeeper::LayoutKeeper(Layouts &layouts, QObject *parent)
     : QObject(parent)
     , layouts_(layouts)
-    , lock_(layouts.file())
+    , lock_(layouts.file() + ".lock")
     , expected_(layouts.fingerprint()) {
+    lock_.setStaleLockTime(0); // it ends with its process, at the earliest
     since_.start();
-    if (isKept() && !lock_.take())
+    if (isKept() && !lock())
         setOutcome(keptElsewhere());
 }
 
@@ -72,9 +75,15 @@ void LayoutKeeper::begin() {
     });
 }
 
+/// False: another window holds it. Where nothing can be locked, nobody does.
+bool LayoutKeeper::lock() {
+    QDir().mkpath(QFileInfo(layouts_.file()).absolutePath());
+    return lock_.isLocked() || lock_.tryLock() || lock_.error() != QLockFile::LockFailedError;
+}
+
 /// In the thread that writes.
 Result<void> LayoutKeeper::write(const Layouts &taken) {
-    if (!lock_.take())
+    if (!lock())
         return keptElsewhere();
     const QByteArray found = Layouts::fingerprintOf(taken.file());
     if (!found.isEmpty() && found != expected_)

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "gui/desktop/LayoutLock.h"
 #include "gui/desktop/Layouts.h"
 
 #include <QElapsedTimer>
+#include <QLockFile>
 #include <QObject>
 #include <QThreadPool>
 #include <future>
@@ -36,6 +36,7 @@ Q_SIGNALS:
 private:
     bool isKept() const { return layouts_.problem().isEmpty() && !layouts_.file().isEmpty(); }
     void begin();
+    bool lock();
     Result<void> write(const Layouts &taken);
     void setOutcome(const Result<void> &outcome);
     bool collect(std::chrono::milliseconds patience);
@@ -45,7 +46,7 @@ private:
     QElapsedTimer since_; ///< it was tried
     QString problem_;
     bool isWaiting_ = false;
-    LayoutLock lock_;     ///< of the thread that writes, once that has begun
+    QLockFile lock_;      ///< of the thread that writes, once that has begun
     QByteArray expected_; ///< fingerprint of the file; so, too
     QThreadPool pool_;
 };

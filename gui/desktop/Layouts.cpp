@@ -1,16 +1,17 @@
 #include "gui/desktop/Layouts.h"
 
+#include "common/files/SavedFile.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/Quantities.h"
 
 #include <QCryptographicHash>
 #include <QDir>
 #include <QFileInfo>
+#include <QJsonArray>
 #include <QJsonDocument>
 #include <QObject>
 #include <QSettings>
 #include <algorithm>
-#include <cstdio>
 
 namespace hermes::desktop {
 namespace {
@@ -20,61 +21,6 @@ constexpr int mostRobots = 200;
 
 QString tr(const char *text) {
     return QObject::tr(text);
-}
-
-/// What QSettings makes a value of that is no text.
-bool isBuilt(const QByteArray &text) {
-    return text.contains("@Variant(") || text.contains("@DateTime(");
-}
-
-/// A section, or a key with a value whose quotes end with it. QSettings says that it found anything else only
-/// to the first who reads the file, or reads on in the next line.
-bool isWhole(const QByteArray &line) {
-    if (line.startsWith('['))
-        return line.endsWith(']');
-    const int equals = line.indexOf('=');
-    bool isQuoted = false;
-    for (int i = equals + 1; i < line.size(); ++i) {
-        if (line[i] == '"')
-            isQuoted = !isQuoted;
-        else if (line[i] == '\\' && ++i == line.size())
-            return false;
-    }
-    return equals >= 0 && !isQuoted && !line.left(equals).contains('"');
-}
-
-/// Lines of an ini file that this program may have written. What QSettings would build from "@Variant" is
-/// never what was kept.
-bool isOurs(const QByteArray &text) {
-    if (text.contains('\0') || isBuilt(text))
-        return false;
-    bool hasGroup = false, hasLine = false;
-    for (const QByteArray &line : text.split('\n')) {
-        const QByteArray one = line.trimmed();
-        if (one.isEmpty() || one.startsWith(';'))
-            continue;
-        hasLine = true;
-        hasGroup = hasGroup || one == "[window]" || one == "[layouts]" || one == "[robots]";
-        if (!isWhole(one))
-            return false;
-    }
-    return hasGroup || !hasLine;
-}
-
-/// Keys and values in turn: a key of the file could not have all characters.
-QStringList listOf(const QMap<QString, QString> &pairs) {
-    QStringList list;
-    for (auto one = pairs.begin(); one != pairs.end(); ++one)
-        list << one.key() << one.value();
-    return list;
-}
-
-QMap<QString, QString> pairsIn(const QVariant &value) {
-    const QStringList list = value.toStringList().mid(0, 2 * mostRobots);
-    QMap<QString, QString> pairs;
-    for (int i = 0; i + 1 < list.size(); i += 2)
-        pairs[list[i]] = list[i + 1];
-    return pairs;
 }
 
 QByteArray checkOf(const Layouts::Layout &layout) {
@@ -96,8 +42,73 @@ QByteArray hashOf(const QByteArray &text) {
     return QCryptographicHash::hash(text, QCryptographicHash::Sha256);
 }
 
-QString nameOf(const QVariant &text) {
-    return shortLine(text.toString().trimmed(), Layouts::longestName);
+QString nameOf(const QString &text) {
+    return shortLine(text.trimmed(), Layouts::longestName);
+}
+
+QByteArray bytesOf(const QJsonValue &base64) {
+    return QByteArray::fromBase64(base64.toString().toLatin1());
+}
+
+QJsonValue base64Of(const QByteArray &bytes) {
+    return QString::fromLatin1(bytes.toBase64());
+}
+
+QMap<QString, QString> textsIn(const QJsonValue &object) {
+    QMap<QString, QString> texts;
+    const QJsonObject members = object.toObject();
+    for (auto one = members.begin(); one != members.end(); ++one)
+        texts[one.key()] = one.value().toString();
+    return texts;
+}
+
+QJsonObject objectWith(const QMap<QString, QString> &texts) {
+    QJsonObject object;
+    for (auto one = texts.begin(); one != texts.end(); ++one)
+        object[one.key()] = one.value();
+    return object;
+}
+
+QJsonObject objectOfPairs(const QStringList &list) {
+    QJsonObject object;
+    for (int i = 0; i + 1 < list.size(); i += 2)
+        object[list[i]] = list[i + 1];
+    return object;
+}
+
+/// Earlier versions kept the same in an ini file. Empty: it is no such one. What QSettings would build from
+/// "@Variant" was never kept.
+QJsonObject fromIni(const QString &path, const QByteArray &text) {
+    QSettings file(path, QSettings::IniFormat);
+    const QStringList groups = file.childGroups();
+    if (text.contains("@Variant(") || text.contains("@DateTime(") || file.status() != QSettings::NoError ||
+        !(groups.contains("window") || groups.contains("layouts") || groups.contains("robots")))
+        return {};
+    QJsonArray layouts;
+    const int count = qBound(0, file.beginReadArray("layouts"), Layouts::most);
+    for (int i = 0; i < count; ++i) {
+        file.setArrayIndex(i);
+        layouts.append(QJsonObject{{"name", file.value("name").toString()},
+                                   {"geometry", base64Of(file.value("geometry").toByteArray())},
+                                   {"state", base64Of(file.value("state").toByteArray())},
+                                   {"check", file.value("check").toString()},
+                                   {"plots", objectOf(file.value("plots"))}});
+    }
+    file.endArray();
+    QJsonObject kept;
+    file.beginGroup("kept");
+    for (const QString &key : file.allKeys())
+        kept[key] = file.value(key).toString();
+    file.endGroup();
+    return {
+        {"layout", file.value("window/layout").toString()},
+        {"layouts", layouts},
+        {"robots",
+         QJsonObject{{"addresses", QJsonArray::fromStringList(file.value("robots/addresses").toStringList())},
+                     {"names", objectOfPairs(file.value("robots/names").toStringList())},
+                     {"places", objectOfPairs(file.value("robots/places").toStringList())},
+                     {"chosen", file.value("robots/chosen").toString()}}},
+        {"kept", kept}};
 }
 
 } // namespace
@@ -125,54 +136,52 @@ QByteArray Layouts::fingerprintOf(const QString &file) {
 }
 
 void Layouts::read() {
-    const QFileInfo info(file_);
-    if (file_.isEmpty() || !info.exists())
+    const QFileInfo info(file_), before(info.path() + '/' + info.completeBaseName() + ".ini");
+    if (file_.isEmpty() || !(info.exists() || before.isFile()))
         return;
     const auto refuse = [this](const QString &why) {
         problem_ = tr("The layout of the window and the robots are not kept: %1 %2").arg(file_, why);
     };
-    if (!info.isFile())
+    if (info.exists() && !info.isFile())
         return refuse(tr("is no file"));
-    QFile content(file_);
+    QFile content(info.exists() ? file_ : before.filePath());
     if (!content.open(QIODevice::ReadOnly))
         return refuse(tr("cannot be read: %1").arg(content.errorString()));
-    const QByteArray text = content.size() > largestFile ? QByteArray() : content.readAll();
-    fingerprint_ = hashOf(text);
-    if (content.size() > largestFile || !isOurs(text))
+    const QByteArray text = content.read(largestFile + 1);
+    if (info.exists())
+        fingerprint_ = hashOf(text);
+    QJsonObject kept = QJsonDocument::fromJson(text).object();
+    if (kept.isEmpty() && text.size() <= largestFile)
+        kept = fromIni(content.fileName(), text);
+    if (text.size() > largestFile || (!text.trimmed().isEmpty() && !kept.contains("layouts")))
         return refuse(tr("is damaged, or was not written by this program. It is left as it is"));
-    QSettings file(file_, QSettings::IniFormat);
-    if (file.status() != QSettings::NoError)
-        return refuse(tr("is damaged. It is left as it is"));
-    readLayouts(file);
-    robots_.addresses = file.value("robots/addresses").toStringList().mid(0, mostRobots);
-    robots_.names = pairsIn(file.value("robots/names"));
+    readLayouts(kept["layouts"].toArray());
+    current_ = nameOf(kept["layout"].toString());
+    const QJsonObject robots = kept["robots"].toObject();
+    for (const QJsonValue &address : robots["addresses"].toArray())
+        if (robots_.addresses.size() < mostRobots)
+            robots_.addresses.append(address.toString());
+    robots_.names = textsIn(robots["names"]);
     for (QString &name : robots_.names)
         name = nameOf(name);
-    robots_.places = pairsIn(file.value("robots/places"));
-    robots_.chosen = file.value("robots/chosen").toString();
-    file.beginGroup("kept");
-    for (const QString &key : file.allKeys())
-        values_[key] = file.value(key).toString();
+    robots_.places = textsIn(robots["places"]);
+    robots_.chosen = robots["chosen"].toString();
+    values_ = textsIn(kept["kept"]);
 }
 
 // Qt may crash at a state that is not as it wrote it.
-void Layouts::readLayouts(QSettings &file) {
-    const int count = qBound(0, file.beginReadArray("layouts"), most);
-    for (int i = 0; i < count; ++i) {
-        file.setArrayIndex(i);
-        const QString name = nameOf(file.value("name"));
-        if (name.isEmpty() || find(name) != layouts_.end())
+void Layouts::readLayouts(const QJsonArray &array) {
+    for (const QJsonValue &one : array) {
+        const QString name = nameOf(one["name"].toString());
+        if (name.isEmpty() || find(name) != layouts_.end() || int(layouts_.size()) >= most)
             continue;
-        Layout layout{file.value("geometry").toByteArray(), file.value("state").toByteArray(),
-                      objectOf(file.value("plots"))};
-        if (file.value("check").toByteArray() != checkOf(layout)) {
+        Layout layout{bytesOf(one["geometry"]), bytesOf(one["state"]), one["plots"].toObject()};
+        if (one["check"].toString().toLatin1() != checkOf(layout)) {
             layout.geometry = layout.state = {};
             damage_ = tr("The layout %1 is damaged: its panels are arranged as usual.").arg(name);
         }
         layouts_.push_back({name, layout});
     }
-    file.endArray();
-    current_ = nameOf(file.value("window/layout"));
 }
 
 std::vector<Layouts::Named>::iterator Layouts::find(const QString &name) {
@@ -231,50 +240,36 @@ Result<void> Layouts::save() const {
         return {};
     if (!problem_.isEmpty())
         return Error(ErrorCode::InputOutput, problem_);
-    const Error failed(ErrorCode::InputOutput,
-                       tr("The layout of the window and the robots could not be written to %1").arg(file_));
-    const QString fresh = file_ + ".new"; // so that a whole one is there at any time
-    QDir().mkpath(QFileInfo(file_).absolutePath());
-    QFile::remove(fresh);
-    if (!write(fresh))
-        return failed;
-    QFile written(fresh);
-    if (!written.open(QIODevice::ReadOnly))
-        return failed;
-    const qint64 size = written.size();
-    if (size > largestFile || !isOurs(written.readAll())) {
-        written.remove();
+    const QByteArray text = json();
+    if (text.size() > largestFile)
         return Error(ErrorCode::InputOutput,
-                     tr("The layout of the window and the robots are not kept any more: %1")
-                         .arg(size > largestFile
-                                  ? tr("with buttons, plots and names it has %1, and may have %2.")
-                                        .arg(sizeText(double(size)), sizeText(double(largestFile)))
-                                  : tr("a name or a value is none that can be kept.")));
-    }
-    return std::rename(QFile::encodeName(fresh), QFile::encodeName(file_)) == 0 ? Result<void>() : failed;
+                     tr("The layout of the window and the robots are not kept any more: with buttons, plots "
+                        "and names it has %1, and may have %2.")
+                         .arg(sizeText(double(text.size())), sizeText(double(largestFile))));
+    QDir().mkpath(QFileInfo(file_).absolutePath());
+    const Result<void> saved = saveFile(file_, text);
+    return saved ? saved
+                 : Error(ErrorCode::InputOutput,
+                         tr("The layout of the window and the robots could not be written to %1").arg(file_));
 }
 
-bool Layouts::write(const QString &path) const {
-    QSettings file(path, QSettings::IniFormat);
-    file.beginWriteArray("layouts", int(layouts_.size()));
-    for (std::size_t i = 0; i < layouts_.size(); ++i) {
-        file.setArrayIndex(int(i));
-        file.setValue("name", layouts_[i].name);
-        file.setValue("geometry", layouts_[i].layout.geometry);
-        file.setValue("state", layouts_[i].layout.state);
-        file.setValue("check", checkOf(layouts_[i].layout));
-        file.setValue("plots", compactText(layouts_[i].layout.plots));
-    }
-    file.endArray();
-    file.setValue("window/layout", current_);
-    file.setValue("robots/addresses", robots_.addresses);
-    file.setValue("robots/names", listOf(robots_.names));
-    file.setValue("robots/places", listOf(robots_.places));
-    file.setValue("robots/chosen", robots_.chosen);
-    for (auto one = values_.begin(); one != values_.end(); ++one)
-        file.setValue("kept/" + one.key(), one.value());
-    file.sync();
-    return file.status() == QSettings::NoError;
+QByteArray Layouts::json() const {
+    QJsonArray layouts;
+    for (const Named &one : layouts_)
+        layouts.append(QJsonObject{{"name", one.name},
+                                   {"geometry", base64Of(one.layout.geometry)},
+                                   {"state", base64Of(one.layout.state)},
+                                   {"check", QString::fromLatin1(checkOf(one.layout))},
+                                   {"plots", one.layout.plots}});
+    const QJsonObject robots{{"addresses", QJsonArray::fromStringList(robots_.addresses)},
+                             {"names", objectWith(robots_.names)},
+                             {"places", objectWith(robots_.places)},
+                             {"chosen", robots_.chosen}};
+    return QJsonDocument({{"layout", current_},
+                          {"layouts", layouts},
+                          {"robots", robots},
+                          {"kept", objectWith(values_)}})
+        .toJson();
 }
 
 } // namespace hermes::desktop

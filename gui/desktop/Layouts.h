@@ -8,7 +8,7 @@
 #include <QStringList>
 #include <vector>
 
-class QSettings;
+class QJsonArray;
 class QVariant;
 
 namespace hermes::desktop {
@@ -17,7 +17,7 @@ namespace hermes::desktop {
 QString compactText(const QJsonObject &object);
 QJsonObject objectOf(const QVariant &text);
 
-/// What of the window is kept between runs, in an ini file: layouts by name, and the robots apart from them.
+/// What of the window is kept between runs, in a JSON file: layouts by name, and the robots apart from them.
 /// A file that is no such one, or damaged, is left as it is: the window has its default then, and nothing is
 /// kept.
 class Layouts {
@@ -97,9 +97,9 @@ private:
         isChanged_ = isChanged_ || !(kept == wanted);
         kept = wanted;
     }
-    bool write(const QString &path) const;
+    QByteArray json() const;
     void read();
-    void readLayouts(QSettings &file);
+    void readLayouts(const QJsonArray &array);
     std::vector<Named>::iterator find(const QString &name);
 
     const QString file_;

@@ -120,6 +120,11 @@ QColor colour(Condition condition) {
     return dark ? QColor(0x8b, 0x92, 0x99) : QColor(0x5c, 0x63, 0x6a);
 }
 
+QColor mixed(const QColor &from, const QColor &to, double share) {
+    const auto mix = [share](int a, int b) { return qRound(a + share * (b - a)); };
+    return {mix(from.red(), to.red()), mix(from.green(), to.green()), mix(from.blue(), to.blue())};
+}
+
 QFont fixedFont() {
     QFont font("monospace", QApplication::font().pointSize());
     font.setStyleHint(QFont::Monospace);

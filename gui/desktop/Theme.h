@@ -18,6 +18,8 @@ void apply();
 bool isDark();
 
 QColor colour(Condition condition);
+/// This share of the way from one colour to another.
+QColor mixed(const QColor &from, const QColor &to, double share);
 /// For text in columns.
 QFont fixedFont();
 /// An icon of its own shape for each condition, in its colour.

@@ -66,7 +66,7 @@ int main(int argc, char **argv) {
          "A robot to connect to, or one of its daemons; repeatable (those of last time, else 127.0.0.1).",
          "HOST[:PORT]"});
     parser.addOption({"layout", "Where the layout of the window is kept.", "FILE",
-                      QStandardPaths::writableLocation(QStandardPaths::ConfigLocation) + "/hermes/gui.ini"});
+                      QStandardPaths::writableLocation(QStandardPaths::ConfigLocation) + "/hermes/gui.json"});
     parser.addOption(
         {"whole-map", "Begin with the whole map in view, as it grows, and do not follow the robot."});
     if (!parser.parse(QApplication::arguments()) || !parser.positionalArguments().isEmpty()) {

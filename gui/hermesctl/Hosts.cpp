@@ -18,25 +18,21 @@ constexpr int mostHosts = 20;
 constexpr qint64 mostBytes = 10000;
 
 QString fileName() {
-    return QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation) +
-           QStringLiteral("/hermes/hosts");
+    return QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation) + "/hermes/hosts";
 }
 
 QStringList reached() {
     QFile file(fileName());
     if (!file.open(QIODevice::ReadOnly))
         return {};
-    return QString::fromUtf8(file.read(mostBytes))
-        .split(QLatin1Char('\n'), Qt::SkipEmptyParts)
-        .mid(0, mostHosts);
+    return QString::fromUtf8(file.read(mostBytes)).split('\n', Qt::SkipEmptyParts).mid(0, mostHosts);
 }
 
 /// Empty: one of this computer, or none.
 QString hostOf(const QString &address) {
     const auto url = InterfaceUrl::parse(address);
-    const bool isFar = url &&
-                       (url->scheme == QStringLiteral("tcp") || url->scheme == QStringLiteral("tls")) &&
-                       url->host != QStringLiteral("localhost") && !QHostAddress(url->host).isLoopback();
+    const bool isFar = url && (url->scheme == "tcp" || url->scheme == "tls") && url->host != "localhost" &&
+                       !QHostAddress(url->host).isLoopback();
     return isFar ? url->host : QString();
 }
 
@@ -51,7 +47,7 @@ void rememberHost(const QString &address) {
     hosts.prepend(host);
     // It only helps to complete: where it cannot be written, nothing is lost.
     QDir().mkpath(QFileInfo(fileName()).path());
-    (void)saveFile(fileName(), hosts.mid(0, mostHosts).join(QLatin1Char('\n')).toUtf8());
+    (void)saveFile(fileName(), hosts.mid(0, mostHosts).join('\n').toUtf8());
 }
 
 QStringList knownHosts(std::chrono::milliseconds patience) {
@@ -62,7 +58,7 @@ QStringList knownHosts(std::chrono::milliseconds patience) {
                 hosts.append(one.subject.name);
     if (const auto announced = NetworkBrowser().look(patience))
         for (const QJsonObject &daemon : *announced)
-            hosts.append(daemon[QStringLiteral("host")].toString());
+            hosts.append(daemon["host"].toString());
     hosts.removeDuplicates();
     return hosts;
 }

@@ -20,6 +20,10 @@ private Q_SLOTS:
         QTest::newRow("another version") << firstItem(journal::mark, 2) + item(two) << false;
         QTest::newRow("no mark") << item(two, true) << false;
         QTest::newRow("the beginning twice") << first + first + item(two) << false;
+        QTest::newRow("no scan after the beginning") << first << false;
+        QTest::newRow("empty") << QByteArray() << false;
+        QTest::newRow("a map") << QByteArray("id,x1,y1,x2,y2\n") << false;
+        QTest::newRow("a length of 2^63") << QByteArray::fromHex("d9d9f782005b7fffffffffffffff00") << false;
         QTest::newRow("not tagged") << item(two) + item(two) << false;
         const auto row = [&](const QByteArray &name, const std::function<void(Tables &)> &spoil) {
             Tables tables = Tables().addKey().addMotion();

@@ -68,6 +68,9 @@ private Q_SLOTS:
         QCOMPARE(call("matcher.state")["matched"].toInt(), 20);
         QCOMPARE(call("matcher.state")["by_odometry"].toInt(), kind == "backwards" ? 19 : 0);
         QCOMPARE(healthItem("odometry")["level"].toString(), level);
+        const QString message = healthItem("odometry")["message"].toString(); // tells why
+        QVERIFY2(kind != "nonsense" || message.contains("refused 20 messages, the last: "),
+                 qPrintable(message));
     }
 
     void lossOfItIsShownAndMended() {

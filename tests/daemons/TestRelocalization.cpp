@@ -249,6 +249,20 @@ private Q_SLOTS:
         QTRY_VERIFY(healthItem("tracking")["message"].toString().contains("is sought"));
     }
 
+    void anUndoneCommandDoesNotConfirmAPlaceThatWasFound() {
+        beginToMap();
+        load(pillars());
+        for (int i = 0; i < 5 || (i < 100 && call("matcher.state")["place"].toString() == "sought"); ++i)
+            scan(pillars(), {5.2, 4, 1.5});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("found"));
+        call("pose.set", {{"x", 1}, {"y", 1}, {"theta", 0}});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("told"));
+        call("map.undo");
+        for (int i = 0; i < 10; ++i) // from one spot
+            scan(pillars(), {5.2, 4, 1.5});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("found"));
+    }
+
     void aToldPlaceIsNoMotionOfTheDrive() {
         beginToMap();
         scan(pillars(), {1, 0.9, 0}, 5);

@@ -266,9 +266,9 @@ private Q_SLOTS:
         std::promise<void> release;
         std::vector<quint64> seen;
         {
-            Worker worker([&](vectorlib::ScanTracker &, const Scan &scan) { seen.push_back(scan.number); });
+            Worker worker([&](const Scan &scan) { seen.push_back(scan.number); });
             worker.setQueueLimit(3);
-            worker.post([&](vectorlib::ScanTracker &) { release.get_future().wait(); });
+            worker.post([&] { release.get_future().wait(); });
             for (quint64 i = 0; i < 10; ++i) {
                 Scan scan;
                 scan.number = i;

@@ -332,7 +332,7 @@ private Q_SLOTS:
         QVERIFY(tracker->search().isFound());
         for (int i = 2; i < 60; ++i)
             see({-2, -1, 0}, 10 + 0.1 * i);
-        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Found && !tracker->wantsSearch());
+        QVERIFY(tracker->placeState() == PlaceState::Found && !tracker->wantsSearch());
         const Transformation2D moved(2, 0, 0); // the map, and the place with it
         VectorMap corrected;
         tracker->builder.map.forEach([&](const MapEdge &edge) { corrected.add(moved * EdgeRaw2D(edge)); });
@@ -347,7 +347,7 @@ private Q_SLOTS:
             see({-2 + 0.1 * (i - 60), -1, 0}, 10 + 0.1 * i);
         QVERIFY(i >= 70 && tracker->wantsToConfirm());
         tracker->search();
-        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Known);
+        QVERIFY(tracker->placeState() == PlaceState::Known);
     }
 
     void aBreakIsToldByWhatTheMapHidesMore() {
@@ -395,7 +395,7 @@ private Q_SLOTS:
             QVERIFY(tracker->trust() < 0.5);
         }
         QCOMPARE(tracker->builder.map.size(), walls);
-        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Sought);
+        QVERIFY(tracker->placeState() == PlaceState::Sought);
         QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
     }
 
@@ -427,7 +427,7 @@ private Q_SLOTS:
         for (int i = 6; i < 20; ++i)
             see(alike, {0.5, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
         QCOMPARE(tracker->builder.map.size(), walls);
-        QVERIFY(tracker->placeState() == ScanTracker::PlaceState::Sought);
+        QVERIFY(tracker->placeState() == PlaceState::Sought);
     }
 
     void trustIsAProbabilityWhateverComes() {

@@ -206,7 +206,7 @@ void PlotBoard::fillScene(Pane &pane) {
         if (names.isEmpty())
             firstUnit = unit;
         const Freshness &freshness = sampler_.freshness(curve.field);
-        scene.lines.push_back({curve.field, nameOf(curve.field), unit, curve.pen.color(), curve.pen.style(),
+        scene.lines.push_back({curve.field, nameOf(curve.field), unit, curve.pen,
                                curve.isRight.value_or(unit != firstUnit), nowOf(curve.field),
                                &sampler_.samples(curve.field), !freshness.isFresh(), freshness.text()});
         names.append(scene.lines.back().name);

@@ -29,11 +29,6 @@ std::optional<QLineF> onScreen(const QMatrix4x4 &matrix, const QSize &size, cons
     return QLineF(pixel(ends[0]), pixel(ends[1]));
 }
 
-QColor between(const QColor &from, const QColor &to, double part) {
-    const auto mix = [part](int a, int b) { return qRound(a + part * (b - a)); };
-    return {mix(from.red(), to.red()), mix(from.green(), to.green()), mix(from.blue(), to.blue())};
-}
-
 /// Of all colours from low to high.
 std::array<QColor, 256> colourTable() {
     const std::array<QColor, 5> stops = cloudColours();
@@ -41,7 +36,7 @@ std::array<QColor, 256> colourTable() {
     for (std::size_t i = 0; i < table.size(); ++i) {
         const double at = double(i) / double(table.size() - 1) * (stops.size() - 1);
         const std::size_t stop = std::min(std::size_t(at), stops.size() - 2);
-        table[i] = between(stops[stop], stops[stop + 1], at - double(stop));
+        table[i] = theme::mixed(stops[stop], stops[stop + 1], at - double(stop));
     }
     return table;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "gui/desktop/model/TopicSampler.h"
-#include "gui/desktop/view/ValueAxis.h"
 
 #include <QPolygonF>
 #include <optional>

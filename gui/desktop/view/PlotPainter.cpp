@@ -1,7 +1,6 @@
 #include "gui/desktop/view/PlotPainter.h"
 
 #include "gui/desktop/Theme.h"
-#include "gui/desktop/view/CurveLine.h"
 
 #include <QFontMetricsF>
 #include <array>
@@ -9,11 +8,6 @@
 
 namespace hermes::desktop {
 namespace {
-
-QColor mixed(const QColor &one, const QColor &other, double share) {
-    const auto mix = [share](int a, int b) { return int(a + share * (b - a)); };
-    return {mix(one.red(), other.red()), mix(one.green(), other.green()), mix(one.blue(), other.blue())};
-}
 
 QString timeText(double time_s, double step_s) {
     return QObject::tr("%1 s").arg(time_s, 0, 'f', step_s < 1 ? 1 : 0);
@@ -73,14 +67,14 @@ int PlotPainter::valueTicks() const {
 
 void PlotPainter::paintGrid(QPainter &painter) const {
     const QColor base = palette_.color(QPalette::Base), text = palette_.color(QPalette::Text);
-    painter.setPen(QPen(mixed(base, text, 0.12), 1));
+    painter.setPen(QPen(theme::mixed(base, text, 0.12), 1));
     const ChartFrame frame{chart_, 0, 1, scene_.left.least(), scene_.left.most()};
     for (const Tick &tick : ticks(scene_.left.least(), scene_.left.most(), valueTicks()))
         painter.drawLine(QLineF(chart_.left(), frame.y(tick.value), chart_.right(), frame.y(tick.value))
                              .translated(0, 0.5));
     for (const Tick &tick : ticks(time_.left_s(), time_.right_s(), 6))
         painter.drawLine(QLineF(xAt(tick.value), chart_.top(), xAt(tick.value), chart_.bottom()));
-    painter.setPen(QPen(mixed(base, text, 0.35), 1));
+    painter.setPen(QPen(theme::mixed(base, text, 0.35), 1));
     painter.drawRect(chart_);
 }
 
@@ -128,26 +122,28 @@ void PlotPainter::paintCurves(QPainter &painter) const {
     painter.save();
     painter.setClipRect(chart_);
     for (const PlotLine &line : scene_.lines) {
-        const ValueAxis &axis = line.isRight ? scene_.right : scene_.left;
-        const ChartFrame frame{chart_, line.now + time_.left_s(), line.now + time_.right_s(), axis.least(),
-                               axis.most()};
-        painter.setPen(QPen(line.colour, 0, line.style)); // 0: one pixel, the fastest
+        painter.setPen(QPen(line.pen.color(), 0, line.pen.style())); // 0: one pixel, the fastest
         int points = 0;
-        const QVector<QPolygonF> lines = curveLines(*line.samples, frame);
+        const QVector<QPolygonF> lines = curveLines(*line.samples, frameOf(line));
         for (const QPolygonF &part : lines)
             points += part.size();
         const bool isSparse = points < chart_.width();
         painter.setRenderHint(QPainter::Antialiasing, isSparse);
         if (isSparse)
-            painter.setPen(QPen(line.colour, 1.5, line.style));
+            painter.setPen(line.pen);
         for (const QPolygonF &part : lines)
             painter.drawPolyline(part);
-        painter.setPen(QPen(line.colour, 4, Qt::SolidLine, Qt::RoundCap));
+        painter.setPen(QPen(line.pen.color(), 4, Qt::SolidLine, Qt::RoundCap));
         for (const QPolygonF &part : lines)
             if (points < chart_.width() / 12 || part.size() == 1)
                 painter.drawPoints(part);
     }
     painter.restore();
+}
+
+ChartFrame PlotPainter::frameOf(const PlotLine &line) const {
+    const ValueAxis &axis = line.isRight ? scene_.right : scene_.left;
+    return {chart_, line.now + time_.left_s(), line.now + time_.right_s(), axis.least(), axis.most()};
 }
 
 bool PlotPainter::isCursorSeen() const {
@@ -171,11 +167,9 @@ void PlotPainter::paintCursor(QPainter &painter) const {
         const auto sample = sampleShown(line);
         if (!sample)
             continue;
-        const ValueAxis &axis = line.isRight ? scene_.right : scene_.left;
-        const ChartFrame frame{chart_, line.now + time_.left_s(), line.now + time_.right_s(), axis.least(),
-                               axis.most()};
+        const ChartFrame frame = frameOf(line);
         const QPointF point(frame.x(sample->x()), frame.y(sample->y()));
-        painter.setPen(QPen(line.colour, 6, Qt::SolidLine, Qt::RoundCap));
+        painter.setPen(QPen(line.pen.color(), 6, Qt::SolidLine, Qt::RoundCap));
         if (chart_.contains(point))
             painter.drawPoint(point);
     }
@@ -217,7 +211,7 @@ void PlotPainter::paintLegend(QPainter &painter) const {
     const int shown = shownNames();
     for (int i = 0; i < shown; ++i, row.translate(0, lineHeight_)) {
         const PlotLine &line = scene_.lines[std::size_t(i)];
-        painter.setPen(QPen(line.colour, 2, line.style));
+        painter.setPen(QPen(line.pen.color(), 2, line.pen.style()));
         painter.drawLine(QLineF(row.left(), row.center().y(), row.left() + 16, row.center().y()));
         const bool isLive = !line.isOld || time_.cursor_s() || time_.isHeld();
         painter.setPen(isLive ? text : grey);

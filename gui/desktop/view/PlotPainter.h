@@ -1,10 +1,10 @@
 #pragma once
 
 #include "gui/desktop/model/TopicSampler.h"
+#include "gui/desktop/view/CurveLine.h"
 #include "gui/desktop/view/TimeWindow.h"
 #include "gui/desktop/view/ValueAxis.h"
 
-#include <QColor>
 #include <QPainter>
 #include <QPalette>
 #include <vector>
@@ -15,8 +15,7 @@ namespace hermes::desktop {
 struct PlotLine {
     FieldId field;
     QString name, unit;
-    QColor colour;
-    Qt::PenStyle style = Qt::SolidLine;
+    QPen pen;
     bool isRight = false; ///< of the axis on the right
     double now = 0;       ///< the stamp at 0 s of the time window
     const Samples *samples = nullptr;
@@ -62,6 +61,7 @@ private:
     void paintLegend(QPainter &painter) const;
     QString unitsOf(bool isRight) const;
     int valueTicks() const;
+    ChartFrame frameOf(const PlotLine &line) const;
     double xAt(double time_s) const;
     bool isCursorSeen() const;
     QRectF cursorBox() const;

@@ -53,11 +53,12 @@ void PlotPane::fit(ValueAxis &axis, bool isRight) {
         return;
     std::optional<std::pair<double, double>> all;
     for (const PlotLine &line : scene_.lines) {
-        const auto range = extremes(*line.samples, line.now + time_.left_s(), line.now + time_.right_s());
-        if (line.isRight != isRight || !range)
+        if (line.isRight != isRight)
             continue;
-        all =
-            all ? std::pair(std::min(all->first, range->first), std::max(all->second, range->second)) : range;
+        const auto range = extremes(*line.samples, line.now + time_.left_s(), line.now + time_.right_s());
+        if (range)
+            all = all ? std::pair(std::min(all->first, range->first), std::max(all->second, range->second))
+                      : range;
     }
     if (all)
         axis.fit(all->first, all->second);

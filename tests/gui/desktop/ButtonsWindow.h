@@ -14,7 +14,7 @@ protected:
         robot_->startMotors();
     }
     void begin() {
-        file_ = robot_->path("gui.ini");
+        file_ = robot_->path("gui.json");
         QFile::remove(file_);
         client_ =
             std::make_unique<ConnectedClient>(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));

@@ -85,7 +85,7 @@ private Q_SLOTS:
 
     void plotsAndRobotsAreKept() {
         QTemporaryDir folder;
-        const QString file = folder.filePath("gui.ini"), address = daemon("motorcontrol")->address();
+        const QString file = folder.filePath("gui.json"), address = daemon("motorcontrol")->address();
         const std::vector<FieldId> plotted{{address, "odometry", "twist.vx"},
                                            {"127.0.0.1:1", "none", "x"}}; // who is away is kept too
         for (int start = 0; start < 2; ++start) {

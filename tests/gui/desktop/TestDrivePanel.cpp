@@ -451,11 +451,11 @@ private Q_SLOTS:
 
     void theLimitIsKept() {
         const QTemporaryDir folder;
-        open(folder.filePath("gui.ini"));
+        open(folder.filePath("gui.json"));
         QTRY_COMPARE(drive_->most().vx, 1.0);
         drive_->setLimit(0.3);
         window_->close();
-        open(folder.filePath("gui.ini"));
+        open(folder.filePath("gui.json"));
         QTRY_COMPARE(find<QLineEdit>("speedLimit")->text(), QString("0.30"));
     }
 

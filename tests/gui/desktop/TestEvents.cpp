@@ -268,7 +268,7 @@ private Q_SLOTS:
 
     void soundsCanBeSwitchedOff() {
         QTemporaryDir folder;
-        const QString file = folder.filePath("gui.ini");
+        const QString file = folder.filePath("gui.json");
         Fleet fleet;
         DriveControl drive(fleet);
         {

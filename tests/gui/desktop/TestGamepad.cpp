@@ -148,7 +148,7 @@ private Q_SLOTS:
         Fleet fleet;
         DriveControl still(fleet);
         const auto calibrated = [&](double at) {
-            MainWindow window(fleet, still, folder.filePath("gui.ini"));
+            MainWindow window(fleet, still, folder.filePath("gui.json"));
             window.show();
             VirtualGamepad pad;
             pad.move(SDL_CONTROLLER_AXIS_LEFTX, 0.3); // where its stick rests

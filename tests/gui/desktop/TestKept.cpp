@@ -19,7 +19,7 @@ class TestKept : public QObject {
 private Q_SLOTS:
     void init() {
         folder_ = std::make_unique<QTemporaryDir>();
-        file_ = folder_->filePath("gui.ini");
+        file_ = folder_->filePath("gui.json");
         Layouts layouts(file_);
         layouts.setValue("buttons", R"([{"name":"Home","steps":[{"method":"motor.stop"}]}])");
         QVERIFY(layouts.save().ok());

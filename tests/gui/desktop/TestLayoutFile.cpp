@@ -1,7 +1,7 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 
+#include <QJsonDocument>
 #include <QRandomGenerator>
-#include <QSettings>
 
 using namespace hermes;
 
@@ -11,7 +11,7 @@ class TestLayoutFile : public QObject {
 private Q_SLOTS:
     void init() {
         folder_ = std::make_unique<QTemporaryDir>();
-        file_ = folder_->filePath("new/gui.ini");
+        file_ = folder_->filePath("new/gui.json");
     }
 
     void anyFile_data() {
@@ -23,31 +23,38 @@ private Q_SLOTS:
         row("empty", QByteArray(), true);
         row("10 MB of noise", noise, false);
         row("a little noise", noise.left(1000), false);
-        row("10 MB of lines", QByteArray("[window]\n") + QByteArray("a=b\n").repeated(2 << 20), false);
-        const QByteArray own = "[window]\nlayout=x\n[kept]\na=";
-        row("nearly as large as it may be", own + QByteArray((1 << 20) - 20000, 'x'), true);
-        row("a byte larger", own + QByteArray((1 << 20) + 1 - own.size(), 'x'), false);
-        row("one long line", "[window]\na=" + QByteArray(1000000, 'x'), true);
+        const QByteArray own = "{\"layout\":\"x\",\"layouts\":[],\"kept\":{\"a\":\"", end = "\"}}";
+        row("10 MB of spaces", own + end + QByteArray(10 << 20, ' '), false);
+        row("nearly as large as it may be", own + QByteArray((1 << 20) - 20000, 'x') + end, true);
+        row("a byte larger", own + QByteArray((1 << 20) + 1 - own.size() - end.size(), 'x') + end, false);
+        row("cut", own + "x", false);
+        row("deep", "{\"layouts\":" + QByteArray(5000, '[') + "}", false);
         row("another program's", "[Desktop Entry]\nName=x\n", false);
+        row("JSON of another program", R"({"version":1,"settings":{}})", false);
+        row("a list", "[1,2]", false);
         row("a text", "Dear diary,\ntoday I drove.\n", false);
-        row("an open section", "[window]\nlayout=x\n[kept\na=b\n", false);
-        row("an open quote", "[window]\nlayout=\"x\n[kept]\na=\"b\"\n", false);
-        row("a quote in a key", "[window]\nlay\"out=x\n", false);
-        row("an open end", "[kept]\n[window]\nlayout=x\\\n", false);
-        row("types of Qt", "[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n", false);
         row("wrong types",
+            R"({"layout":7,"layouts":[5,{"name":[]},{"name":"x","plots":5}],"robots":[1],"kept":"x"})", true);
+        row("no list of layouts", R"({"layouts":{"a":1},"layout":"y"})", true);
+        row("a wrong state", R"({"layouts":[{"name":"x","geometry":"Advo","state":"AAAA","plots":{}}]})",
+            true);
+        const QByteArray longText = '"' + QByteArray("x").repeated(10000) + '"';
+        row("addresses",
+            "{\"layouts\":[],\"robots\":{\"addresses\":[\":\",\"robot:0\",\"http://x\",5,\"127.0.0.1:1\"," +
+                longText + "],\"names\":{\"127.0.0.1:1\":" + longText + "}}}",
+            true);
+        // As earlier versions kept it.
+        row("ini", "[window]\nlayout=x\n[kept]\na=b\n", true);
+        row("types of Qt in an ini", "[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n", false);
+        row("wrong types in an ini",
             "[window]\ngeometry=1, 2, 3\nstate=@Rect(1 2 3 4)\nlayout=7, 8\n"
             "[layouts]\nsize=many\n1\\name=a, b\n[robots]\naddresses=5\nnames=x\n"
             "chosen=1, 2\n",
             true);
-        row("more than there are",
+        row("more than there are in an ini",
             "[layouts]\nsize=2000000000\n1\\name=x\n1\\state=@ByteArray(\\0\\0\\0\\xff)\n"
             "1\\geometry=@ByteArray(\\x1\\xd9\\xd0)\n1\\plots={\\\"fields\\\":5}\n"
             "[window]\nlayout=y\n",
-            true);
-        row("addresses",
-            "[robots]\naddresses=:, robot:0, http://x, 127.0.0.1:1, " + QByteArray("x").repeated(10000) +
-                "\nnames=127.0.0.1:1, " + QByteArray("w").repeated(10000) + "\n",
             true);
     }
 
@@ -60,7 +67,8 @@ private Q_SLOTS:
             LayoutWindow one(file_);
             QVERIFY(one.isWhole());
             QVERIFY(one.dock("daemons")->isVisible());
-            QCOMPARE(one.notice().isEmpty(), isOurs && !bytes.contains("1\\state"));
+            QCOMPARE(one.notice().isEmpty(),
+                     isOurs && !bytes.contains("name\":\"x") && !bytes.contains("1\\state"));
             QVERIFY(one.fleet.robots().size() <= 2);
             one.saveAs("mine");
             QVERIFY(one.isWhole());
@@ -76,19 +84,19 @@ private Q_SLOTS:
         QRandomGenerator random(newSeed());
         { LayoutWindow(file_, {"127.0.0.1:1"}).window->close(); }
         QVERIFY(Layouts(file_).damage().isEmpty());
-        QSettings file(file_, QSettings::IniFormat);
-        const QStringList keys{"layouts/1/state", "layouts/1/geometry"};
-        const QList<QByteArray> good{file.value(keys[0]).toByteArray(), file.value(keys[1]).toByteArray()};
+        const QJsonObject good = QJsonDocument::fromJson(content()).object();
         for (int round = 0; round < 40; ++round) {
-            const int which = round % 2;
-            QByteArray bytes = good[which];
+            const QString key = round % 2 ? "geometry" : "state";
+            QJsonObject layout = good["layouts"][0].toObject();
+            QByteArray bytes = QByteArray::fromBase64(layout[key].toString().toLatin1());
             const int place = random.bounded(bytes.size());
             bytes[place] = char(bytes[place] + 1 + random.bounded(255));
             if (random.bounded(4) == 0)
                 bytes.truncate(random.bounded(bytes.size()));
-            file.setValue(keys[which], bytes);
-            file.setValue(keys[1 - which], good[1 - which]);
-            file.sync();
+            layout[key] = QString::fromLatin1(bytes.toBase64());
+            QJsonObject damaged = good;
+            damaged["layouts"] = QJsonArray{layout};
+            write(QJsonDocument(damaged).toJson());
             LayoutWindow one(file_, {"127.0.0.1:1"});
             QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
             VERIFY_CONTAINS(one.notice(), "damaged");
@@ -180,10 +188,10 @@ private Q_SLOTS:
             device.window->close();
             QVERIFY(QFileInfo::exists("/dev/null") && !QFileInfo("/dev/null").isFile());
         }
-        file_ = folder_->filePath("gui.ini");
+        file_ = folder_->filePath("gui.json");
         write({});
         {
-            LayoutWindow below(file_ + "/gui.ini", {"127.0.0.1:1"}); // where no folder can be
+            LayoutWindow below(file_ + "/gui.json", {"127.0.0.1:1"}); // where no folder can be
             TRY_CONTAINS(below.notice(), "could not be written");
         }
         LayoutWindow full(file_, {"127.0.0.1:1"});
@@ -200,6 +208,26 @@ private Q_SLOTS:
         full.saveAs("when there is room");
         QTRY_VERIFY(Layouts(file_).names().contains("when there is room"));
         QVERIFY(Layouts(file_).names().contains("more")); // the window had it
+    }
+
+    void iniOfBeforeIsTakenOver() {
+        const QString ini = folder_->filePath("gui.ini");
+        put(ini, "[window]\nlayout=Bench\n[layouts]\nsize=1\n1\\name=Bench\n1\\plots=\"{\\\"panes\\\":[]}\"\n"
+                 "[robots]\naddresses=127.0.0.1:1, 127.0.0.1:2\nnames=127.0.0.1:1, Blue\nchosen=127.0.0.1:1\n"
+                 "[kept]\nescape=true\n");
+        file_ = folder_->filePath("gui.json");
+        const Layouts before(file_);
+        QCOMPARE(before.problem(), QString());
+        QCOMPARE(before.current(), QString("Bench"));
+        QCOMPARE(before.layout().plots, QJsonObject({{"panes", QJsonArray()}}));
+        QCOMPARE(before.robots().addresses, QStringList({"127.0.0.1:1", "127.0.0.1:2"}));
+        QCOMPARE(before.robots().names.value("127.0.0.1:1"), QString("Blue"));
+        QCOMPARE(before.value("escape"), QString("true"));
+        const QByteArray kept = contentOf(ini);
+        LayoutWindow(file_).window->close();
+        QTRY_VERIFY(QFileInfo::exists(file_));
+        QCOMPARE(Layouts(file_).robots(), before.robots());
+        QCOMPARE(contentOf(ini), kept); // as it was
     }
 
     void linkStaysOne() {

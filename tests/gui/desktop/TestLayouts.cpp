@@ -9,7 +9,7 @@ class TestLayouts : public QObject {
 private Q_SLOTS:
     void init() {
         folder_ = std::make_unique<QTemporaryDir>();
-        file_ = folder_->filePath("new/gui.ini");
+        file_ = folder_->filePath("new/gui.json");
     }
 
     void savedSwitchedAndDeletedByHand() {

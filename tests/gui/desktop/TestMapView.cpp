@@ -189,7 +189,7 @@ private Q_SLOTS:
     }
 
     void layersAreKept() {
-        const QString file = robot_->path("gui.ini");
+        const QString file = robot_->path("gui.json");
         for (const bool isFirst : {true, false}) {
             Fleet fleet;
             DriveControl drive(fleet);

@@ -61,7 +61,7 @@ private Q_SLOTS:
         QCOMPARE(int(lines(0).size()), 2);
         QVERIFY(!lines(0)[0].isRight);
         QVERIFY(lines(0)[1].isRight); // volts are no speed
-        QVERIFY(lines(0)[0].colour != lines(0)[1].colour);
+        QVERIFY(lines(0)[0].pen.color() != lines(0)[1].pen.color());
 
         panel_->findChild<QAction *>("addPane")->trigger();
         QCOMPARE(int(panel_->board().panes().size()), 2);
@@ -92,7 +92,7 @@ private Q_SLOTS:
 
     void setsAreKept() {
         QTemporaryDir folder;
-        const QString file = folder.filePath("gui.ini");
+        const QString file = folder.filePath("gui.json");
         for (int start = 0; start < 3; ++start) {
             MainWindow window(window_->fleet, window_->drive, file);
             window.show();

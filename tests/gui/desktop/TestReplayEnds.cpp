@@ -184,7 +184,7 @@ private Q_SLOTS:
         const quint16 port = end == "slow" ? link.port() : robot.port("velodynelogger");
         ChildProcess program;
         program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
-                      {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.ini")});
+                      {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.json")});
         QVERIFY(program.waitForStarted());
         const auto xdotool = [](const QString &words) {
             QProcess tool;

@@ -51,7 +51,7 @@ class TestSlowDisk : public QObject {
 private Q_SLOTS:
     void init() {
         folder_ = std::make_unique<QTemporaryDir>();
-        file_ = folder_->filePath("gui.ini");
+        file_ = folder_->filePath("gui.json");
     }
 
     void cleanup() { isSlow = false; }

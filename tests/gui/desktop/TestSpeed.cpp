@@ -211,7 +211,7 @@ private Q_SLOTS:
             auto time = runningTimer();
             program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
                           {"--connect", QString("127.0.0.1:%1").arg(daemon.serverPort()), "--layout",
-                           folder.filePath("gui.ini")});
+                           folder.filePath("gui.json")});
             QVERIFY(daemon.waitForNewConnection(10000));
             QTcpSocket *const client = daemon.nextPendingConnection();
             QVERIFY(client->waitForReadyRead(10000));
@@ -231,7 +231,7 @@ private Q_SLOTS:
         const quint16 port = robot.start("mapsource", {"rate_hz=1000", "points=100"});
         ChildProcess program;
         program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
-                      {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.ini")});
+                      {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.json")});
         QVERIFY(program.waitForStarted());
         ConnectedClient client(QString("127.0.0.1:%1").arg(port));
         quint64 seen = 0;

@@ -9,7 +9,7 @@ class TestTwoWindows : public QObject {
 private Q_SLOTS:
     void initTestCase() {
         folder_ = std::make_unique<QTemporaryDir>();
-        file_ = folder_->filePath("new/gui.ini");
+        file_ = folder_->filePath("new/gui.json");
         const auto one = opened();
         QTest::qWait(1500); // until all is kept as a window begins with it
         one->window->close();
@@ -18,7 +18,7 @@ private Q_SLOTS:
 
     void init() {
         folder_ = std::make_unique<QTemporaryDir>();
-        file_ = folder_->filePath("gui.ini");
+        file_ = folder_->filePath("gui.json");
         put(file_, usual_);
     }
 

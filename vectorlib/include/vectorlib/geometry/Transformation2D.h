@@ -71,6 +71,10 @@ public:
         r.translation_ = -r.rotate(translation_);
         return r;
     }
+    /// Whether it shifts by more than `metres`, or turns by more than `radians`.
+    bool exceeds(double metres, double radians) const {
+        return translation_.norm() > metres || std::abs(alpha()) > radians;
+    }
     bool isFinite() const { return translation_.isFinite() && std::isfinite(cos_) && std::isfinite(sin_); }
 
 private:

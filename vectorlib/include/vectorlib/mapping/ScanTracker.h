@@ -10,7 +10,9 @@
 #include "vectorlib/mapping/CounterEvidence.h"
 #include "vectorlib/mapping/DriveBreak.h"
 #include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/mapping/PlaceKnowledge.h"
 #include "vectorlib/mapping/PoseTrust.h"
+#include "vectorlib/mapping/ScanLocator.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/VectorMap.h"
@@ -89,29 +91,24 @@ public:
     /// Whether the map grows while the place in it is known.
     void grow(bool grows) {
         grows_ = grows;
-        setPlace(place_);
+        builder.settings.grow = maps();
     }
     /// Puts the sensor somewhere, standing still: the place is known. `against`: what is known to speak
     /// against it.
     void place(const Pose2D &pose, double against = 0);
     /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree.
     void claim(const Pose2D &pose);
+    /// The same for a place that a search found; in a map that grows it is to be confirmed.
+    void find(const Pose2D &pose, double against = 0);
     /// The place may be wrong: nothing is mapped until five scans in a row agree with it.
     void doubt() {
-        agreed_ = 0;
-        if (place_ == PlaceState::Known && grows_ && !builder.map.isEmpty())
-            setPlace(PlaceState::Told);
+        if (grows_ && !builder.map.isEmpty())
+            place_.doubt();
     }
     /// The place in the map is not known: scans count as lost until it is found or told.
     void seek();
     /// What is known of the place in the map. Nothing is mapped but where it is Known.
-    enum class PlaceState {
-        Known,
-        Found, ///< by a search: a second one, some way on, makes it known; nearby, the next scan that agrees
-        Told,  ///< by somebody
-        Sought
-    };
-    PlaceState placeState() const { return place_; }
+    PlaceState placeState() const { return place_.state(); }
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
     Relocalized relocalize(bool apply);
     /// Whether a search of the whole map would help: enough scans in a row were lost, the place is sought, or
@@ -142,12 +139,10 @@ public:
     /// or skipped, or that the map had nothing to compare with.
     double trust() const {
         const auto features = trustFeatures();
-        return features
-                   ? poseTrust(*features) * belief() * (grows_ && place_ != PlaceState::Known ? claimed : 1)
-                   : 0;
+        return features ? poseTrust(*features) * belief() * (grows_ && !place_.isKnown() ? claimed : 1) : 0;
     }
     /// What speaks against the pose in a finished map, as of CounterEvidence; 0 while the map grows.
-    double against() const { return builder.settings.grow ? 0 : evidence_.value(); }
+    double against() const { return maps() ? 0 : evidence_.value(); }
     /// Whether little does.
     bool agrees() const { return against() < 0.5 * settings_.mostAgainst; }
     /// Whether that is too much for the pose to be right: the scan then counts as lost.
@@ -155,133 +150,67 @@ public:
     /// What it goes by; nothing where it is 0 anyway.
     std::optional<PoseTrust::Features> trustFeatures() const;
     /// The frame of the odometry in that of the map, by the last scan that had any.
-    std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
+    std::optional<Transformation2D> odometryFrame() const { return locate_.odometryFrame(); }
     /// The way by the scans that were matched and by the odometry, while the two contradict each other.
     const std::optional<OdometryCheck::Ways> &contradiction() const { return check_.contradiction(); }
     /// What the drive tells of the scanner.
     const ScannerCheck &scanner() const { return scanner_; }
     /// Whether the last scan is straight; else it is in doubt and stays out of the map.
-    bool isStraight() const { return straight_; }
-    const MotionModel &motion() const { return motion_; }
+    bool isStraight() const { return located_.isStraight; }
+    const MotionModel &motion() const { return locate_.motion(); }
     const ScanTrackerCounts &counts() const { return counts_; }
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
-    static constexpr double straight_m = 0.01; // a scan bent by no more is straight
-    static constexpr int mostTries = 3, enoughToAgree = 5;
     static constexpr double claimed = 0.5; // trust of a place that is not known yet, for that of one that is
     // Below that reliability the walls leave a direction open; that of a pose that the odometry tells there.
     static constexpr double openReliability = 0.1, coveredReliability = 0.7;
     static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
-    static constexpr std::int64_t knownForLong = 10;        // scans
-    static constexpr double close_m = 0.2, close_rad = 0.2; // between two scans
-    static constexpr double odometryErrs = 2, leastErr_m = 0.01,
-                            errsByWay = 0.15; // deviations; metres, share
     // Two scans so close together must show about the same: less than this share of the points is suspicious.
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
     static constexpr std::uint64_t eachNth = 5;                        // scan of a growing map is judged
     static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
     static constexpr double fewKnown = 0.6; // of the points, where no odometry tells the pose
-    // Between the searches that make a place known, and how well they must agree.
-    static constexpr double confirmed_m = 1, confirmed_rad = 0.6, same_m = 0.5, same_rad = 0.17;
-    static constexpr double bend_m = 2, bend_rad = 0.5; // so far a growing map may bend
-    static constexpr double leap_m = 0.1, leap_rad = 0.1;
-    static constexpr double muchBetter = 1.02; // a score, where the odometry tells otherwise
 
-    // Where the sensor is thought to be, how it moves, and how sure that is.
-    struct Guess {
-        Pose2D pose;
-        Twist2D twist;
-        bool well = false; // expected
-        bool byOdometry = false;
-        std::optional<OdometryModel::Deviations> deviations;
-    };
-    // How a scan was found by a guess.
-    struct Found {
-        bool straight = true, again = false; // it had to be straightened again
-        double score = -1;                   // matched length less what lies apart, metres; below 0: lost
-    };
-
-    // False when the scan is in doubt: it stays bent. Where the odometry loses it, or bends it or leaps and
-    // its points have times, the scan is sought where the motion so far leads, too, and the better place
-    // counts.
-    bool locate(TimedScan &scan, double begin, double end);
-    // How far the pose that was found is from where the odometry puts it, along a direction that walls known
-    // for long leave open, where that is more than it errs: what tells the pose there may move by itself.
-    std::optional<Vector2D<double>> disputed(const Guess &guess);
-    // Finds the scan by the odometry and by walls that are known for long.
-    Found findByOdometry(TimedScan &scan, const Guess &guess);
-    // Straightens the scan by the velocity that is guessed, and again by what its points say of it then.
-    Found find(TimedScan &scan, const Guess &guess);
-    bool isStraightened(const TimedScan &scan) const {
-        return settings_.compensateMotion && !scan.seconds.empty();
-    }
-    TwistCorrection::Result twistError(const TimedScan &scan);
-    void check(const OdometryTrack &track, double stamp);
+    // Whether the next scan enters the map.
+    bool maps() const { return grows_ && place_.isKnown(); }
+    bool isMatched() const { return builder.report().outcome == ScanReport::Outcome::Matched; }
+    void setUp(TimedScan &scan);
     // The motion since a pose, where the odometry and the scan before tell it, each on its own.
-    void checkScanner(const Transformation2D &before, double stamp);
-    // What speaks against the pose that was found.
-    void weigh(const TimedScan &scan);
+    void checkScanner(const Transformation2D &before, const std::optional<double> &lastStamp, double stamp);
     // A scan that too much speaks against, or whose place is sought, is lost.
-    void judge(const TimedScan &scan);
-    // The map does not go on: the place is sought, nearby first, as the growing map may be bent.
-    void breakOff();
+    void judge(const TimedScan &scan, const std::optional<double> &lastStamp);
     // In a growing map: a scan that the one before does not show, where the two were taken close together.
     void judgeBreak(const TimedScan &scan);
+    void breakOff();
+    // In a finished map: what speaks against the pose that was found.
+    void weigh(const TimedScan &scan, const std::optional<double> &lastStamp);
+    void checkOdometry(const TimedScan &scan);
     void followOpen(const TimedScan &scan);
-    void setPlace(PlaceState place);
-    // A place that was told, or found nearby, becomes known when scans agree with it.
-    void settle();
-    // What is found in a map that is not complete may lie outside of it: a second search, some way on,
-    // decides.
-    void confirm(const Relocalized &again);
     double belief() const {
         return std::min(open_.belief(), std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0));
     }
-    static bool isFar(const Transformation2D &way, double metres, double radians) {
-        return way.translation().norm() > metres || std::abs(way.alpha()) > radians;
-    }
-    // The two guesses differ by more than the speed of a robot changes between two scans.
-    static bool leaps(const Guess &a, const Guess &b, double seconds);
-    void tellHowSure(const Guess &guess);
-    // Searches at least as widely as it is set up.
-    static TrackingSettings poorly(const TrackingSettings &well);
     bool isByScan() const {
-        return isWellExpected_ && (builder.isExpectedByScan() || builder.isPassedOver());
-    }
-    bool isMomentAgo(double before, double stamp) const {
-        return stamp > before && stamp - before <= settings_.moment;
+        return located_.isWellExpected && (builder.isExpectedByScan() || builder.isPassedOver());
     }
     void count(const ScanReport &report);
 
     ScanTrackerSettings settings_;
-    std::vector<Vector2D<float>> raw_; // the points as they were measured
-    float middle_ = 0;                 // of their times
-    std::vector<LineSegment2D<double>> known_;
-    MotionModel motion_;
-    OdometryModel odometry_;
+    ScanLocator locate_;
+    LocatedScan located_; // the last scan
     OdometryCheck check_;
     ScannerCheck scanner_;
     std::uint64_t epoch_ = 0; // of the odometry that is checked
     ScanTrackerCounts counts_;
     PlaceSearch search_;
-    std::vector<Vector2D<float>> points_; // of the last scan, at one moment
-    TwistCorrection correct_;
-    std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
-    bool byOdometry_ = false, straight_ = true, isWellExpected_ = false; // the last scan
-    bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false;     // since the last scan, and before it
+    std::vector<Vector2D<float>> points_;                            // of the last scan, at one moment
+    bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false; // since the last scan, and before it
     int lostInARow_ = 0;
-    PlaceState place_ = PlaceState::Known;
+    PlaceKnowledge place_;
     bool grows_ = true;
-    Transformation2D guessed_, guessedWay_; // the last scan, and from the one before
-    bool isOdometryGuess_ = false, isDisputed_ = false;
     DriveBreak break_;
     PlaceFitter withoutPeople_; // they are drawn, too: short walls do not speak against a pose
     OpenDirection open_;
-    bool isBent_ = false;      // what contradicts the place may be the growing map itself: it is found nearby
-    int agreed_ = 0;           // scans in a row with the place
-    Transformation2D foundAt_; // where it was searched last
     CounterEvidence evidence_;
     Clock::time_point nextSearch_;
 };

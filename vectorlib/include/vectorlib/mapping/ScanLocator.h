@@ -1,0 +1,118 @@
+#pragma once
+
+#include "vectorlib/Body.h"
+#include "vectorlib/correspondence/CorrespondenceTracker.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/mapping/TimedScan.h"
+#include "vectorlib/motion/MotionModel.h"
+#include "vectorlib/motion/Odometry.h"
+#include "vectorlib/motion/OpenDirection.h"
+
+#include <optional>
+#include <vector>
+
+namespace vectorlib {
+
+/// Where a scan was expected, and how it was found from there.
+struct LocatedScan {
+    Transformation2D expected;    ///< pose in the map, by the odometry or by the motion so far
+    Transformation2D way;         ///< to it from the pose of the scan before
+    bool isOdometryKnown = false; ///< the odometry tells that pose
+    bool byOdometry = false;      ///< the scan was found from there, and not by the motion so far
+    bool isWellExpected = false;  ///< so, or soon after the scan before
+    bool isDisputed = false;      ///< the scans tell another way along open walls: the odometry counts
+    bool isStraight = true;       ///< else the scan is in doubt, and stays bent
+};
+
+/// Finds scans in a map from where they are expected, and straightens them on the way. Where the odometry
+/// loses a scan, or bends it or leaps and its points have times, the scan is sought where the motion so far
+/// leads, too, and the better place counts.
+class ScanLocator {
+public:
+    bool compensateMotion = true; ///< straighten scans that were taken while the sensor moved
+    TrackingSettings tracking;    ///< where the pose is well expected
+    /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
+    double moment = 0.5;
+
+    /// The scan's points become those of one moment, the middle of its time, and its stamp this moment.
+    LocatedScan operator()(MapBuilder &builder, TimedScan &scan, OpenDirection &open);
+    /// The scan was taken at that pose after all.
+    void update(const Pose2D &pose, const TimedScan &scan);
+    /// The sensor was put somewhere, standing still.
+    void place(const Pose2D &pose);
+    /// The map was made anew: what was in it lies elsewhere.
+    void move(const Transformation2D &moved) {
+        motion_.move(moved);
+        odometry_.move(moved);
+    }
+    /// The sensor's pose in the frame of the robot.
+    void setMount(const Pose2D &sensor) { odometry_.setMount(sensor); }
+
+    const MotionModel &motion() const { return motion_; }
+    /// The frame of the odometry in that of the map, by the last scan that had any.
+    std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
+    /// Of the scan before, unless the sensor was put elsewhere since; seconds.
+    const std::optional<double> &lastStamp() const { return lastStamp_; }
+
+private:
+    static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
+    static constexpr double straight_m = 0.01; // a scan bent by no more is straight
+    static constexpr int mostTries = 3;
+    // Below that reliability the walls leave a direction open.
+    static constexpr double openReliability = 0.1;
+    static constexpr std::int64_t knownForLong = 10;        // scans
+    static constexpr double close_m = 0.2, close_rad = 0.2; // between two scans
+    static constexpr double odometryErrs = 2, leastErr_m = 0.01,
+                            errsByWay = 0.15; // deviations; metres, share
+    static constexpr double leap_m = 0.1, leap_rad = 0.1;
+    static constexpr double muchBetter = 1.02; // a score, where the odometry tells otherwise
+
+    // Where the sensor is thought to be, how it moves, and how sure that is.
+    struct Guess {
+        Pose2D pose;
+        Twist2D twist;
+        bool well = false; // expected
+        bool byOdometry = false;
+        std::optional<OdometryModel::Deviations> deviations;
+    };
+    // How a scan was found by a guess.
+    struct Found {
+        bool straight = true, again = false; // it had to be straightened again
+        double score = -1;                   // matched length less what lies apart, metres; below 0: lost
+    };
+
+    // Straightens the scan by the velocity that is guessed, and again by what its points say of it then.
+    Found find(MapBuilder &builder, TimedScan &scan, const Guess &guess);
+    // The same by the odometry, and by walls that are known for long.
+    Found findByOdometry(MapBuilder &builder, TimedScan &scan, const Guess &guess);
+    // How far the pose that was found is from where the odometry puts it, along a direction that walls known
+    // for long leave open, where that is more than it errs: what tells the pose there may move by itself.
+    std::optional<Vector2D<double>> disputed(MapBuilder &builder, const Guess &guess, double way,
+                                             double slip) const;
+    TwistCorrection::Result twistError(const MapBuilder &builder, const TimedScan &scan);
+    void tellHowSure(MapBuilder &builder, const Guess &guess) const;
+    // Searches at least as widely as it is set up.
+    static TrackingSettings poorly(const TrackingSettings &well);
+    // The two guesses differ by more than the speed of a robot changes between two scans.
+    static bool leaps(const Guess &a, const Guess &b, double seconds);
+    bool isStraightened(const TimedScan &scan) const { return compensateMotion && !scan.seconds.empty(); }
+    bool isLastWithin(double seconds, double stamp) const {
+        return lastStamp_ && stamp > *lastStamp_ && stamp - *lastStamp_ <= seconds;
+    }
+
+    std::vector<Vector2D<float>> raw_; // the points as they were measured
+    float middle_ = 0;                 // of their times
+    std::vector<LineSegment2D<double>> known_;
+    TwistCorrection correct_;
+    MotionModel motion_;
+    OdometryModel odometry_;
+    std::optional<double> lastStamp_;
+};
+
+} // namespace vectorlib
+
+#include VECTORLIB_BODIES("vectorlib/src/mapping/ScanLocator.cpp")
