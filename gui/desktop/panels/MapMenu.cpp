@@ -16,7 +16,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestPath = 120, mostMaps = 200;
+constexpr int longestPath = 120, maxMaps = 200;
 
 QDialog *makeDialog(QWidget *parent, const QString &title) {
     auto *const dialog = new QDialog(parent);
@@ -155,7 +155,7 @@ void MapMenu::open() {
         maps->setRootIsDecorated(false);
         int count = 0;
         for (const QJsonValue &map : list["maps"].toArray()) {
-            if (++count > mostMaps)
+            if (++count > maxMaps)
                 break;
             const auto time = timeOf(map["modified"].toDouble());
             const QString kind = map["journal"].toBool() ? tr(" (a drive, goes on)") : QString();
