@@ -123,7 +123,7 @@ std::vector<LogMessage> Log::tail(int count) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     constexpr qint64 besideText = 100; // of a record, as JSON
     size_t first = records_.size();
-    for (qint64 size = 0; first > 0 && size < mostTailBytes && int(records_.size() - first) < count; --first)
+    for (qint64 size = 0; first > 0 && size < maxTailBytes && int(records_.size() - first) < count; --first)
         size += records_[first - 1].text.size() + besideText;
     std::vector<LogMessage> last;
     for (size_t i = first; i < records_.size(); ++i)

@@ -29,7 +29,7 @@ struct LogRecord {
 /// after captureQtMessages().
 class Log {
 public:
-    static constexpr qint64 mostTailBytes = 1 << 20; ///< that tail() gives, to write more takes too long
+    static constexpr qint64 maxTailBytes = 1 << 20; ///< that tail() gives, to write more takes too long
 
     static Log &instance();
 

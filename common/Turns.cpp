@@ -13,7 +13,7 @@ namespace {
 
 constexpr double longestTurn_s = 0.001;
 constexpr double rest_s = 0.002;
-constexpr int mostKnown = 10000;
+constexpr int maxKnown = 10000;
 
 } // namespace
 
@@ -68,7 +68,7 @@ void Turns::run() {
 }
 
 void Turns::noteStep(QObject *owner, double end) {
-    if (lastSteps_.size() > mostKnown)
+    if (lastSteps_.size() > maxKnown)
         lastSteps_.clear();
     lastSteps_.insert(owner, {owner, end});
 }

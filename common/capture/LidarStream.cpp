@@ -8,7 +8,7 @@ namespace hermes {
 namespace {
 
 /// Noise that looks like packets of ever more sensors must not fill the memory.
-constexpr std::size_t mostSensors = 16;
+constexpr std::size_t maxSensors = 16;
 constexpr std::int64_t anew_ns = 1000000000; ///< a sensor that begins anew has been silent for longer
 
 bool isOf(const SensorChoice::Sensor &sensor, const Datagram &datagram) {
@@ -51,7 +51,7 @@ std::size_t SensorChoice::find(const Datagram &packet) {
         if (isOf(sensors_[i], packet))
             return i;
     }
-    if (sensors_.size() < mostSensors)
+    if (sensors_.size() < maxSensors)
         sensors_.emplace_back();
     const std::size_t last = sensors_.size() - 1;
     const std::size_t place = taken_ == last ? last - 1 : last;

@@ -35,7 +35,7 @@ CodecItem readAll(const Codec &codec, const CodecFrame &frame, bool withDigest) 
 }
 
 constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
-constexpr qint64 mostOfALine = 2 << 20;     // the same, and one more; then they are lost
+constexpr qint64 maxOfALine = 2 << 20;      // the same, and one more; then they are lost
 
 } // namespace
 
@@ -189,7 +189,7 @@ void Channel::receive(const QByteArray &bytes) {
             continue;
         }
         if (isLine() &&
-            waitingBytes_ > mostOfALine) { // it cannot be told to wait; who wants an answer repeats
+            waitingBytes_ > maxOfALine) { // it cannot be told to wait; who wants an answer repeats
             ++overruns_;
             continue;
         }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double longestLag_s = 0.006; // of what is written; one frame more is then added
 constexpr double wakeBefore_s = 0.004; // so that the line does not fall silent
-constexpr qint64 mostUnsent = 600;     // where the rate is not known
+constexpr qint64 maxUnsent = 600;      // where the rate is not known
 constexpr double longestSleep_s = 0.005, longestWait_s = 3600;
 
 } // namespace
@@ -61,7 +61,7 @@ bool PacedWriter::mayWrite(double now) const {
     if (!carrier_.isOpen())
         return false;
     return link_.bytesPerSecond() > 0 ? lag(now) <= longestLag_s
-                                      : carrier_.bytesToWrite() + carrier_.bytesInSystem() < mostUnsent;
+                                      : carrier_.bytesToWrite() + carrier_.bytesInSystem() < maxUnsent;
 }
 
 void PacedWriter::schedule(double now) {

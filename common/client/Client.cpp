@@ -14,9 +14,9 @@ namespace {
 // A daemon that is slow to agree changes its framing nevertheless: there is no going on without its answer.
 constexpr std::chrono::hours longestAgreement{24};
 
-constexpr int mostOfBatch = 1000; // each of its messages takes far more memory than it has bytes
+constexpr int maxOfBatch = 1000; // each of its messages takes far more memory than it has bytes
 
-constexpr std::size_t mostEarly = 16; // messages that wait for the reply to their subscription
+constexpr std::size_t maxEarly = 16; // messages that wait for the reply to their subscription
 
 constexpr std::chrono::seconds lookPeriod{5};
 
@@ -295,10 +295,10 @@ void Client::onClosed(const QString &reason) {
 }
 
 void Client::onMessage(const QJsonValue &message, const WireValue &topicData) {
-    if (const int size = message.toArray().size(); size > mostOfBatch)
+    if (const int size = message.toArray().size(); size > maxOfBatch)
         return refuse(
             {ErrorCode::OverLimit,
-             QStringLiteral("a batch of %1 messages, expected %2 at most").arg(size).arg(mostOfBatch)});
+             QStringLiteral("a batch of %1 messages, expected %2 at most").arg(size).arg(maxOfBatch)});
     for (const RpcMessage &one : readFrame(message).messages) {
         if (const auto *response = std::get_if<RpcResponse>(&one))
             onResponse(*response);
@@ -350,7 +350,7 @@ void Client::onNotification(const RpcRequest &notification, const WireValue &dat
     const QString topicName = params.value(QStringLiteral("topic")).toString();
     if (const auto handle = isTopic ? handleOf(id, topicName) : std::nullopt)
         return deliver(*handle, params, data);
-    if (isTopic && channel_->isLossy() && subscribes() && early_.size() < mostEarly) {
+    if (isTopic && channel_->isLossy() && subscribes() && early_.size() < maxEarly) {
         early_.push_back({id, params, data});
         return;
     }

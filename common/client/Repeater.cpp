@@ -18,7 +18,7 @@ constexpr int usualReplyBytes = 100;
 // seven.
 constexpr int hurriedRepeats = 9;
 constexpr double leastHurriedPeriod_s = 0.003;
-constexpr int mostFraming = 10; // bytes around a short message
+constexpr int maxFraming = 10; // bytes around a short message
 
 } // namespace
 
@@ -35,7 +35,7 @@ void Repeater::add(Channel &channel, qint64 id, const Sent &request, Channel::Ra
     const bool isHurried = rank == Channel::Rank::Urgent && bytes <= SerialLink::largestFrame;
     const double now = monotonicNow();
     const double wait_s =
-        isHurried ? std::max(leastHurriedPeriod_s, onLine_s(bytes + mostFraming)) : period(bytes);
+        isHurried ? std::max(leastHurriedPeriod_s, onLine_s(bytes + maxFraming)) : period(bytes);
     requests_.insert(id, {request, rank, now, now + wait_s, wait_s, isHurried ? hurriedRepeats : 0, false});
     if (!timer_.isActive() || now + wait_s < wakesAt_)
         wakeAt(now + wait_s);

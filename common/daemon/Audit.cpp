@@ -12,7 +12,7 @@ namespace hermes {
 namespace {
 
 constexpr int longestParams = 2048; // bytes in a line; to write more takes long, too
-constexpr int mostRepeated = 100;   // clients and methods
+constexpr int maxRepeated = 100;    // clients and methods
 constexpr std::chrono::seconds period{1};
 constexpr double longestPeriod_s = 60, day_s = 86400;
 constexpr double leastBytes = 65536; // that are written at once
@@ -38,7 +38,7 @@ void takeFrom(int &left, const QJsonValue &value) {
 
 /// The beginnings of what it holds; of an object what is short comes before lists.
 QJsonValue shortened(const QJsonValue &value, int &left) {
-    constexpr int longestAuditText = 200, mostMembers = 8;
+    constexpr int longestAuditText = 200, maxMembers = 8;
     left -= 1;
     if (value.isString()) {
         const QString text = value.toString(), begin = text.left(std::clamp(left, 0, longestAuditText));
@@ -48,7 +48,7 @@ QJsonValue shortened(const QJsonValue &value, int &left) {
     if (value.isArray()) {
         const QJsonArray array = value.toArray();
         QJsonArray result;
-        while (result.size() < std::min(array.size(), mostMembers) && left > 0)
+        while (result.size() < std::min(array.size(), maxMembers) && left > 0)
             result.append(shortened(array.at(result.size()), left));
         if (result.size() < array.size())
             result.append(QStringLiteral("... (%1)").arg(array.size()));
@@ -103,7 +103,7 @@ QString Audit::usualFolder() {
 void Audit::open(const QString &folder, const QString &name, qint64 bytes, int files) {
     writeRepeated(true);
     file_ = folder.isEmpty() ? nullptr : std::make_unique<AuditFile>(folder, name, bytes, files);
-    mostBytes_ = allowance_ = std::max(leastBytes, double(bytes) * files / 4);
+    maxBytes_ = allowance_ = std::max(leastBytes, double(bytes) * files / 4);
     filled_ = monotonicNow();
 }
 
@@ -117,7 +117,7 @@ bool Audit::isFlooded() const {
 
 void Audit::fillAllowance() {
     const double now = monotonicNow();
-    allowance_ = std::min(mostBytes_, allowance_ + (now - filled_) * mostBytes_ / day_s);
+    allowance_ = std::min(maxBytes_, allowance_ + (now - filled_) * maxBytes_ / day_s);
     filled_ = now;
 }
 
@@ -145,7 +145,7 @@ void Audit::note(const Call &call, const Command &command, const QJsonValue &par
         entry.remove(QStringLiteral("message"));
     }
     QString key = (isAnybody ? QString() : call.clientName) + QLatin1Char('\n') + command.name();
-    if (repeated_.size() >= mostRepeated && !repeated_.contains(key))
+    if (repeated_.size() >= maxRepeated && !repeated_.contains(key))
         key = QLatin1Char('\n') + command.name(); // of several clients: commands are not without number
     const bool isFirst = !repeated_.contains(key);
     Repeated &known = repeated_[key];

@@ -50,7 +50,7 @@ private:
     std::unique_ptr<AuditFile> file_;
     QMap<QString, Repeated> repeated_; ///< by client and method
     QTimer timer_;
-    double mostBytes_ = 0; ///< to be written at once
+    double maxBytes_ = 0;  ///< to be written at once
     double allowance_ = 0; ///< what is left of that
     double filled_ = 0;    ///< when; of monotonicNow()
     double summedUp_ = -1e9;

@@ -125,7 +125,7 @@ AuditFile::~AuditFile() {
 
 void AuditFile::append(const QByteArray &line) {
     const std::lock_guard<std::mutex> lock(shared_->mutex);
-    if (shared_->waiting.size() >= mostWaiting) {
+    if (shared_->waiting.size() >= maxWaiting) {
         shared_->lose(QStringLiteral("the disk is too slow"));
         return;
     }
@@ -135,7 +135,7 @@ void AuditFile::append(const QByteArray &line) {
 
 bool AuditFile::isSlow() const {
     const std::lock_guard<std::mutex> lock(shared_->mutex);
-    return shared_->waiting.size() > mostWaiting / 2;
+    return shared_->waiting.size() > maxWaiting / 2;
 }
 
 AuditFile::State AuditFile::state() const {

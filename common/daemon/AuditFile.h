@@ -16,7 +16,7 @@ public:
         QString problem;      ///< why the last one was lost
         double lostAt = -1e9; ///< when; of monotonicNow()
     };
-    static constexpr std::size_t mostWaiting = 1000;
+    static constexpr std::size_t maxWaiting = 1000;
 
     /// NAME.jsonl in the folder, which is made; when it has grown to so many bytes it becomes NAME.1.jsonl,
     /// that NAME.2.jsonl, up to so many files in all.

@@ -11,7 +11,7 @@ namespace hermes {
 class Batch {
 public:
     /// More bytes of replies are too much for one frame.
-    static constexpr qint64 mostBytes = 8 << 20;
+    static constexpr qint64 maxBytes = 8 << 20;
 
     Batch(const QJsonArray &requests, const Arrival &when, const QByteArray &knownBy)
         : arrived(when)
@@ -31,7 +31,7 @@ public:
     /// frame: empty for a notification.
     void answer(int i, const QByteArray &frame);
     qint64 bytes() const { return bytes_; }
-    bool isTooLarge() const { return bytes_ > mostBytes; }
+    bool isTooLarge() const { return bytes_ > maxBytes; }
     /// The pieces of the frame; none when nothing is to be said.
     std::vector<QByteArray> take(const Codec &codec);
 

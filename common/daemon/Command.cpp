@@ -61,7 +61,7 @@ Command &Command::fresh() {
 }
 
 Command &Command::takes(int values) {
-    mostValues_ = values;
+    maxValues_ = values;
     return *this;
 }
 

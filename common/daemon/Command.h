@@ -79,7 +79,7 @@ public:
     /// Sent again and again, the last one counts: who drives.
     bool isSetPoint() const { return extra_.contains(QStringLiteral("x-needs-lease")); }
     bool isListed() const { return isListed_; }
-    int mostValues() const { return mostValues_; }
+    int maxValues() const { return maxValues_; }
 
     /// The method object of an OpenRPC document.
     QJsonObject description() const;
@@ -110,7 +110,7 @@ private:
     AsyncHandler run_;
     Role role_ = Role::Operator;
     bool isListed_ = true;
-    int mostValues_ = 3000;
+    int maxValues_ = 3000;
     mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };
 

@@ -9,7 +9,7 @@
 namespace hermes {
 namespace {
 
-constexpr std::size_t mostSubscriptions = 100; // of a client
+constexpr std::size_t maxSubscriptions = 100; // of a client
 
 void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
@@ -164,10 +164,10 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
                 Session *session = daemon.server().session(call.client);
                 if (!session)
                     return Error(ErrorCode::NotReady, QStringLiteral("the client is gone"));
-                if (session->topics().size() >= mostSubscriptions)
+                if (session->topics().size() >= maxSubscriptions)
                     return Error(
                         ErrorCode::OverLimit,
-                        QStringLiteral("a client has at most %1 subscriptions").arg(mostSubscriptions));
+                        QStringLiteral("a client has at most %1 subscriptions").arg(maxSubscriptions));
                 const auto id =
                     topics.subscribe(call.text("topic"), {call.number("max_rate_hz"), call.integer("queue")},
                                      &session->topics());

@@ -72,9 +72,9 @@ void ReplyCache::forget(const QByteArray &key) {
 
 void ReplyCache::limit(double now) {
     while (!answered_.empty() &&
-           (entries_.size() > mostEntries || now - answered_.front().wantedAt > longestAge_s))
+           (entries_.size() > maxEntries || now - answered_.front().wantedAt > longestAge_s))
         erase(answered_.begin());
-    for (auto oldest = answered_.begin(); bytes_ > mostBytes; ++oldest) {
+    for (auto oldest = answered_.begin(); bytes_ > maxBytes; ++oldest) {
         bytes_ -= oldest->reply.frame.size();
         oldest->reply.frame.clear();
     }

@@ -14,10 +14,10 @@ namespace hermes {
 class ReplyCache {
 public:
     /// Beyond these the oldest is forgotten: a repeat of it is a new request.
-    static constexpr int mostEntries = 1024;
+    static constexpr int maxEntries = 1024;
     static constexpr double longestAge_s = 300; ///< since it was wanted last
     /// Beyond it the oldest reply is forgotten, not that there was one.
-    static constexpr qint64 mostBytes = 1 << 20;
+    static constexpr qint64 maxBytes = 1 << 20;
     static constexpr qint64 largestReply = 512 << 10; ///< that is kept
 
     enum class Known {

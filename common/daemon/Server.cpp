@@ -222,7 +222,7 @@ void Server::accept(Interface *peer, const QString &protocol) {
 }
 
 bool Server::mayStay(Session *session) {
-    const int most = mostPlaces();
+    const int most = maxPlaces();
     if (places() < most)
         return true;
     session->restrictTo(QStringLiteral("%1 clients are connected already (%2)")
@@ -233,7 +233,7 @@ bool Server::mayStay(Session *session) {
 }
 
 // The system may give fewer descriptors than the clients need: those of the kept places are not given away.
-int Server::mostPlaces() const {
+int Server::maxPlaces() const {
     const int others = sessions_.size() + descriptorsLeft() - spareDescriptors;
     const int kept = commands_.urgent().isEmpty() ? 0 : std::min(keptPlaces, others / 2);
     return std::clamp(others - kept, 1, clientLimit_);
@@ -299,7 +299,7 @@ QVector<Session *> Server::restricted() const {
 // The first who came to a kept place gets one that has become free.
 void Server::givePlaces() {
     for (Session *session : restricted())
-        if (places() < mostPlaces())
+        if (places() < maxPlaces())
             session->restrictTo(QString());
 }
 

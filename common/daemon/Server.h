@@ -52,7 +52,7 @@ private:
     void accept(Interface *peer, const QString &protocol);
     void giveRole(Session *session) const;
     bool mayStay(Session *session);
-    int mostPlaces() const;
+    int maxPlaces() const;
     void saveMemory();
     bool makeKeptPlace();
     void turnAway(Session *session, const RpcError &reason);

@@ -12,13 +12,13 @@ namespace hermes {
 namespace {
 
 constexpr int largestUrgentBytes = 4 << 10;
-constexpr int mostValuesBesideUrgent = 1000;     // in the parameters of one request
-constexpr int mostValuesOfAFrame = 50000;        // the same, in a batch
+constexpr int maxValuesBesideUrgent = 1000;      // in the parameters of one request
+constexpr int maxValuesOfAFrame = 50000;         // the same, in a batch
 constexpr qint64 largestAtOnceBytes = 128 << 10; // of a reply
 constexpr int largeFrameBytes = 16 << 10;        // takes half a millisecond to read
 // What a client has sent before a gap may lie on its side, or in a tunnel, and come afterwards.
 constexpr double settling_s = 0.25;
-constexpr double mostUnderWay =
+constexpr double maxUnderWay =
     4096; // requests of a client over a line; an id farther off is another client's
 
 // Takes one from left for each value.
@@ -70,7 +70,7 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     channel_->codec().setFrameLimit(limits_.frameBytes);
     channel_->setLargeFrame(largeFrameBytes);
     if (!commands_.urgent().isEmpty()) {
-        channel_->codec().setValueLimit(mostValuesOfAFrame);
+        channel_->codec().setValueLimit(maxValuesOfAFrame);
         channel_->setUrgent(
             [this](const QByteArray &frame, const QStringList &had) { return urgentName(frame, had); });
     }
@@ -225,7 +225,7 @@ void Session::noteStop(const QJsonValue &id) {
 // later. Clients count their ids up, from a random number on.
 bool Session::isBeforeStop(const QJsonValue &id) const {
     const double before = lastStop_ && id.isDouble() ? *lastStop_ - id.toDouble() : 0;
-    return before > 0 && before < mostUnderWay;
+    return before > 0 && before < maxUnderWay;
 }
 
 void Session::begin(const QJsonArray &messages, const QByteArray &key) {
@@ -281,7 +281,7 @@ void Session::finish(const std::shared_ptr<Batch> &done) {
         ++counts_.errors;
         const RpcError error(ErrorCode::OverLimit,
                              QStringLiteral("the replies to the batch are larger than %1 bytes together")
-                                 .arg(Batch::mostBytes));
+                                 .arg(Batch::maxBytes));
         return send(makeError(QJsonValue(), error), done->key);
     }
     if (!makeRoom())
@@ -329,7 +329,7 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
                      QStringLiteral("by its id this is older than a stop that has come: it is void"));
     if (!command || command->isUrgent())
         return std::nullopt;
-    const int most = commands_.urgent().isEmpty() ? command->mostValues() : mostValuesBesideUrgent;
+    const int most = commands_.urgent().isEmpty() ? command->maxValues() : maxValuesBesideUrgent;
     int left = most;
     countValues(request.params, left);
     if (left < 0)

@@ -169,13 +169,13 @@ QString absolutePath(const QString &path) {
     return QDir::cleanPath(QFileInfo(path).absoluteFilePath());
 }
 
-Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes) {
+Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 maxBytes) {
     const Result<Opened> opened = openNamed(path, folders);
     if (!opened)
         return opened.error();
-    if (opened->bytes == 0 || opened->bytes > mostBytes)
+    if (opened->bytes == 0 || opened->bytes > maxBytes)
         return fileError(
-            path, QStringLiteral("it has %1 bytes, expected 1 to %2").arg(opened->bytes).arg(mostBytes));
+            path, QStringLiteral("it has %1 bytes, expected 1 to %2").arg(opened->bytes).arg(maxBytes));
     QByteArray bytes(int(opened->bytes), Qt::Uninitialized);
     int done = 0;
     while (done < bytes.size()) {

@@ -18,7 +18,7 @@ namespace hermes {
 QString absolutePath(const QString &path);
 
 /// The whole file.
-Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes);
+Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 maxBytes);
 
 /// The path without links of a file that could be opened so, of leastBytes or more: for readers that open it
 /// themselves, and follow links that somebody puts there meanwhile.

@@ -46,7 +46,7 @@ bool goesOn(const Entry &entry, const Entry &line) {
            (entry.column == 0 ? line.indent > entry.indent + hanging : line.indent >= entry.column);
 }
 
-void goOn(Entry &entry, const Entry &line) {
+void extend(Entry &entry, const Entry &line) {
     if (entry.column == 0)
         entry.column = line.indent;
     const std::size_t deeper = line.indent - entry.column;
@@ -158,7 +158,7 @@ std::string fittedHelp(const std::string &text, std::size_t width) {
         }
         const Entry entry = entryOf(line);
         if (!last.empty() && goesOn(last.back(), entry)) {
-            goOn(last.back(), entry);
+            extend(last.back(), entry);
             continue;
         }
         flush();

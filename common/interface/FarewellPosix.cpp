@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::seconds farewellLimit{1};
 constexpr std::size_t drainAtOnceBytes = 64 << 10;
-constexpr int mostFarewells = 32; // at the same time
+constexpr int maxFarewells = 32; // at the same time
 
 int farewells = 0; // now; all are in the main thread
 
@@ -54,7 +54,7 @@ private:
 } // namespace
 
 void sayFarewell(int socket, QObject *parent) {
-    if (farewells >= mostFarewells)
+    if (farewells >= maxFarewells)
         return;
     const int own = ::fcntl(socket, F_DUPFD_CLOEXEC, 0);
     if (own < 0 || descriptorsLeftAfter(own) < spareDescriptors) {

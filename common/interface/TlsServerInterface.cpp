@@ -17,8 +17,8 @@ namespace {
 
 const QString serverSource = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
-constexpr int silent_s = 3;                 // the system takes up to 7 s for 5
-constexpr std::size_t mostHandshakes = 256; // at the same time, then one of whoever has most of them goes
+constexpr int silent_s = 3;                // the system takes up to 7 s for 5
+constexpr std::size_t maxHandshakes = 256; // at the same time, then one of whoever has most of them goes
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
 } // namespace
@@ -88,8 +88,8 @@ void TlsServerInterface::take(qintptr descriptor) {
             refuse(socket, QStringLiteral("no handshake of TLS within %1 s").arg(longestHandshake.count()));
     });
     handshakes_.push_back(socket);
-    if (handshakes_.size() > mostHandshakes)
-        refuse(oldestOfTheMost(), QStringLiteral("%1 others came during its handshake").arg(mostHandshakes));
+    if (handshakes_.size() > maxHandshakes)
+        refuse(oldestOfTheMost(), QStringLiteral("%1 others came during its handshake").arg(maxHandshakes));
     socket->startServerEncryption();
 }
 

@@ -99,7 +99,7 @@ void UdpInterface::readAll() {
 
 bool UdpInterface::isRead(const QHostAddress &address, quint16 port) {
     constexpr qint64 longestSilence_ms = 3000;
-    constexpr int mostNames = 5, mostPorts = 4, enoughReturns = 3;
+    constexpr int maxNames = 5, maxPorts = 4, enoughReturns = 3;
     if (keepsToFirst_ && (from_.isNull() || sinceFrom_.elapsed() > longestSilence_ms)) {
         from_ = address;
         fromPort_ = port;
@@ -111,7 +111,7 @@ bool UdpInterface::isRead(const QHostAddress &address, quint16 port) {
     if (keepsToFirst_ && from_.isEqual(address) && port != fromPort_ && returns_ < enoughReturns) {
         returns_ = leftPorts_.contains(port) ? returns_ + 1 : 0;
         leftPorts_.append(fromPort_);
-        if (leftPorts_.size() > mostPorts)
+        if (leftPorts_.size() > maxPorts)
             leftPorts_.removeFirst();
         fromPort_ = port;
     }
@@ -121,7 +121,7 @@ bool UdpInterface::isRead(const QHostAddress &address, quint16 port) {
     }
     ++strangers_.datagrams;
     const QString name = QStringLiteral("%1:%2").arg(address.toString()).arg(port);
-    if (!strangers_.names.contains(name) && strangers_.names.size() < mostNames)
+    if (!strangers_.names.contains(name) && strangers_.names.size() < maxNames)
         strangers_.names.append(name);
     return false;
 }

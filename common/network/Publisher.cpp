@@ -12,7 +12,7 @@ namespace hermes {
 namespace {
 
 constexpr std::chrono::seconds retry{5}; // until there is a bus
-constexpr int mostRenamed = 100;
+constexpr int maxRenamed = 100;
 const QString busName = QStringLiteral("hermes-announcement");
 const QString networkSource = QStringLiteral("network");
 
@@ -100,7 +100,7 @@ QString Publisher::instanceName(const AnnouncedPort &port) const {
 
 void Publisher::failed(const QString &reason) {
     ++attempt_; // what else was asked for in this one fails for the same reason
-    if (reason.contains(QStringLiteral("collision"), Qt::CaseInsensitive) && renamed_ < mostRenamed) {
+    if (reason.contains(QStringLiteral("collision"), Qt::CaseInsensitive) && renamed_ < maxRenamed) {
         ++renamed_;
         return publish();
     }

@@ -10,11 +10,11 @@ namespace hermes {
 namespace {
 
 // Where a signal handler can read them.
-constexpr std::size_t mostNames = 32;
-char temporaries[mostNames][PATH_MAX];
+constexpr std::size_t maxNames = 32;
+char temporaries[maxNames][PATH_MAX];
 
 void removeAndDie(int signal) {
-    for (std::size_t i = mostNames; i-- > 0;)
+    for (std::size_t i = maxNames; i-- > 0;)
         if (temporaries[i][0] != '\0' && ::unlink(temporaries[i]) != 0)
             ::rmdir(temporaries[i]);
     std::signal(signal, SIG_DFL);
@@ -23,19 +23,19 @@ void removeAndDie(int signal) {
 
 } // namespace
 
-/// mostNames when the list is full or the name is too long.
+/// maxNames when the list is full or the name is too long.
 std::size_t rememberTemporary(const std::string &name) {
     std::size_t place = 0;
-    while (place < mostNames && temporaries[place][0] != '\0')
+    while (place < maxNames && temporaries[place][0] != '\0')
         ++place;
-    if (place == mostNames || name.size() >= PATH_MAX)
-        return mostNames;
+    if (place == maxNames || name.size() >= PATH_MAX)
+        return maxNames;
     std::strcpy(temporaries[place], name.c_str());
     return place;
 }
 
 void forgetTemporary(std::size_t place) {
-    if (place < mostNames)
+    if (place < maxNames)
         temporaries[place][0] = '\0';
 }
 

@@ -10,7 +10,7 @@
 namespace hermes {
 namespace {
 
-constexpr int mostTexts = 5;
+constexpr int maxTexts = 5;
 
 bool isAngle(const QJsonObject &schema) {
     return schema.value(QStringLiteral("unit")) == QStringLiteral("rad");
@@ -52,7 +52,7 @@ QStringList beyondTurn(const QJsonObject &schema, const QJsonValue &value, const
                    : QStringList();
     QStringList texts;
     const auto below = [&](const QJsonObject &inner, const QJsonValue &member, const QString &key) {
-        if (texts.size() < mostTexts)
+        if (texts.size() < maxTexts)
             texts += beyondTurn(inner, member, path.isEmpty() ? key : path + QLatin1Char('.') + key);
     };
     const QJsonObject object = value.toObject(), properties = schema.value(propertiesKey).toObject();
@@ -62,7 +62,7 @@ QStringList beyondTurn(const QJsonObject &schema, const QJsonValue &value, const
     const QJsonArray array = mayHoldAngles(items) ? value.toArray() : QJsonArray();
     for (int i = 0; i < array.size(); ++i)
         below(items, array.at(i), QString::number(i));
-    return texts.mid(0, mostTexts);
+    return texts.mid(0, maxTexts);
 }
 
 QJsonValue withAnglesRead(const QJsonObject &schema, const QJsonValue &value) {

@@ -9,15 +9,15 @@ namespace hermes {
 namespace {
 
 /// Of alternatives, so many are named.
-constexpr int mostNamed = 100;
+constexpr int maxNamed = 100;
 
 template <typename Text>
 QStringList named(const QJsonArray &alternatives, const Text &textOf) {
     QStringList texts;
-    for (int i = 0; i < alternatives.size() && i < mostNamed; ++i)
+    for (int i = 0; i < alternatives.size() && i < maxNamed; ++i)
         texts.append(textOf(alternatives.at(i)));
-    if (alternatives.size() > mostNamed)
-        texts.append(QStringLiteral("%1 more").arg(alternatives.size() - mostNamed));
+    if (alternatives.size() > maxNamed)
+        texts.append(QStringLiteral("%1 more").arg(alternatives.size() - maxNamed));
     return texts;
 }
 

@@ -21,7 +21,7 @@ namespace hermes {
 namespace {
 
 // More of them tell nobody more, and a request may hold a hundred thousand.
-constexpr std::size_t mostViolations = 20;
+constexpr std::size_t maxViolations = 20;
 
 const QString typeKey = QStringLiteral("type");
 const QString patternKey = QStringLiteral("pattern");
@@ -65,7 +65,7 @@ void checkStructure(const QJsonObject &schema, const QJsonValue &value, const QS
         found.push_back({path, value, expectation(schema)});
     if (value.isArray() && schema.value(itemsKey).isObject()) {
         const QJsonArray array = value.toArray();
-        for (int i = 0; i < array.size() && found.size() < mostViolations; ++i)
+        for (int i = 0; i < array.size() && found.size() < maxViolations; ++i)
             checkStructure(schema.value(itemsKey).toObject(), array.at(i), joined(path, QString::number(i)),
                            found);
     }
@@ -80,7 +80,7 @@ void checkStructure(const QJsonObject &schema, const QJsonValue &value, const QS
                 {joined(path, key), QJsonValue::Undefined, expectation(properties.value(key).toObject())});
     }
     const bool closed = schema.value(QStringLiteral("additionalProperties")) == QJsonValue(false);
-    for (auto member = object.begin(); member != object.end() && found.size() < mostViolations; ++member) {
+    for (auto member = object.begin(); member != object.end() && found.size() < maxViolations; ++member) {
         const QString memberPath = joined(path, member.key());
         if (properties.contains(member.key()))
             checkStructure(properties.value(member.key()).toObject(), member.value(), memberPath, found);
@@ -153,14 +153,14 @@ SchemaValidator &SchemaValidator::operator=(SchemaValidator &&) noexcept = defau
 std::vector<SchemaViolation> SchemaValidator::check(const QJsonValue &value) const {
     std::vector<SchemaViolation> found;
     checkStructure(compiled_->source, value, QString(), found);
-    if (found.size() >= mostViolations)
+    if (found.size() >= maxViolations)
         return found;
     valijson::Validator validator;
     valijson::ValidationResults results;
     validator.validate(compiled_->schema, valijson::adapters::QtJsonAdapter(value), &results);
     std::vector<Place> places;
     for (const auto &error : results) {
-        if (places.size() < mostViolations)
+        if (places.size() < maxViolations)
             places.push_back(locate(error.context, compiled_->source, value));
     }
     // valijson reports each parent of a bad value too; only the innermost place says something.

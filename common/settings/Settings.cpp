@@ -154,7 +154,7 @@ QStringList Settings::waiting() const {
 }
 
 Result<QByteArray> readSettingsFile(const QString &name) {
-    auto text = readNamedFile(name, {QStringLiteral("/")}, mostSettingsBytes);
+    auto text = readNamedFile(name, {QStringLiteral("/")}, maxSettingsBytes);
     if (!text)
         return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + text.error().message,
                      text.error().data);
@@ -166,10 +166,10 @@ Result<QByteArray> readSettingsFile(const QString &name) {
 }
 
 Result<void> checkSettingsFile(const QString &name, const QByteArray &text) {
-    if (text.size() > mostSettingsBytes)
+    if (text.size() > maxSettingsBytes)
         return settingsFileError(name, QStringLiteral("it would have %1 bytes, expected at most %2")
                                            .arg(text.size())
-                                           .arg(mostSettingsBytes));
+                                           .arg(maxSettingsBytes));
     const auto replaceable = checkReplaceable(name);
     if (replaceable)
         return {};

@@ -13,7 +13,7 @@
 namespace hermes {
 
 /// The largest settings file that is read, and written.
-constexpr qint64 mostSettingsBytes = 1 << 20;
+constexpr qint64 maxSettingsBytes = 1 << 20;
 
 /// The text of a settings file, without waiting for anybody: devices and pipes are refused.
 Result<QByteArray> readSettingsFile(const QString &name);

@@ -15,7 +15,7 @@
 namespace hermes {
 namespace {
 
-constexpr int mostPemBytes = 1 << 16;
+constexpr int maxPemBytes = 1 << 16;
 
 struct Member {
     const char *name;
@@ -44,7 +44,7 @@ bool isOnePem(const QByteArray &text, const char *kind) {
                   end = QStringLiteral("-----END %1-----\n").arg(QLatin1String(kind));
     static const QRegularExpression base64(QStringLiteral("\\A[A-Za-z0-9+/=\n]+\\z"));
     const QString pem = QString::fromLatin1(text);
-    return text.size() <= mostPemBytes && pem.startsWith(begin) && pem.endsWith(end) &&
+    return text.size() <= maxPemBytes && pem.startsWith(begin) && pem.endsWith(end) &&
            base64.match(pem.mid(begin.size(), pem.size() - begin.size() - end.size())).hasMatch();
 }
 
@@ -80,7 +80,7 @@ Result<KeyBundle> KeyBundle::read(const QString &folder) {
         if (!file.open(QIODevice::ReadOnly))
             return Error(ErrorCode::InputOutput,
                          QStringLiteral("%1: %2").arg(file.fileName(), file.errorString()));
-        keys.*member.content = file.read(mostJsonBytes);
+        keys.*member.content = file.read(maxJsonBytes);
     }
     const auto revoked = KeyFolder::revoked(folder);
     if (!revoked)
@@ -95,7 +95,7 @@ Result<KeyBundle> KeyBundle::read(const QString &folder) {
 Result<KeyBundle> KeyBundle::fromJson(const QByteArray &json) {
     WireError error;
     const auto parsed = parseJson(json, &error);
-    if (json.size() > mostJsonBytes || !parsed || !parsed->isObject() ||
+    if (json.size() > maxJsonBytes || !parsed || !parsed->isObject() ||
         parsed->toObject().size() != int(std::size(members)))
         return bad(QStringLiteral("expected an object with four texts"));
     KeyBundle keys;

@@ -12,7 +12,7 @@ struct KeyBundle {
     QByteArray authority, certificate, key; ///< PEM
     QByteArray revoked;                     ///< serial numbers, one a line; empty: there are none
 
-    static constexpr int mostJsonBytes = 2 << 20;
+    static constexpr int maxJsonBytes = 2 << 20;
 
     /// Of what people have written beside the serial numbers, nothing.
     static Result<KeyBundle> read(const QString &folder);

@@ -17,8 +17,8 @@
 namespace hermes {
 namespace {
 
-constexpr int shortestSerial = 16;    // digits, as issueCertificate() makes them
-constexpr qint64 mostBytes = 1 << 20; // of a file of keys
+constexpr int shortestSerial = 16;   // digits, as issueCertificate() makes them
+constexpr qint64 maxBytes = 1 << 20; // of a file of keys
 
 const QString remedy = QStringLiteral("hermesctl keys --help tells how to make keys");
 
@@ -30,7 +30,7 @@ Error wrong(const QString &file, const QString &what, const QString &how = remed
 Result<QByteArray> readKeyFile(const QString &path) {
     QFile file(path);
     const QFileInfo info(path);
-    if (info.exists() && (!info.isFile() || info.size() > mostBytes)) // a pipe is not opened: that waits
+    if (info.exists() && (!info.isFile() || info.size() > maxBytes)) // a pipe is not opened: that waits
         return wrong(path, QStringLiteral("is not a file of keys"));
     if (!info.exists() && !file.open(QIODevice::ReadOnly))
         return wrong(path, file.errorString());

@@ -133,7 +133,7 @@ bool LineMaster::submit(std::size_t place, Task task, Bus::Urgency urgency) {
         [this, place, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
             finished(place, task, outcome);
         },
-        urgency, asked->patience_s);
+        urgency, asked->timeout_s);
 }
 
 void LineMaster::finished(std::size_t place, Task task, const Bus::Outcome &outcome) {

@@ -148,9 +148,9 @@ bool MotorController::isToStop() const {
     return isReady() && toldToTurn_ && speeds_ == zero;
 }
 
-MotorController::Ask MotorController::ask(Command command, double patience_s,
+MotorController::Ask MotorController::ask(Command command, double timeout_s,
                                           const roboclaw::Values &values) const {
-    return {*Request::make(address(), command, values), patience_s};
+    return {*Request::make(address(), command, values), timeout_s};
 }
 
 std::optional<MotorController::Ask> MotorController::next(Task task, double now) {

@@ -34,8 +34,8 @@ public:
     /// driven.
     struct Ask {
         roboclaw::Request request;
-        double patience_s;
-        bool isPatient() const { return patience_s > longestDrivingPatience_s; }
+        double timeout_s;
+        bool isPatient() const { return timeout_s > longestDrivingPatience_s; }
     };
 
     /// onLine: controllers that share its line.
@@ -110,7 +110,7 @@ private:
     void watchAnswers();
     void lose(const QString &reason);
     void failSetup(const QString &reason, double now);
-    Ask ask(roboclaw::Command command, double patience_s, const roboclaw::Values &values = {}) const;
+    Ask ask(roboclaw::Command command, double timeout_s, const roboclaw::Values &values = {}) const;
     /// Longer than the controller's own time-out.
     double silence_s() const;
 

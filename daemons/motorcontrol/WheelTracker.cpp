@@ -22,14 +22,14 @@ bool wasReset(const std::array<quint32, 2> &before, const std::array<quint32, 2>
 } // namespace
 
 void WheelTracker::configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn,
-                             double mostSpeed) {
+                             double maxSpeed) {
     wheels_ = wheels;
     radiansPerCount_ = 2 * vectorlib::pi / countsPerTurn;
-    mostSpeed_ = mostSpeed;
+    maxSpeed_ = maxSpeed;
 }
 
 bool WheelTracker::isPlausible(double turn, double gap) const {
-    return std::abs(turn) <= mostSpeed_ * std::clamp(gap, shortestRun_s, longestRun_s);
+    return std::abs(turn) <= maxSpeed_ * std::clamp(gap, shortestRun_s, longestRun_s);
 }
 
 std::optional<WheelMotion>

@@ -20,8 +20,8 @@ struct WheelMotion {
 /// again: that is found by its counters, or by a motion that no wheel can do.
 class WheelTracker {
 public:
-    /// mostSpeed: rad/s that no wheel exceeds.
-    void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double mostSpeed);
+    /// maxSpeed: rad/s that no wheel exceeds.
+    void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double maxSpeed);
 
     /// Nothing until every controller has been read again, or at the first reading.
     std::optional<WheelMotion>
@@ -32,7 +32,7 @@ private:
 
     std::array<WheelMount, wheelCount> wheels_;
     double radiansPerCount_ = 0;
-    double mostSpeed_ = 0;
+    double maxSpeed_ = 0;
     std::array<std::array<quint32, 2>, controllerCount> counts_{};
     std::array<double, controllerCount> times_{}; // 0: not read yet
     std::array<int, controllerCount> setups_{};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::chrono::seconds writePeriod(4);
 constexpr std::size_t scansOfBlock = 200, scansOfWrite = 5000;
-constexpr int mostJournals = 100000;
+constexpr int maxJournals = 100000;
 
 template <typename T>
 std::vector<T> part(const std::vector<T> &all, std::size_t from, std::size_t to) {
@@ -139,7 +139,7 @@ QString DriveJournal::File::begin() {
     if (const Result<void> made = makeFolder(folder); !made)
         return made.error().message;
     const int dot = name.lastIndexOf('.');
-    for (int i = 1; i < mostJournals; ++i) {
+    for (int i = 1; i < maxJournals; ++i) {
         const QString numbered =
             i == 1 ? name : QString("%1-%2%3").arg(name.left(dot)).arg(i).arg(name.mid(dot));
         if (create(QDir(folder).absoluteFilePath(numbered)) || errno != EEXIST)

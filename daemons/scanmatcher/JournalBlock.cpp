@@ -51,8 +51,8 @@ const Fields<Tables> &fieldsOf(Of<Tables>) {
 
 namespace {
 
-constexpr double farthest_m = 1e6, farthestSeen_m = 1e4, most_rad = 10, mostInformation = 1e12, most = 1e15;
-constexpr double mostOfScan = 99999; // points, edges
+constexpr double farthest_m = 1e6, farthestSeen_m = 1e4, most_rad = 10, maxInformation = 1e12, most = 1e15;
+constexpr double maxOfScan = 99999; // points, edges
 
 /// Goes along a table: puts values behind its rows, or gives those that are there.
 template <typename Number>
@@ -145,7 +145,7 @@ bool exchange(Tables &tables, Block &block, bool isWriting) {
         scans.motion(scan.place.motion);
         scans.positive(scan.place.effort);
         scans.number(scan.trust, 0, 1);
-        scans.number(count, 0, mostOfScan);
+        scans.number(count, 0, maxOfScan);
         edges.each(
             scan.edges, [&](EdgeRaw2D &edge) { edges.edge(edge, farthestSeen_m); }, count);
     });
@@ -158,7 +158,7 @@ bool exchange(Tables &tables, Block &block, bool isWriting) {
         keys.positive(key.effort, key.varianceXY, key.varianceAlpha);
         keys.pose(key.tracked);
         keys.positive(key.way, key.doubt);
-        keys.number(count, 0, mostOfScan);
+        keys.number(count, 0, maxOfScan);
         points.each(
             seen, [&](Vector2D<float> &point) { points.within(farthestSeen_m, point.x, point.y); }, count);
         if (!isWriting)
@@ -168,7 +168,7 @@ bool exchange(Tables &tables, Block &block, bool isWriting) {
         Eigen::Matrix3d &m = motion.information;
         motions.positive(motion.from, motion.to);
         motions.motion(motion.motion);
-        motions.within(mostInformation, m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2));
+        motions.within(maxInformation, m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2));
         m = Eigen::Matrix3d(m.selfadjointView<Eigen::Upper>());
         motions.number(motion.mayBeWrong, 0, 1);
         motions.number(motion.weight, 0, 1);

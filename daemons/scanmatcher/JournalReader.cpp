@@ -39,7 +39,7 @@ public:
         auto motion = memory.graph.constraints.rbegin();
         for (auto weight = block.weights.rbegin(); weight != block.weights.rend(); ++weight, ++motion)
             motion->weight = *weight;
-        goOn(block);
+        resume(block);
         return true;
     }
 
@@ -76,7 +76,7 @@ private:
                                  block.progress[0].corrected <= keyEnd(block)));
     }
     // Where the block does not tell, as the drive went on: by the last scan.
-    void goOn(const journal::Block &block) {
+    void resume(const journal::Block &block) {
         memory.since = {};
         if (!block.since.empty()) {
             memory.since = block.since[0];

@@ -11,7 +11,7 @@ namespace hermes::scanmatcher {
 
 namespace {
 
-constexpr int mostFiles = 4; // that may wait to be written, each with its copy of the map
+constexpr int maxFiles = 4; // that may wait to be written, each with its copy of the map
 
 template <typename T>
 void giveResult(const Reply &reply, const Result<T> &result) {
@@ -93,9 +93,9 @@ MapPath ScanMatcher::mapPath(const Call &call) {
 
 // The worker gives a copy of the map as it is after the commands before this one, and goes on matching.
 void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &reply) {
-    if (filesUnderWay_ >= mostFiles)
+    if (filesUnderWay_ >= maxFiles)
         return reply.error(
-            {ErrorCode::NotReady, QString("%1 files are being written already").arg(mostFiles)});
+            {ErrorCode::NotReady, QString("%1 files are being written already").arg(maxFiles)});
     ++filesUnderWay_;
     const auto map = std::make_shared<vectorlib::MapDrawing>();
     if (format == "svg")

@@ -14,12 +14,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr quint64 mostWaiting = 1000;               // scans
+constexpr quint64 maxWaiting = 1000;                // scans
 constexpr std::chrono::milliseconds pause(500);     // without a scan, after which all news count
 constexpr double least_m = 0.01, least_rad = 0.003; // by which a pose must move to be worth a new map
 constexpr double still_m = 0.02, still_rad = 0.01;  // what the next scan shows is not worth remembering
 constexpr quint64 fewLeft = 2;                      // scans that the matching places itself
-constexpr int mostRounds = 20;                      // in which the thread catches up
+constexpr int maxRounds = 20;                       // in which the thread catches up
 
 } // namespace
 
@@ -118,7 +118,7 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     }
     {
         const std::lock_guard lock(mutex_);
-        if (state_.waiting >= mostWaiting) {
+        if (state_.waiting >= maxWaiting) {
             ++state_.dropped;
             leftOut_ = std::move(seen);
             return;
@@ -161,7 +161,7 @@ bool MapCorrector::apply(ScanTracker &tracker, Correction &correction) {
     return isOfThisDrive;
 }
 
-void MapCorrector::goOn() {
+void MapCorrector::acknowledge() {
     {
         const std::lock_guard lock(mutex_);
         isHandedOver_ = false;
@@ -315,7 +315,7 @@ void MapCorrector::correct() {
         return;
     memory_.review(builder_.map, memory_.loops.poses());
     const quint64 drive = remembered_;
-    for (int round = 0; round < mostRounds; ++round) {
+    for (int round = 0; round < maxRounds; ++round) {
         if (state().waiting <= fewLeft)
             break;
         const std::size_t known = memory_.loops.scans();

@@ -48,7 +48,7 @@ struct CorrectorState {
 /// Scans wait in a bounded queue; one that finds it full leaves its motion to the next and is counted.
 class MapCorrector {
 public:
-    /// Both are called in its thread. After a correction was told it rests until goOn() is called.
+    /// Both are called in its thread. After a correction was told it rests until acknowledge() is called.
     using Corrected = std::function<void(std::shared_ptr<Correction>)>;
     using Grown = std::function<void(const GraphMessage &)>;
 
@@ -81,7 +81,7 @@ public:
     /// happened.
     bool apply(vectorlib::ScanTracker &tracker, Correction &correction);
     /// After a correction was told, whether it was applied or not, and shown: the thread may go on.
-    void goOn();
+    void acknowledge();
 
     // In any thread.
 

@@ -26,11 +26,11 @@ Result<std::vector<vectorlib::MapEdge>> readMapFile(const MapPath &file) {
 }
 
 MapList listMaps(const QString &folder) {
-    constexpr int mostLookedAt = 100000; // a folder may be anything
+    constexpr int maxLookedAt = 100000; // a folder may be anything
     MapList list;
     QDirIterator files(folder, {"*.csv", "*.journal"}, QDir::Files | QDir::NoSymLinks,
                        QDirIterator::Subdirectories);
-    for (int i = 0; files.hasNext() && i < mostLookedAt; ++i) {
+    for (int i = 0; files.hasNext() && i < maxLookedAt; ++i) {
         files.next();
         const QFileInfo file = files.fileInfo();
         list.maps.push_back({QDir(folder).relativeFilePath(file.filePath()),
@@ -39,9 +39,9 @@ MapList listMaps(const QString &folder) {
     }
     std::sort(list.maps.begin(), list.maps.end(),
               [](const ListedMap &a, const ListedMap &b) { return a.modified > b.modified; });
-    if (list.maps.size() > mostListedMaps) {
-        list.unlisted = list.maps.size() - mostListedMaps;
-        list.maps.resize(mostListedMaps);
+    if (list.maps.size() > maxListedMaps) {
+        list.unlisted = list.maps.size() - maxListedMaps;
+        list.maps.resize(maxListedMaps);
     }
     return list;
 }

@@ -8,7 +8,7 @@ namespace hermes::scanmatcher {
 std::size_t MapHistory::add(Step step) {
     std::vector<Step> gone = std::exchange(redone_, {});
     undone_.push_back(std::move(step));
-    if (undone_.size() > mostSteps) {
+    if (undone_.size() > maxSteps) {
         gone.push_back(std::move(undone_.front()));
         undone_.erase(undone_.begin());
     }

@@ -16,7 +16,7 @@ namespace hermes::scanmatcher {
 /// sensor elsewhere.
 class MapHistory {
 public:
-    static constexpr std::size_t mostSteps = 8;
+    static constexpr std::size_t maxSteps = 8;
 
     /// What a command did away with.
     struct Step {

@@ -279,7 +279,7 @@ const Fields<ListedMap> &fieldsOf(Of<ListedMap>) {
 const Fields<MapList> &fieldsOf(Of<MapList>) {
     static const auto fields = Fields<MapList>()
                                    .add("maps", &MapList::maps, "The newest first")
-                                   .atMostElements(mostListedMaps)
+                                   .atMostElements(maxListedMaps)
                                    .add("unlisted", &MapList::unlisted, "Older ones");
     return fields;
 }

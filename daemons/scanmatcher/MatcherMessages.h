@@ -99,7 +99,7 @@ struct ListedMap {
     quint64 bytes = 0;
     double modified = 0; ///< seconds since the epoch
 };
-constexpr std::size_t mostListedMaps = 200;
+constexpr std::size_t maxListedMaps = 200;
 struct MapList {
     std::vector<ListedMap> maps;
     quint64 unlisted = 0; ///< older ones

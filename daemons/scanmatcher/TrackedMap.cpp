@@ -160,7 +160,7 @@ void TrackedMap::correct(const std::shared_ptr<Correction> &correction) {
     } else {
         corrector_.dispose(correction);
     }
-    corrector_.goOn(); // what it tells from now on comes behind the correction
+    corrector_.acknowledge(); // what it tells from now on comes behind the correction
 }
 
 void TrackedMap::setPose(const Pose2D &pose, bool isSure) {
@@ -270,7 +270,7 @@ Result<BroughtBack> TrackedMap::undo(bool again) {
                      again ? QString("nothing was undone since the last command")
                            : QString("there is nothing more to undo: no command of the last %1 replaced the "
                                      "map or put the sensor elsewhere")
-                                 .arg(MapHistory::mostSteps)};
+                                 .arg(MapHistory::maxSteps)};
     const vectorlib::Pose2D now = tracker_->motion().pose();
     const vectorlib::Pose2D target = step->isPose ? step->before * step->told.inverse() * now : now;
     MapHistory::Step back{step->command, std::nullopt, step->isPose, now, target, place_};

@@ -6,7 +6,7 @@ namespace hermes::seriallogger {
 
 namespace {
 
-constexpr std::size_t mostChunks = 1 << 16; // single bytes are chunks too
+constexpr std::size_t maxChunks = 1 << 16; // single bytes are chunks too
 
 } // namespace
 
@@ -51,7 +51,7 @@ void ChunkQueue::jump() {
 }
 
 bool ChunkQueue::fits(std::size_t size) const {
-    return waiting_.bytes.size() + size <= capacity_ && waiting_.chunks.size() < mostChunks;
+    return waiting_.bytes.size() + size <= capacity_ && waiting_.chunks.size() < maxChunks;
 }
 
 bool ChunkQueue::hasRoom(std::size_t size) const {

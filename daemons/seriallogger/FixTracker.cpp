@@ -9,7 +9,7 @@ namespace {
 
 // A pause is half of the time from fix to fix: no receiver is silent for so long amid its sentences. USB
 // adapters may hold bytes back for 16 ms; nobody should wait for half a second.
-constexpr double leastPause_s = 0.05, mostPause_s = 0.5;
+constexpr double leastPause_s = 0.05, maxPause_s = 0.5;
 
 double secondOfDay(const nmea::UtcTime &time) {
     return time.hour * 3600 + time.minute * 60 + time.second;
@@ -39,7 +39,7 @@ void FixTracker::feed(std::string_view bytes, const Moment &arrival, const Sink 
 }
 
 std::int64_t FixTracker::pause_ns() const {
-    return std::int64_t(std::clamp(period_s_ / 2, leastPause_s, mostPause_s) * 1e9);
+    return std::int64_t(std::clamp(period_s_ / 2, leastPause_s, maxPause_s) * 1e9);
 }
 
 std::optional<std::int64_t> FixTracker::waitUntilMono_ns() const {

@@ -45,7 +45,7 @@ Result<SerialLogReader::Piece> SerialLogReader::next() {
                              .arg(chunk_->offset));
         end_ = following_ ? std::min<quint64>(following_->offset, size_) : size_;
     }
-    Piece piece{offset_, chunk_->arrival, raw_.read(std::min(mostBytes, qint64(end_ - offset_)))};
+    Piece piece{offset_, chunk_->arrival, raw_.read(std::min(maxBytes, qint64(end_ - offset_)))};
     if (piece.bytes.isEmpty())
         return diskError(raw_.fileName() + ": cannot be read: " + raw_.errorString(), raw_.fileName());
     offset_ += quint64(piece.bytes.size());

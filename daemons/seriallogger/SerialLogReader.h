@@ -17,7 +17,7 @@ public:
         Moment arrival;
         QByteArray bytes;
     };
-    static constexpr qint64 mostBytes = 1 << 16; ///< of a piece; longer chunks come in several
+    static constexpr qint64 maxBytes = 1 << 16; ///< of a piece; longer chunks come in several
 
     /// base: path without ".raw" and ".index". Errors name the file and what is wrong.
     Result<void> open(const QString &base);

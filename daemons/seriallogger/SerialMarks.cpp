@@ -9,7 +9,7 @@
 namespace hermes::seriallogger {
 namespace {
 
-constexpr std::size_t mostMarks = 1000;
+constexpr std::size_t maxMarks = 1000;
 constexpr qint64 longestLine = 1 << 14; // bytes; a text has at most 1000 characters
 
 } // namespace
@@ -22,7 +22,7 @@ Result<std::vector<RecordedMark>> readMarks(const StoredRecording &recording) {
     if (!file.open(QIODevice::ReadOnly))
         return diskError(file.fileName() + ": cannot be read: " + file.errorString(), file.fileName());
     const double startMono_s = recording.sidecar.value("start_mono").toDouble();
-    while (!file.atEnd() && marks.size() < mostMarks) {
+    while (!file.atEnd() && marks.size() < maxMarks) {
         const QJsonObject event = QJsonDocument::fromJson(file.readLine(longestLine)).object();
         if (event["event"] != QJsonValue("mark") || !event["text"].isString())
             continue;

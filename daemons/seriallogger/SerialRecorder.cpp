@@ -12,7 +12,7 @@ namespace hermes::seriallogger {
 namespace {
 
 constexpr std::chrono::milliseconds collectPeriod{20}; // what the end of the process may cost
-constexpr int mostEventBytes = 1 << 20;
+constexpr int maxEventBytes = 1 << 20;
 
 } // namespace
 
@@ -80,7 +80,7 @@ bool SerialRecorder::addEvent(const QString &event, QJsonObject line, const Mome
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!recording_ || (stopping_ && !atEnd))
         return false;
-    if (events_.size() + text.size() > mostEventBytes) {
+    if (events_.size() + text.size() > maxEventBytes) {
         ++eventsLost_;
         return false;
     }

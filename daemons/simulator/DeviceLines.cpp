@@ -34,7 +34,7 @@ Result<void> GpsLine::open(const QString &link) {
 void GpsLine::send(const QByteArray &sentences) {
     if (!pty_ || !pty_->isOpen())
         return;
-    if (pty_->unread() > mostUnread)
+    if (pty_->unread() > maxUnread)
         state_.unreadLost += pty_->discardUnread();
     (pty_->write(sentences) ? state_.bytes : state_.unreadLost) += sentences.size();
 }

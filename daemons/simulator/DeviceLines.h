@@ -41,7 +41,7 @@ public:
 
 private:
     /// At 10 Hz it is 1.4 s, at 1 Hz it is 14 s.
-    static constexpr qint64 mostUnread = 2048;
+    static constexpr qint64 maxUnread = 2048;
 
     std::shared_ptr<PtyInterface> pty_;
     GpsLineState state_;

@@ -44,7 +44,7 @@ void People::advance(double seconds, Vector robot) {
         const double gap = (next - robot).norm();
         if (gap < nearest_ && gap < (person.position - robot).norm()) {
             person.waiting += seconds;
-            if (person.waiting > patience) {
+            if (person.waiting > longestWait) {
                 person.forward = !person.forward;
                 person.waiting = 0;
             }

@@ -24,10 +24,10 @@ public:
         double waiting = 0;  ///< for the robot; seconds
     };
 
-    static constexpr double radius = 0.25;  ///< metres
-    static constexpr double height = 1.75;  ///< metres
-    static constexpr double distance = 0.4; ///< kept between the outlines of person and robot; metres
-    static constexpr double patience = 2;   ///< seconds, then one who waits turns back
+    static constexpr double radius = 0.25;   ///< metres
+    static constexpr double height = 1.75;   ///< metres
+    static constexpr double distance = 0.4;  ///< kept between the outlines of person and robot; metres
+    static constexpr double longestWait = 2; ///< seconds, then one who waits turns back
 
     People() = default;
     /// They begin at the first points of their ways. robotRadius: of its outline; metres.

@@ -12,7 +12,7 @@ namespace hermes::softwaretrigger {
 
 namespace {
 
-constexpr int mostWaiting = 1000; // rows
+constexpr int maxWaiting = 1000; // rows
 
 } // namespace
 
@@ -41,7 +41,7 @@ void FiringLog::append(const QByteArray &row) {
         return;
     {
         const std::lock_guard lock(mutex_);
-        if (waiting_ >= mostWaiting) {
+        if (waiting_ >= maxWaiting) {
             ++state_.lost;
             return;
         }

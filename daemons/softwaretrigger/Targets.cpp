@@ -33,7 +33,7 @@ void Targets::call(const QString &daemon, const QString &method, const QJsonObje
     if (found == targets_.end())
         return done(Error(ErrorCode::NotReady, daemon + " is no longer a target"));
     const std::shared_ptr<int> waiting = found->second.waiting;
-    if (*waiting >= mostCalls)
+    if (*waiting >= maxCalls)
         return done(Error(ErrorCode::OverLimit,
                           QString("%1: %2 calls wait for its replies already").arg(daemon).arg(*waiting)));
     ++*waiting;

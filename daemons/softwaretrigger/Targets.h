@@ -14,7 +14,7 @@ namespace hermes::softwaretrigger {
 class Targets {
 public:
     /// Calls of one daemon that may wait for their replies; one more fails at once.
-    static constexpr int mostCalls = 64;
+    static constexpr int maxCalls = 64;
 
     /// Connects to what is named here and not connected yet, ends what is not named.
     void use(const QSet<QString> &daemons);

@@ -10,7 +10,7 @@
 namespace hermes::supervisor {
 namespace {
 
-constexpr int mostPasses = 10; // a member may start another one meanwhile
+constexpr int maxPasses = 10; // a member may start another one meanwhile
 
 /// As the system shows it: of other users' processes nothing.
 bool isMember(const QString &pid, const QByteArray &assignment) {
@@ -34,7 +34,7 @@ bool killMember(const QString &pid, const QByteArray &assignment) {
 void ProcessFamily::end(const QString &name) {
     const QByteArray assignment = QByteArray(variable) + '=' + name.toUtf8();
     QSet<QString> killed; // some may take a while
-    for (int pass = 0; pass < mostPasses; ++pass) {
+    for (int pass = 0; pass < maxPasses; ++pass) {
         const auto before = killed.size();
         for (const QString &pid : QDir("/proc").entryList({"[0-9]*"}, QDir::Dirs))
             if (!killed.contains(pid) && killMember(pid, assignment))

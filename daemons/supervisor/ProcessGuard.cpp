@@ -14,8 +14,8 @@
 namespace hermes::supervisor {
 namespace {
 
-constexpr std::size_t mostGroups = 256;
-constexpr int mostDescriptors = 4096;
+constexpr std::size_t maxGroups = 256;
+constexpr int maxDescriptors = 4096;
 constexpr timespec guardPatience{2, 0};
 
 /// Runs in the forked process: calls of the system only, for other threads may have held any lock.
@@ -26,9 +26,9 @@ constexpr timespec guardPatience{2, 0};
         ::signal(number, SIG_IGN);
     ::dup2(changes, 0);
     if (::syscall(SYS_close_range, 1U, ~0U, 0U) != 0)
-        for (int descriptor = 1; descriptor < mostDescriptors; ++descriptor)
+        for (int descriptor = 1; descriptor < maxDescriptors; ++descriptor)
             ::close(descriptor);
-    std::array<pid_t, mostGroups> groups{};
+    std::array<pid_t, maxGroups> groups{};
     pid_t change = 0;
     for (ssize_t got; (got = ::read(0, &change, sizeof change)) != 0;) {
         if (got != sizeof change)

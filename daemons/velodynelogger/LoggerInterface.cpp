@@ -56,7 +56,7 @@ void VelodyneLogger::declareSettings() {
     addSetting(
         Field::integer("decode.laser", "Laser whose ring is published; -1: the one nearest to the horizon (" +
                                            QString::fromStdString(velodyne::horizonLasers()) + ")")
-            .range(-1, velodyne::mostLasers() - 1)
+            .range(-1, velodyne::maxLasers() - 1)
             .byDefault(-1)
             .appliesOnRestart()
             .group("Decoding"));

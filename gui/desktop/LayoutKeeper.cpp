@@ -99,10 +99,10 @@ void LayoutKeeper::setOutcome(const Result<void> &outcome) {
     isWaiting_ = !outcome && outcome.error().is(ErrorCode::NotReady);
 }
 
-bool LayoutKeeper::collect(std::chrono::milliseconds patience) {
+bool LayoutKeeper::collect(std::chrono::milliseconds timeout) {
     if (!writing_.valid())
         return true;
-    if (writing_.wait_for(patience) != std::future_status::ready)
+    if (writing_.wait_for(timeout) != std::future_status::ready)
         return false;
     const QString before = problem_;
     setOutcome(writing_.get());

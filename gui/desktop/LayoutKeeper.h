@@ -39,7 +39,7 @@ private:
     bool lock();
     Result<void> write(const Layouts &taken);
     void setOutcome(const Result<void> &outcome);
-    bool collect(std::chrono::milliseconds patience);
+    bool collect(std::chrono::milliseconds timeout);
 
     Layouts &layouts_;
     std::future<Result<void>> writing_;

@@ -17,7 +17,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr qint64 largestFile = 1 << 20; // bytes; a window with all panels and a hundred plots has 20,000
-constexpr int mostRobots = 200;
+constexpr int maxRobots = 200;
 
 QString tr(const char *text) {
     return QObject::tr(text);
@@ -159,7 +159,7 @@ void Layouts::read() {
     current_ = nameOf(kept["layout"].toString());
     const QJsonObject robots = kept["robots"].toObject();
     for (const QJsonValue &address : robots["addresses"].toArray())
-        if (robots_.addresses.size() < mostRobots)
+        if (robots_.addresses.size() < maxRobots)
             robots_.addresses.append(address.toString());
     robots_.names = textsIn(robots["names"]);
     for (QString &name : robots_.names)

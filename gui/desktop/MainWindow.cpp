@@ -152,7 +152,7 @@ void MainWindow::restoreAll() {
         QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
     fleet_.setNames(layouts_.robots().names);
     fleet_.setPlaces(layouts_.robots().places);
-    fleet_.wish(layouts_.robots().chosen);
+    fleet_.prefer(layouts_.robots().chosen);
 }
 
 void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {

@@ -12,8 +12,8 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr std::size_t mostLines = 1000;
-constexpr std::chrono::milliseconds patience{200};
+constexpr std::size_t maxLines = 1000;
+constexpr std::chrono::milliseconds joinTimeout{200};
 
 /// What waits; of the thread, too, which may be held in a write for ever.
 struct Waiting {
@@ -28,7 +28,7 @@ std::shared_ptr<Waiting> waiting;
 
 void add(QtMsgType, const QMessageLogContext &, const QString &text) {
     const std::lock_guard<std::mutex> lock(waiting->mutex);
-    if (waiting->lines.size() >= mostLines)
+    if (waiting->lines.size() >= maxLines)
         ++waiting->missing;
     else
         waiting->lines.push_back(text.toLocal8Bit() + '\n');
@@ -67,7 +67,7 @@ MessageWriter::~MessageWriter() {
     std::unique_lock<std::mutex> lock(waiting->mutex);
     waiting->isEnding = true;
     waiting->changed.notify_all();
-    waiting->changed.wait_for(lock, patience, [] { return waiting->hasEnded; });
+    waiting->changed.wait_for(lock, joinTimeout, [] { return waiting->hasEnded; });
 }
 
 } // namespace hermes::desktop

@@ -94,8 +94,8 @@ const char *iconOf(Condition condition) {
 void apply() {
     loadIcons();
     QApplication::setStyle(new ThemeStyle);
-    const QByteArray wish = qgetenv("HERMES_THEME");
-    const bool dark = wish == "dark" || (wish != "light" && isDark());
+    const QByteArray setting = qgetenv("HERMES_THEME");
+    const bool dark = setting == "dark" || (setting != "light" && isDark());
     QApplication::setPalette(dark ? darkPalette() : lightPalette());
 }
 

@@ -9,7 +9,7 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr int mostElements = 64; // of a list with a column for each
+constexpr int maxElements = 64; // of a list with a column for each
 
 QString below(const QString &path, const QString &name) {
     return path.isEmpty() ? name : path + '.' + name;
@@ -22,7 +22,7 @@ QString element(const QString &path, int index) {
 /// How many elements a list always has; 0: that may change, or they are too many.
 int fixedLength(const QJsonObject &schema) {
     const int least = schema["minItems"].toInt(-1);
-    return least == schema["maxItems"].toInt(-2) && least <= mostElements ? std::max(least, 0) : 0;
+    return least == schema["maxItems"].toInt(-2) && least <= maxElements ? std::max(least, 0) : 0;
 }
 
 /// What is no field has the name data; so has what would be called as a column of the message itself.

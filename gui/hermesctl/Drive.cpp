@@ -96,9 +96,9 @@ Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
 }
 
 /// On stderr, over itself.
-void show(const Twist2D &wish) {
+void show(const Twist2D &request) {
     if (isTerminal(StandardStream::Errors) && takesMore(stderr))
-        std::fprintf(stderr, "\rvx %5.2f m/s, omega %5.2f rad/s ", wish.vx, wish.omega);
+        std::fprintf(stderr, "\rvx %5.2f m/s, omega %5.2f rad/s ", request.vx, request.omega);
 }
 
 /// Whoever began this has gone: the program that reads what it prints, the connection by ssh, the terminal.
@@ -134,10 +134,10 @@ Result<void> drive(Client &client, const Arguments &arguments) {
     const std::optional<Twist2D> velocity = *velocityOf(arguments);
     DriveKeys keys;
     Driver driver(client, arguments, "motor.drive", [&] {
-        const Twist2D wish = velocity ? *velocity : keys.wish(monotonicNow());
+        const Twist2D request = velocity ? *velocity : keys.request(monotonicNow());
         if (!velocity)
-            show(wish);
-        return asJson(wish).toObject();
+            show(request);
+        return asJson(request).toObject();
     });
     const double seconds = velocity && arguments.for_s <= 0 ? usualDrive_s : arguments.for_s;
     driver.endAfter(seconds);

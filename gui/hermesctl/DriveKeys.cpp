@@ -85,7 +85,7 @@ DriveKeys::Action DriveKeys::stop() {
     return Action::Stop;
 }
 
-Twist2D DriveKeys::wish(double now) const {
+Twist2D DriveKeys::request(double now) const {
     const auto share = [now](const Axis &axis) { return now < axis.until ? axis.sign : 0; };
     return {share(way_) * speed_, 0, share(turn_) * speed_ * turnOfSpeed};
 }

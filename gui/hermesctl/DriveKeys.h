@@ -19,7 +19,7 @@ public:
     /// jumps. What is no key of ours stops.
     Action take(const QByteArray &bytes, double now);
     /// m/s and rad/s; zero when no key came for held_s.
-    Twist2D wish(double now) const;
+    Twist2D request(double now) const;
 
 private:
     struct Axis {

@@ -93,7 +93,7 @@ void Driver::tick() {
 
 void Driver::send() {
     ++sent_;
-    QJsonObject command = wish_();
+    QJsonObject command = request_();
     command["stamp"] = stampNow() + clock_.seconds();
     client_.call(
         method_, command,

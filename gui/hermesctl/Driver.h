@@ -15,14 +15,14 @@ namespace hermes::ctl {
 /// and stops; what they say it asks each time.
 class Driver {
 public:
-    using Wish = std::function<QJsonObject()>;
+    using Request = std::function<QJsonObject()>;
 
-    /// method: of the motion command; wish: its parameters but for the time.
-    Driver(Client &client, const Arguments &arguments, QString method, Wish wish)
+    /// method: of the motion command; request: its parameters but for the time.
+    Driver(Client &client, const Arguments &arguments, QString method, Request request)
         : client_(client)
         , arguments_(arguments)
         , method_(std::move(method))
-        , wish_(std::move(wish)) {}
+        , request_(std::move(request)) {}
 
     /// Until the time is over, end() is called, the connection is lost, or a command is refused; the robot
     /// stands then. Error: why it ended early, or that the robot has not confirmed that it stands.
@@ -48,7 +48,7 @@ private:
     Client &client_;
     const Arguments &arguments_;
     const QString method_;
-    const Wish wish_;
+    const Request request_;
     double most_s_ = 0;
     QEventLoop loop_;
     QElapsedTimer begun_, driving_;

@@ -14,8 +14,8 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr int mostHosts = 20;
-constexpr qint64 mostBytes = 10000;
+constexpr int maxHosts = 20;
+constexpr qint64 maxBytes = 10000;
 
 QString fileName() {
     return QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation) + "/hermes/hosts";
@@ -25,7 +25,7 @@ QStringList reached() {
     QFile file(fileName());
     if (!file.open(QIODevice::ReadOnly))
         return {};
-    return QString::fromUtf8(file.read(mostBytes)).split('\n', Qt::SkipEmptyParts).mid(0, mostHosts);
+    return QString::fromUtf8(file.read(maxBytes)).split('\n', Qt::SkipEmptyParts).mid(0, maxHosts);
 }
 
 /// Empty: one of this computer, or none.
@@ -47,16 +47,16 @@ void rememberHost(const QString &address) {
     hosts.prepend(host);
     // It only helps to complete: where it cannot be written, nothing is lost.
     QDir().mkpath(QFileInfo(fileName()).path());
-    (void)saveFile(fileName(), hosts.mid(0, mostHosts).join('\n').toUtf8());
+    (void)saveFile(fileName(), hosts.mid(0, maxHosts).join('\n').toUtf8());
 }
 
-QStringList knownHosts(std::chrono::milliseconds patience) {
+QStringList knownHosts(std::chrono::milliseconds timeout) {
     QStringList hosts = reached();
     if (const auto issued = Authority(KeyFolder::usual()).list())
         for (const Authority::Issued &one : *issued)
             if (one.subject.role == PeerCertificate::daemonRole() && !one.isRevoked)
                 hosts.append(one.subject.name);
-    if (const auto announced = NetworkBrowser().look(patience))
+    if (const auto announced = NetworkBrowser().look(timeout))
         for (const QJsonObject &daemon : *announced)
             hosts.append(daemon["host"].toString());
     hosts.removeDuplicates();

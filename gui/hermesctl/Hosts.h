@@ -10,6 +10,6 @@ namespace hermes::ctl {
 void rememberHost(const QString &address);
 
 /// Those, robots that keys were issued for here, and who announces itself on the network within the time.
-QStringList knownHosts(std::chrono::milliseconds patience);
+QStringList knownHosts(std::chrono::milliseconds timeout);
 
 } // namespace hermes::ctl

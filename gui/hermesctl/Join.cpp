@@ -62,7 +62,7 @@ Result<void> agree(PairingStream &stream, const QDeadlineTimer &deadline) {
 
 Result<KeyBundle> take(PairingStream &stream, NewKeyFolder &folder) {
     const QDeadlineTimer deadline(longestTransfer);
-    const auto json = stream.receive(KeyBundle::mostJsonBytes, deadline);
+    const auto json = stream.receive(KeyBundle::maxJsonBytes, deadline);
     if (!json)
         return json.error();
     const auto keys = KeyBundle::fromJson(*json);

@@ -85,7 +85,7 @@ Result<void> handOver(PairingStream &stream, const QString &folder) {
     if (!keys)
         return keys.error();
     const QByteArray json = keys->toJson();
-    if (json.size() > KeyBundle::mostJsonBytes)
+    if (json.size() > KeyBundle::maxJsonBytes)
         return Error(ErrorCode::OverLimit, "the list of revoked certificates is too long");
     const QDeadlineTimer deadline(longestTransfer);
     if (const auto sent = stream.send(json, deadline); !sent)

@@ -8,7 +8,7 @@ namespace hermes::ctl {
 namespace {
 
 constexpr std::chrono::seconds longestHandshake{5};
-constexpr std::size_t mostGuests = 64; // at the same time, then the oldest goes
+constexpr std::size_t maxGuests = 64; // at the same time, then the oldest goes
 constexpr int waitingPeriod_ms = 250;
 
 QString textOf(const sockaddr *from) {
@@ -85,7 +85,7 @@ void PairingServer::accept() {
         sockets::accept(listening_, [&address](const sockaddr *from) { address = textOf(from); });
     if (socket == sockets::none)
         return;
-    if (guests_.size() == mostGuests) {
+    if (guests_.size() == maxGuests) {
         guests_.pop_front();
         isReady_.erase(isReady_.begin());
     }
@@ -104,12 +104,12 @@ Result<void> PairingServer::advance(const Listener &listener) {
             return {};
         }
         if (state == PairingStream::Handshake::Failed && guest->stream->isWrongSecret()) {
-            listener.wrong(guest->address, mostWrong - ++wrong_);
-            if (wrong_ == mostWrong)
+            listener.wrong(guest->address, maxWrong - ++wrong_);
+            if (wrong_ == maxWrong)
                 return Error(
                     ErrorCode::NotAuthorised,
                     QString("the code was wrong %1 times; it is no longer valid, and no keys were made")
-                        .arg(mostWrong));
+                        .arg(maxWrong));
         }
         const bool ends = state == PairingStream::Handshake::Failed || guest->deadline.hasExpired();
         guest = ends ? guests_.erase(guest) : std::next(guest);

@@ -13,7 +13,7 @@ namespace hermes::ctl {
 /// Waits for the one computer that proves the code; others are heard beside it, each for at most 5 s.
 class PairingServer {
 public:
-    static constexpr int mostWrong = 3;
+    static constexpr int maxWrong = 3;
 
     struct Joined {
         std::unique_ptr<PairingStream> stream;

@@ -13,7 +13,7 @@ namespace {
 const char *const suite = "ECDHE-PSK-CHACHA20-POLY1305";
 const char *const identityText = "hermes pairing 1";
 constexpr int lengthBytes = 4;
-constexpr int mostAtOnce = 1 << 16;
+constexpr int maxAtOnce = 1 << 16;
 
 QString reasonOf(unsigned long error) {
     const char *const text = ERR_reason_error_string(error);
@@ -58,10 +58,10 @@ unsigned PairingStream::serverSecret(SSL *ssl, const char *identity, unsigned ch
     return copySecret(self->secret_, secret, most);
 }
 
-unsigned PairingStream::clientSecret(SSL *ssl, const char *, char *identity, unsigned mostIdentity,
+unsigned PairingStream::clientSecret(SSL *ssl, const char *, char *identity, unsigned maxIdentity,
                                      unsigned char *secret, unsigned most) {
     auto *const self = static_cast<PairingStream *>(SSL_get_app_data(ssl));
-    if (std::strlen(identityText) >= mostIdentity)
+    if (std::strlen(identityText) >= maxIdentity)
         return 0;
     std::strcpy(identity, identityText);
     self->secretIsUsed_ = true;
@@ -164,10 +164,10 @@ Result<void> PairingStream::send(const QByteArray &frame, const QDeadlineTimer &
 
 Result<QByteArray> PairingStream::receiveBytes(int count, const QDeadlineTimer &deadline) {
     QByteArray bytes;
-    char part[mostAtOnce];
+    char part[maxAtOnce];
     while (bytes.size() < count) {
         ERR_clear_error();
-        const int result = SSL_read(ssl_.get(), part, std::min(mostAtOnce, count - bytes.size()));
+        const int result = SSL_read(ssl_.get(), part, std::min(maxAtOnce, count - bytes.size()));
         if (result > 0) {
             bytes.append(part, result);
             if (deadline.hasExpired())
@@ -179,15 +179,15 @@ Result<QByteArray> PairingStream::receiveBytes(int count, const QDeadlineTimer &
     return bytes;
 }
 
-Result<QByteArray> PairingStream::receive(int mostBytes, const QDeadlineTimer &deadline) {
+Result<QByteArray> PairingStream::receive(int maxBytes, const QDeadlineTimer &deadline) {
     const auto length = receiveBytes(lengthBytes, deadline);
     if (!length)
         return length.error();
     const auto count = qFromBigEndian<quint32>(length->constData());
-    if (count > quint32(mostBytes))
+    if (count > quint32(maxBytes))
         return Error(
             ErrorCode::OverLimit,
-            QString("the other side wants to send %1 bytes, %2 at most are taken").arg(count).arg(mostBytes));
+            QString("the other side wants to send %1 bytes, %2 at most are taken").arg(count).arg(maxBytes));
     return receiveBytes(int(count), deadline);
 }
 

@@ -35,12 +35,12 @@ public:
     Result<void> handshakeUntil(const QDeadlineTimer &deadline);
 
     Result<void> send(const QByteArray &frame, const QDeadlineTimer &deadline);
-    Result<QByteArray> receive(int mostBytes, const QDeadlineTimer &deadline);
+    Result<QByteArray> receive(int maxBytes, const QDeadlineTimer &deadline);
 
 private:
     static SSL_CTX *context(Side side);
     static unsigned serverSecret(SSL *ssl, const char *identity, unsigned char *secret, unsigned most);
-    static unsigned clientSecret(SSL *ssl, const char *hint, char *identity, unsigned mostIdentity,
+    static unsigned clientSecret(SSL *ssl, const char *hint, char *identity, unsigned maxIdentity,
                                  unsigned char *secret, unsigned most);
     void judgeFailure(int error);
     Result<void> waitFor(bool toWrite, const QDeadlineTimer &deadline) const;

@@ -7,7 +7,7 @@
 namespace hermes {
 namespace {
 
-constexpr int mostMarks = 1000; // of a logger
+constexpr int maxMarks = 1000; // of a logger
 constexpr double latest_s = 1e7;
 
 } // namespace
@@ -26,7 +26,7 @@ void listMarks(
         std::vector<SessionMark> marks;
         for (const SessionReply &reply : replies) {
             const QJsonArray told = reply.result ? reply.result->toArray() : QJsonArray();
-            for (int i = 0; i < std::min(told.size(), mostMarks); ++i) {
+            for (int i = 0; i < std::min(told.size(), maxMarks); ++i) {
                 const double own_s = told[i]["t_s"].toDouble(-1),
                              t_s = own_s + delays_s.at(reply.member.name);
                 if (own_s >= 0 && t_s <= latest_s)

@@ -18,11 +18,11 @@ constexpr double leastSpan_s = 0.1;                // of the readings
 
 } // namespace
 
-WheelTurn::WheelTurn(Client &motors, QString holder, std::chrono::milliseconds patience, QObject *parent)
+WheelTurn::WheelTurn(Client &motors, QString holder, std::chrono::milliseconds timeout, QObject *parent)
     : QObject(parent)
     , motors_(motors)
     , holder_(std::move(holder))
-    , patience_(patience) {
+    , timeout_(timeout) {
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &WheelTurn::tick);
     connect(&motors, &Client::disconnected, this, [this](const QString &reason) {
@@ -60,7 +60,7 @@ void WheelTurn::call(const QString &method, const QJsonObject &params, const Cli
 void WheelTurn::awaitReady() {
     if (phase_ != Phase::Preparing)
         return;
-    const bool isLate = waiting_.hasExpired(patience_.count());
+    const bool isLate = waiting_.hasExpired(timeout_.count());
     const auto again = [this] { QTimer::singleShot(look, this, &WheelTurn::awaitReady); };
     if (!motors_.isConnected())
         return isLate ? fail(Error(ErrorCode::Disconnected, motors_.problem())) : again();
@@ -78,7 +78,7 @@ void WheelTurn::awaitReady() {
             else
                 again();
         },
-        patience_);
+        timeout_);
 }
 
 void WheelTurn::acquire() {
@@ -99,7 +99,7 @@ void WheelTurn::acquire() {
         timer_.start(period);
     };
     isAcquiring_ = true;
-    call("control.acquire", {{"client", holder_}, {"timeout_s", lease_s}}, acquired, patience_);
+    call("control.acquire", {{"client", holder_}, {"timeout_s", lease_s}}, acquired, timeout_);
 }
 
 void WheelTurn::onOdometry(const TopicUpdate &update) {
@@ -121,9 +121,9 @@ void WheelTurn::onWheels(const TopicUpdate &update) {
 
 void WheelTurn::tick() {
     if (!isClockKnown_) { // a command without the robot's time is refused where the clocks differ
-        if (waiting_.hasExpired(patience_.count()))
+        if (waiting_.hasExpired(timeout_.count()))
             fail(Error(ErrorCode::TimedOut,
-                       QString("no odometry came within %1 s").arg(double(patience_.count()) / 1000)));
+                       QString("no odometry came within %1 s").arg(double(timeout_.count()) / 1000)));
         return;
     }
     if (!turning_.isValid())
@@ -141,7 +141,7 @@ void WheelTurn::tick() {
                                    "the wires A and B of the encoder, or connect it")
                                .arg(wheel_, result.error().message)));
         },
-        patience_, Client::Repeats::None); // a late one would move the robot
+        timeout_, Client::Repeats::None); // a late one would move the robot
 }
 
 void WheelTurn::fail(const Error &error) {
@@ -174,13 +174,13 @@ void WheelTurn::stop() {
                                  (*result)["text"].toString());
         release();
     };
-    call("motor.stop", {{"wait_s", standing_s}}, stopped, patience_ + std::chrono::seconds(int(standing_s)),
+    call("motor.stop", {{"wait_s", standing_s}}, stopped, timeout_ + std::chrono::seconds(int(standing_s)),
          Client::Repeats::AtOnce);
 }
 
 void WheelTurn::release() {
     call(
-        "control.release", {}, [this](const auto &) { finish(); }, patience_);
+        "control.release", {}, [this](const auto &) { finish(); }, timeout_);
 }
 
 Result<double> WheelTurn::measured() const {

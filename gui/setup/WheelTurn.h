@@ -21,9 +21,9 @@ public:
     /// Called once, when the robot stands: the mean speed in rad/s, or why the turn ended early.
     using Done = std::function<void(const Result<double> &)>;
 
-    /// motors: the client of a motor control; holder: what others see who has the control; patience: with
+    /// motors: the client of a motor control; holder: what others see who has the control; timeout: with
     /// the connection and with controllers that are not found yet.
-    WheelTurn(Client &motors, QString holder, std::chrono::milliseconds patience, QObject *parent = nullptr);
+    WheelTurn(Client &motors, QString holder, std::chrono::milliseconds timeout, QObject *parent = nullptr);
 
     /// One turn at a time.
     void begin(const QString &wheel, const Done &done);
@@ -53,7 +53,7 @@ private:
 
     Client &motors_;
     const QString holder_;
-    const std::chrono::milliseconds patience_;
+    const std::chrono::milliseconds timeout_;
     QTimer timer_;
     QElapsedTimer waiting_, turning_;
     QString wheel_;

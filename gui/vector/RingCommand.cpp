@@ -100,7 +100,7 @@ void addRingCommand(CLI::App &app) {
     sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
     command->sensor.addTo(*sub);
     CLI::Option *laser = addOption(
-        *sub, "--laser ID", command->laser, wholeNumber(0, velodyne::mostLasers() - 1),
+        *sub, "--laser ID", command->laser, wholeNumber(0, velodyne::maxLasers() - 1),
         "Which laser, else the one that looks nearest to the horizon (" + velodyne::horizonLasers() + ")");
     addOption(*sub, "--model MODEL", command->model, CLI::IsMember(velodyne::modelChoices()),
               "The sensor, or auto: as the packets say (hdl32e where they do not)")

@@ -21,7 +21,7 @@ const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>) {
             .add("partial", &TurnHeader::partial, "The first, the last, or one that was cut")
             .mayBeMissing()
             .add("rays", &TurnHeader::rays, "Fired in a full turn, with or without a return")
-            .range(0, ScanMessage::mostPoints)
+            .range(0, ScanMessage::maxPoints)
             .add("lost_packets", &TurnHeader::lostPackets, "In this turn")
             .mayBeMissing()
             .add("frame", &TurnHeader::frame, "What the coordinates are relative to")
@@ -38,13 +38,13 @@ const Fields<ScanMessage> &fieldsOf(Of<ScanMessage>) {
             .add("laser", &ScanMessage::laser, "Whose ring it is")
             .mayBeMissing()
             .add("x", &ScanMessage::x, "Of each point, counter-clockwise: ahead of the sensor", "m")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("y", &ScanMessage::y, "To the left of the sensor", "m")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("t", &ScanMessage::t, "After the stamp", "s")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("intensity", &ScanMessage::intensity, "Of the return, 0 to 255")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .mayBeMissing();
     return fields;
 }
@@ -55,15 +55,15 @@ const Fields<CloudMessage> &fieldsOf(Of<CloudMessage>) {
             .include(&CloudMessage::header)
             .add("model", &CloudMessage::model, "Of the sensor")
             .add("x", &CloudMessage::x, "Of each point, in the order of measuring: ahead of the sensor", "m")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("y", &CloudMessage::y, "To the left", "m")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("z", &CloudMessage::z, "Up", "m")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("laser", &CloudMessage::laser, "That fired")
-            .atMostElements(ScanMessage::mostPoints)
+            .atMostElements(ScanMessage::maxPoints)
             .add("intensity", &CloudMessage::intensity, "Of the return, 0 to 255")
-            .atMostElements(ScanMessage::mostPoints);
+            .atMostElements(ScanMessage::maxPoints);
     return fields;
 }
 

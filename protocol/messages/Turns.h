@@ -24,7 +24,7 @@ struct TurnHeader {
 /// them. Lengths and times are floats: who reads floats gets what `hermes-vector map` gets of the same
 /// packets.
 struct ScanMessage {
-    static constexpr std::size_t mostPoints = 1000000;
+    static constexpr std::size_t maxPoints = 1000000;
 
     TurnHeader header;
     int laser = 0;

@@ -9,7 +9,7 @@ namespace hermes::nmea {
 
 namespace {
 
-constexpr int mostDecimals = 9;
+constexpr int maxDecimals = 9;
 
 bool isDigits(std::string_view text) {
     return text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -179,7 +179,7 @@ void FieldWriter::number(std::optional<double> value, int width, int decimals, d
 void FieldWriter::time(const std::optional<UtcTime> &value, int decimals) {
     if (!value)
         return text_.addField({});
-    fits_ = fits_ && isValid(*value) && decimals >= 0 && decimals <= mostDecimals;
+    fits_ = fits_ && isValid(*value) && decimals >= 0 && decimals <= maxDecimals;
     if (!fits_)
         return;
     // Rounding must not reach the next minute.
@@ -216,7 +216,7 @@ void FieldWriter::position(const std::optional<Position> &value, int decimals) {
 }
 
 void FieldWriter::angle(double value_deg, int degreeDigits, double most, int decimals, const char *signs) {
-    fits_ = fits_ && std::abs(value_deg) <= most && decimals >= 0 && decimals <= mostDecimals;
+    fits_ = fits_ && std::abs(value_deg) <= most && decimals >= 0 && decimals <= maxDecimals;
     if (!fits_)
         return;
     // In whole units of the last decimal, so that minutes are never rounded up to 60.

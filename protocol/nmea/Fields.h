@@ -14,10 +14,10 @@ struct Position {
 };
 
 constexpr double knot = 1852.0 / 3600; ///< m/s
-constexpr double mostKnots = 9999;     ///< of a speed
-constexpr double mostMetres = 1e6;     ///< of an altitude
-constexpr double mostHdop = 9999;      ///< some write 99.99 or 9999 for none
-constexpr int mostSatellites = 999;
+constexpr double maxKnots = 9999;      ///< of a speed
+constexpr double maxMetres = 1e6;      ///< of an altitude
+constexpr double maxHdop = 9999;       ///< some write 99.99 or 9999 for none
+constexpr int maxSatellites = 999;
 
 /// What is wrong with a sentence; false when nothing is.
 struct FieldFault {

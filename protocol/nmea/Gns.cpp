@@ -42,9 +42,9 @@ FieldFault decode(const Sentence &sentence, Gns &gns) {
     if (gns.position && !gns.quality)
         read.fail(modeField, modeExpected);
     FieldReader aside(sentence); // the position does not depend on these
-    gns.satellites = aside.whole(7, 0, mostSatellites, "a number of satellites");
-    gns.hdop = aside.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
-    gns.altitude = aside.number(9, -mostMetres, mostMetres, "an altitude in metres");
+    gns.satellites = aside.whole(7, 0, maxSatellites, "a number of satellites");
+    gns.hdop = aside.number(8, 0, maxHdop, "an HDOP from 0 to 9999");
+    gns.altitude = aside.number(9, -maxMetres, maxMetres, "an altitude in metres");
     return gns.quality == 0 ? FieldFault() : read.fault();
 }
 

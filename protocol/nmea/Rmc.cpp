@@ -22,7 +22,7 @@ FieldFault decode(const Sentence &sentence, Rmc &rmc) {
     rmc.valid = status == 'A';
     rmc.position = read.position(3);
     FieldReader aside(sentence); // the position does not depend on these
-    rmc.speed = aside.number(7, 0, mostKnots, "a speed from 0 to 9999 knots");
+    rmc.speed = aside.number(7, 0, maxKnots, "a speed from 0 to 9999 knots");
     if (rmc.speed)
         rmc.speed = *rmc.speed * knot;
     rmc.course_deg = aside.number(8, 0, 360, "a course from 0 to 360 degrees");
@@ -40,7 +40,7 @@ std::optional<SentenceText> encode(const Rmc &rmc, std::string_view talker, cons
     write.time(rmc.time, decimals.seconds);
     write.letter(rmc.valid ? 'A' : 'V');
     write.position(rmc.position, decimals.minutes);
-    write.number(rmc.speed ? std::optional(*rmc.speed / knot) : std::nullopt, 5, 1, 0, mostKnots);
+    write.number(rmc.speed ? std::optional(*rmc.speed / knot) : std::nullopt, 5, 1, 0, maxKnots);
     // 359.97 would be rounded up to a whole turn
     const auto course = rmc.course_deg && *rmc.course_deg >= 359.95 && *rmc.course_deg <= 360
                             ? std::optional(0.0)

@@ -21,9 +21,9 @@ FieldFault decode(const Sentence &sentence, Vtg &vtg) {
         return {0, "VTG with 8 fields or more"};
     vtg = Vtg();
     vtg.course_deg = withUnit(sentence, 1, 360, "T");
-    if (const auto knots = withUnit(sentence, 5, mostKnots, "N"))
+    if (const auto knots = withUnit(sentence, 5, maxKnots, "N"))
         vtg.speed = *knots * knot;
-    else if (const auto other = withUnit(sentence, 7, mostKnots * 2, "K"))
+    else if (const auto other = withUnit(sentence, 7, maxKnots * 2, "K"))
         vtg.speed = *other * kmh;
     return {};
 }

@@ -6,7 +6,7 @@
 namespace hermes {
 namespace {
 
-constexpr std::size_t mostEnded = 64, mostDue = 32;
+constexpr std::size_t maxEnded = 64, maxDue = 32;
 constexpr double rememberEnded_s = 120; // longer than anybody repeats pieces
 constexpr int limits = 3; // of one message: an urgent one, a usual one, and one of a topic at a time
 
@@ -107,12 +107,12 @@ bool IncomingPieces::hasEnded(const Piece &piece, double now) {
 void IncomingPieces::end(const Piece &piece, double now) {
     owe(piece.number);
     ended_.push_back({piece.number, piece.total, now});
-    if (ended_.size() > mostEnded)
+    if (ended_.size() > maxEnded)
         ended_.pop_front();
 }
 
 void IncomingPieces::owe(quint16 number) {
-    if (due_.size() < mostDue && std::find(due_.begin(), due_.end(), number) == due_.end())
+    if (due_.size() < maxDue && std::find(due_.begin(), due_.end(), number) == due_.end())
         due_.push_back(number);
 }
 
@@ -123,7 +123,7 @@ void IncomingPieces::drop(Place place) {
 }
 
 void IncomingPieces::makeRoom(int limit) {
-    while (messages_.size() > mostMessages || (messages_.size() > 1 && bytes_ > qint64(limit) * limits))
+    while (messages_.size() > maxMessages || (messages_.size() > 1 && bytes_ > qint64(limit) * limits))
         drop(messages_.begin());
 }
 

@@ -8,11 +8,11 @@
 namespace hermes {
 
 /// Large messages on their way in, put together from their pieces in any order. Holds what has come, never
-/// what was only announced; at most mostMessages, and three times the limit of one. Beyond that, and after
+/// what was only announced; at most maxMessages, and three times the limit of one. Beyond that, and after
 /// longestPause_s without a piece, the one that got none for the longest time is forgotten.
 class IncomingPieces {
 public:
-    static constexpr std::size_t mostMessages = 8;
+    static constexpr std::size_t maxMessages = 8;
     static constexpr double longestPause_s = 30;
 
     enum class Outcome {

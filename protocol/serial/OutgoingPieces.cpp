@@ -21,7 +21,7 @@ void LinkPace::measured(double seconds) {
     roundTrip_s += weight * (seconds - roundTrip_s);
 }
 
-double LinkPace::patience() const {
+double LinkPace::timeout() const {
     const double ofFrames = bytesPerSecond > 0 ? 4 * frameBytes / bytesPerSecond : 0;
     return leastPatience_s + ofFrames + (roundTrip_s > 0 ? 2 * roundTrip_s : firstPatience_s);
 }
@@ -30,7 +30,7 @@ int OutgoingPieces::nextIndex() const {
     for (int i = base_; i < next_; ++i)
         if (slot(i).lost)
             return i;
-    const bool mayBegin = next_ < count_ && next_ < base_ + windowPieces && inFlight_ < mostInFlight;
+    const bool mayBegin = next_ < count_ && next_ < base_ + windowPieces && inFlight_ < maxInFlight;
     return mayBegin ? next_ : -1;
 }
 
@@ -95,8 +95,8 @@ bool OutgoingPieces::take(const PieceReport &report, LinkPace &pace, double now)
 double OutgoingPieces::dueAt(const LinkPace &pace) const {
     if (inFlight_ == 0)
         return std::numeric_limits<double>::infinity();
-    const double patience_s = pace.patience();
-    return sentAt_ + std::min(std::max(longestPause_s, patience_s), patience_s * std::pow(growth, asked_));
+    const double timeout_s = pace.timeout();
+    return sentAt_ + std::min(std::max(longestPause_s, timeout_s), timeout_s * std::pow(growth, asked_));
 }
 
 void OutgoingPieces::ask() {

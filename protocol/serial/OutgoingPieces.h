@@ -13,15 +13,15 @@ struct LinkPace {
 
     void measured(double seconds);
     /// After so long without a report something was lost.
-    double patience() const;
+    double timeout() const;
 };
 
 /// A large message on its way out: which of its pieces go next, by what the receiver reports. At most
-/// mostInFlight are sent and not reported. What was sent before something that has arrived, and has not, is
+/// maxInFlight are sent and not reported. What was sent before something that has arrived, and has not, is
 /// lost and sent again; when no report comes, the first that are missing are.
 class OutgoingPieces {
 public:
-    static constexpr int mostInFlight = 24; // so that a pseudo-terminal holds them
+    static constexpr int maxInFlight = 24; // so that a pseudo-terminal holds them
 
     OutgoingPieces(const QByteArray &content, quint16 messageNumber, quint64 ticketOf)
         : ticket(ticketOf)

@@ -40,7 +40,7 @@ std::optional<Piece> Piece::fromFrame(const QByteArray &frame) {
     piece.index = quint16(hermes::number(frame, 3, 2));
     piece.total = quint32(hermes::number(frame, 5, 3));
     const int count = piece.count();
-    if (count > mostPieces || piece.index >= count)
+    if (count > maxPieces || piece.index >= count)
         return std::nullopt;
     const int size = piece.index + 1 < count ? pieceBytes : int(piece.total) - piece.index * pieceBytes;
     if (frame.size() != headerBytes + size)

@@ -16,7 +16,7 @@ enum class FrameKind : quint8 {
 
 constexpr int pieceBytes = 96;   ///< of content; of the last one of a message fewer
 constexpr int windowPieces = 64; ///< from the first that is missing; none beyond is sent
-constexpr int mostPieces = 0xffff;
+constexpr int maxPieces = 0xffff;
 
 /// A part of a large message. All numbers on the wire have their lowest byte first.
 struct Piece {

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int crcBytes = 4;
 constexpr char endOfFrame = '\0';
-constexpr int mostAhead = 32; // of the number of a message, while one waits for its last report
-constexpr int mostQuestions = 50;
-constexpr std::size_t mostAtOnce = 2; // large ones of a rank: one waits for its last report
+constexpr int maxAhead = 32; // of the number of a message, while one waits for its last report
+constexpr int maxQuestions = 50;
+constexpr std::size_t maxAtOnce = 2; // large ones of a rank: one waits for its last report
 
 QByteArray sealed(QByteArray content) {
     char crc[crcBytes];
@@ -53,7 +53,7 @@ void SerialLink::setTime(double now) {
 
 quint64 SerialLink::send(const QByteArray &message, Rank rank) {
     const qint64 size = message.size();
-    if (size + crcBytes > qint64(mostPieces) * pieceBytes || waiting_ + size > mostWaiting)
+    if (size + crcBytes > qint64(maxPieces) * pieceBytes || waiting_ + size > maxWaiting)
         return 0;
     const quint64 ticket = ++lastTicket_;
     const bool isWhole = size <= largestFrame && rank <= Rank::Usual;
@@ -85,7 +85,7 @@ OutgoingPieces *SerialLink::nextOf(Lane &lane) {
     for (OutgoingPieces &message : lane.begun)
         if (message.hasNext())
             return &message;
-    if (lane.large.empty() || lane.begun.size() == mostAtOnce || !mayBegin())
+    if (lane.large.empty() || lane.begun.size() == maxAtOnce || !mayBegin())
         return nullptr;
     const Waiting next = std::move(lane.large.front());
     lane.large.pop_front();
@@ -96,7 +96,7 @@ OutgoingPieces *SerialLink::nextOf(Lane &lane) {
 bool SerialLink::mayBegin() const {
     return std::all_of(lanes_.begin(), lanes_.end(), [this](const Lane &lane) {
         return std::all_of(lane.begun.begin(), lane.begun.end(), [this](const OutgoingPieces &message) {
-            return quint16(nextNumber_ - message.number()) < mostAhead;
+            return quint16(nextNumber_ - message.number()) < maxAhead;
         });
     });
 }
@@ -237,7 +237,7 @@ void SerialLink::takeReport(const QByteArray &frame) {
 
 void SerialLink::retire(Lane &lane) {
     const double most_s =
-        std::clamp(mostQuestions * pace_.patience(), shortestStandstill_s, longestStandstill_s);
+        std::clamp(maxQuestions * pace_.timeout(), shortestStandstill_s, longestStandstill_s);
     const auto isOver = [this, most_s](const OutgoingPieces &message) {
         const bool isDead = message.isBegun() && now_ - message.lastProgress() > most_s;
         if (!message.isDone() && !isDead)

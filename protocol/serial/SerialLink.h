@@ -39,7 +39,7 @@ public:
     };
     /// Of the content of a frame without its CRC: what is larger goes in pieces.
     static constexpr int largestFrame = 160;
-    static constexpr int mostWaiting = 16 << 20;
+    static constexpr int maxWaiting = 16 << 20;
     /// Without a report a message in pieces is abandoned after these, the later one where a report takes
     /// long.
     static constexpr double shortestStandstill_s = 20, longestStandstill_s = 60;

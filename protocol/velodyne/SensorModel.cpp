@@ -76,7 +76,7 @@ Model modelFromText(std::string_view key) {
     return Model::Blank;
 }
 
-int mostLasers() {
+int maxLasers() {
     int most = 0;
     for (const SensorModel *known : models())
         most = std::max(most, known->lasers);

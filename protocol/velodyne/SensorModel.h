@@ -73,7 +73,7 @@ const SensorModel *findSensorModel(Model model);
 /// The one that settings name so; Blank for all else.
 Model modelFromText(std::string_view key);
 /// Of the sensor that has most.
-int mostLasers();
+int maxLasers();
 /// What a function says of each, as a list: "a, b or c", with " or " as the last separator.
 std::string listSensors(const std::function<std::string(const SensorModel &)> &text, const char *last);
 /// "HDL-32E or VLP-16".

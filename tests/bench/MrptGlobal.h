@@ -20,7 +20,7 @@
 namespace bench {
 
 /// The mode of a sum of Gaussians that has most weight; nothing of an empty sum.
-inline Answer mostLikely(const mrpt::poses::CPosePDFSOG &sum) {
+inline Answer maxLikely(const mrpt::poses::CPosePDFSOG &sum) {
     Answer answer;
     double most = std::numeric_limits<double>::lowest();
     for (std::size_t i = 0; i < sum.size(); ++i)
@@ -63,7 +63,7 @@ public:
         align.options = options_;
         align.setMinLoggingLevel(mrpt::system::LVL_ERROR);
         const auto found = align.Align(&fixed, &moving, mrpt::poses::CPose2D());
-        return mostLikely(dynamic_cast<const mrpt::poses::CPosePDFSOG &>(*found));
+        return maxLikely(dynamic_cast<const mrpt::poses::CPosePDFSOG &>(*found));
     }
 
 private:
@@ -121,7 +121,7 @@ public:
         if (candidates_.size() < settings.ransac_minSetSize ||
             !mrpt::tfest::se2_l2_robust(candidates_, deviation, settings, result))
             return {};
-        Answer answer = mostLikely(result.transformation);
+        Answer answer = maxLikely(result.transformation);
         answer.motion = refine_.from(pair, answer.motion);
         return answer;
     }

@@ -22,7 +22,7 @@ class TestChannels : public QObject, DaemonFixture {
         const char *name;
         const char *listen;
         const char *connect;
-        int mostBytes; ///< of a frame; a pseudo-terminal holds 4096
+        int maxBytes; ///< of a frame; a pseudo-terminal holds 4096
     };
 
     static inline const Carrier carriers[] = {
@@ -86,7 +86,7 @@ private Q_SLOTS:
         };
         for (int i = 0; i < 50; ++i)
             QCOMPARE(result("subtract", {i, 0.5}), QJsonValue(i - 0.5));
-        QCOMPARE(result("large", {kind.mostBytes}), QJsonValue(QString(kind.mostBytes, 'x')));
+        QCOMPARE(result("large", {kind.maxBytes}), QJsonValue(QString(kind.maxBytes, 'x')));
         QVERIFY(client.callAndWait("nothing").error().is(ErrorCode::MethodNotFound));
         QCOMPARE(client.callAndWait("fault").error().data["device"].toString(), QString("t0"));
         QVERIFY(
@@ -102,7 +102,7 @@ private Q_SLOTS:
             sizes.push_back(int(numbers.size()));
         });
         QTRY_VERIFY(daemon->hasSubscribers("numbers"));
-        const std::vector<int> sent{0, 1, 2, 3, 10, kind.mostBytes / 40};
+        const std::vector<int> sent{0, 1, 2, 3, 10, kind.maxBytes / 40};
         for (const int size : sent)
             daemon->publish("numbers", Outgoing::writtenBy([size](WireWriter &out) {
                                 std::vector<float> numbers;

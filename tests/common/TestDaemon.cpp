@@ -154,7 +154,7 @@ private Q_SLOTS:
         for (int i = 0; i < 40; ++i)
             logInfo("test", QString("%1 ").arg(i) + QString(60000, 'x'));
         const QJsonArray records = RawClient(address()).ask("log.tail", QJsonArray{1000})["result"].toArray();
-        QVERIFY(compactJson(records).size() <= Log::mostTailBytes + 61000);
+        QVERIFY(compactJson(records).size() <= Log::maxTailBytes + 61000);
         QVERIFY(records.size() > 10);
         QVERIFY(records.last()["text"].toString().startsWith("39 "));
     }

@@ -220,7 +220,7 @@ private Q_SLOTS:
             QCOMPARE(begin(i, i * 0.01), Known::New);
             answer(i, 10, i * 0.01);
         }
-        QCOMPARE(cache.size(), ReplyCache::mostEntries);
+        QCOMPARE(cache.size(), ReplyCache::maxEntries);
         QCOMPARE(begin(-1, 30), Known::Repeat);
         QCOMPARE(begin(2999, 30), Known::Repeat);
         QCOMPARE(begin(0, 30), Known::New);
@@ -235,8 +235,8 @@ private Q_SLOTS:
             large.begin(key(i), channel, 0);
             large.answer(key(i), {QByteArray(100000, 'x'), 0}, Channel::Rank::Usual, 0);
         }
-        QVERIFY(large.bytes() <= ReplyCache::mostBytes);
-        QVERIFY(large.bytes() > ReplyCache::mostBytes - 100000);
+        QVERIFY(large.bytes() <= ReplyCache::maxBytes);
+        QVERIFY(large.bytes() > ReplyCache::maxBytes - 100000);
         QCOMPARE(large.begin(key(0), channel, 1), Known::Lost);
         QCOMPARE(large.begin(key(29), channel, 1), Known::Repeat);
         const qint64 before = large.bytes();

@@ -190,10 +190,10 @@ private Q_SLOTS:
         };
         QVERIFY(setBytes(1) && settings->save(name));
         const int around = int(QFileInfo(name).size()) - 1; // what is written beside the characters
-        QVERIFY(setBytes(int(mostSettingsBytes) - around));
+        QVERIFY(setBytes(int(maxSettingsBytes) - around));
         QVERIFY(settings->save(name) && settings->load(name));
-        QCOMPARE(QFileInfo(name).size(), mostSettingsBytes);
-        QVERIFY(setBytes(int(mostSettingsBytes) - around + 1));
+        QCOMPARE(QFileInfo(name).size(), maxSettingsBytes);
+        QVERIFY(setBytes(int(maxSettingsBytes) - around + 1));
         const auto result = settings->save(name);
         QVERIFY(!result);
         QCOMPARE(

@@ -120,8 +120,8 @@ inline void RingDrive::drive(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
         poses.erase(int(i)); // where it is driven again
         tell(i);
-        QDeadlineTimer patience(20000);
-        while (poses.count(int(i)) == 0 && !patience.hasExpired())
+        QDeadlineTimer timeout(20000);
+        while (poses.count(int(i)) == 0 && !timeout.hasExpired())
             QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
         QVERIFY(poses.count(int(i)) > 0);
     }

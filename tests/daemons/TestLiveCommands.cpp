@@ -31,8 +31,8 @@ private Q_SLOTS:
         const int rarely = 3 + draw(60);
         for (std::size_t i = 0; i < way.size() - last; ++i) {
             tell(i);
-            QDeadlineTimer patience(draw(4) == 0 ? 0 : 10 * slowness);
-            while (poses.count(int(i)) == 0 && !patience.hasExpired())
+            QDeadlineTimer timeout(draw(4) == 0 ? 0 : 10 * slowness);
+            while (poses.count(int(i)) == 0 && !timeout.hasExpired())
                 QCoreApplication::processEvents();
             for (int more = draw(rarely) == 0 ? 1 + draw(3) : 0; more > 0; --more)
                 askAny(i);

@@ -171,8 +171,8 @@ private:
         };
         for (; !stateIs("due") && !stateIs("running") && scans < way.size(); ++scans)
             drive(scans, scans + 1);
-        QDeadlineTimer patience(5000 * slowness);
-        while (!stateIs("running") && !patience.hasExpired())
+        QDeadlineTimer timeout(5000 * slowness);
+        while (!stateIs("running") && !timeout.hasExpired())
             ; // the map is made anew after a pause
         call("map.clear");
         const int cleared = call("matcher.state")["map_segments"].toInt();

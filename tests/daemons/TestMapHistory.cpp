@@ -46,7 +46,7 @@ private Q_SLOTS:
         QCOMPARE(history.add(poseStep({}, {})), std::size_t(1));
         QVERIFY(history.next(true).isEmpty());
         std::size_t gone = 0;
-        for (std::size_t i = 0; i < MapHistory::mostSteps; ++i)
+        for (std::size_t i = 0; i < MapHistory::maxSteps; ++i)
             gone += history.add(poseStep({}, {}));
         QCOMPARE(gone, std::size_t(1)); // the map of the replay was the oldest
     }

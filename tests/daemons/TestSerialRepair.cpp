@@ -111,7 +111,7 @@ private Q_SLOTS:
 
     void longChunksComeInPieces() {
         begin();
-        const QByteArray large(SerialLogReader::mostBytes + 5, 'x');
+        const QByteArray large(SerialLogReader::maxBytes + 5, 'x');
         push(*queue_, large, after(1));
         push(*queue_, "end", after(2));
         recorder_->end();

@@ -73,7 +73,7 @@ private Q_SLOTS:
                 firing["results"].toArray().at(0)["error"]["code"].toInt() == int(ErrorCode::OverLimit);
         QVERIFY(refused > 20);
         QVERIFY(healthItem("targets")["values"].toObject().value(targetAddress_)["waiting"].toInt() <=
-                Targets::mostCalls);
+                Targets::maxCalls);
     }
 
     void scheduleOutlivesTheTarget() {

@@ -10,7 +10,7 @@ private Q_SLOTS:
     void init() {
         tracker_ = {};
         readings_ = {};
-        tracker_.configure({WheelMount{0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 1}}, countsPerTurn, mostSpeed);
+        tracker_.configure({WheelMount{0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 1}}, countsPerTurn, maxSpeed);
     }
 
     void motions_data() {
@@ -49,7 +49,7 @@ private Q_SLOTS:
     }
 
 private:
-    static constexpr double countsPerTurn = 1000, mostSpeed = 20;
+    static constexpr double countsPerTurn = 1000, maxSpeed = 20;
     static quint32 counts(double turn) {
         return quint32(qint32(std::lround(turn * countsPerTurn / (2 * M_PI))));
     }

@@ -26,7 +26,7 @@ void requireWithinLimits(const Sentence &sentence) {
     if (!decode(sentence, gns)) {
         requireSound(gns.position);
         FUZZ_REQUIRE(!gns.quality || (*gns.quality >= 0 && *gns.quality <= 8));
-        FUZZ_REQUIRE(!gns.altitude || std::abs(*gns.altitude) <= mostMetres);
+        FUZZ_REQUIRE(!gns.altitude || std::abs(*gns.altitude) <= maxMetres);
     }
     Vtg vtg;
     if (!decode(sentence, vtg)) {

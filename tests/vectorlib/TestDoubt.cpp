@@ -20,7 +20,7 @@ constexpr double noWall_m = 0.4; // an edge of the map so far from all walls
 constexpr double step_m = 0.15;
 constexpr int window = 20, enoughTold = 13;     // scans
 constexpr double bend_m = 0.1, bend_rad = 0.03; // of a map, in a scan
-constexpr int mostScans = 160;
+constexpr int maxScans = 160;
 
 enum class Trouble {
     Nothing,
@@ -92,13 +92,13 @@ public:
 
     Figures run() {
         Building b = building();
-        b.way.resize(std::min(b.way.size(), std::size_t(2 * mostScans)));
+        b.way.resize(std::min(b.way.size(), std::size_t(2 * maxScans)));
         when_ = 20 + std::size_t(any(40)); // it goes wrong
         if (!isMapping_ || trouble_ == Trouble::OtherMap)
             map(b);
         if (trouble_ == Trouble::OtherMap)
             b = building();
-        b.way.resize(std::min(b.way.size(), std::size_t(mostScans)));
+        b.way.resize(std::min(b.way.size(), std::size_t(maxScans)));
         ScanTrackerSettings settings;
         settings.relocalizeSeconds = 1e6; // the same on each machine
         tracker_.apply(settings);
@@ -135,7 +135,7 @@ private:
             return {ring.world, way};
         }
         OfficeFloor floor({between(50, 70), between(50, 60)}, random_);
-        return {{floor.walls(), {}}, floor.drive(2 * mostScans, step_m)};
+        return {{floor.walls(), {}}, floor.drive(2 * maxScans, step_m)};
     }
     // As a drive whose loops were closed leaves it.
     void map(const Building &b) {
@@ -175,7 +175,7 @@ private:
         std::vector<Passer> crowd(std::size_t(1 + any(8)));
         for (Passer &passer : crowd)
             passer = {between(-6, 6), between(-0.9, 0.9), between(0.5, 1.5) * (any(3) ? 1 : -1), any(3) == 0};
-        for (std::size_t n = 0, at = 0; n < std::size_t(mostScans) && at + 1 < b.way.size(); ++n) {
+        for (std::size_t n = 0, at = 0; n < std::size_t(maxScans) && at + 1 < b.way.size(); ++n) {
             const bool isWrong = n >= when_ && n < when_ + 20, begins = n == when_;
             const bool stands = trouble_ == Trouble::Crowd && n > when_ && n < when_ + 80;
             if (stands)
@@ -373,7 +373,7 @@ private Q_SLOTS:
     // About one drive in fifty fails, and one right pose in twelve is doubted, more in crowds: so much is not
     // reached yet.
     void aWrongPoseIsDoubted() {
-        constexpr int mostFailed = 33, mostDoubted = 9, few = 2;
+        constexpr int maxFailed = 33, maxDoubted = 9, few = 2;
         const int asked = qEnvironmentVariableIntValue("HERMES_CASES"), cases = asked > 0 ? asked : 50;
         const unsigned first = asked > 0 ? newSeed() : 1;
         std::vector<Figures> kinds(troubles.size());
@@ -392,8 +392,8 @@ private Q_SLOTS:
             all.add(kinds[i]);
         }
         tell("all", all);
-        QVERIFY2(all.failed <= std::max(few, cases / mostFailed), qPrintable(QString::number(all.failed)));
-        QVERIFY2(all.doubted * mostDoubted <= all.right, qPrintable(QString::number(all.doubted)));
+        QVERIFY2(all.failed <= std::max(few, cases / maxFailed), qPrintable(QString::number(all.failed)));
+        QVERIFY2(all.doubted * maxDoubted <= all.right, qPrintable(QString::number(all.doubted)));
     }
 
 private:

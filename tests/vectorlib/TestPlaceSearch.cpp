@@ -249,7 +249,7 @@ private Q_SLOTS:
         for (int i = 0; i < 100; ++i) // 150 km in all: more than there is room for
             map.emplace_back(Vector2D<double>(10, 10 + i), Vector2D<double>(1510, 10 + i));
         map.emplace_back(Vector2D<double>(1e9, 0), Vector2D<double>(1e9, 5));
-        search->index().tiles().mostEntries = 100000;
+        search->index().tiles().maxEntries = 100000;
         const Relocalized &result = find(map, see(room(0, 0), {2.5, 1.5, 0.7}));
         QCOMPARE(result.outcome, Outcome::Unfinished); // as not all walls were searched
         QVERIFY(search->index().leftOut() > 0);
@@ -259,7 +259,7 @@ private Q_SLOTS:
 
     void takesRefusedWallsWhenThereIsRoom() {
         PlaceIndex index;
-        index.tiles().mostEntries = 700; // one of the walls needs some 500
+        index.tiles().maxEntries = 700; // one of the walls needs some 500
         std::vector<MapEdge> slots = mapOf({{{0, 0}, {200, 0}}, {{0, 10}, {200, 10}}});
         index.follow(slots);
         QCOMPARE(index.leftOut(), std::size_t(1));

@@ -186,14 +186,14 @@ nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs, const std
 }
 
 // Of a picture: with more of them pdflatex runs out of memory.
-constexpr std::size_t mostPoints = 25000;
+constexpr std::size_t maxPoints = 25000;
 
 vectorlib::SvgPicture pictureOfRaw(const std::string &title, const OverviewRun &run) {
     SvgPicture picture(title);
     std::size_t count = 0;
     for (const OverviewScan &scan : run.scans)
         count += scan.points.size();
-    const std::size_t each = 1 + count / mostPoints;
+    const std::size_t each = 1 + count / maxPoints;
     Points shown;
     for (const OverviewScan &scan : run.scans)
         for (std::size_t i = 0; i < scan.points.size(); i += each)

@@ -15,7 +15,7 @@ using vectorlib::Transformation2D;
 
 constexpr double accuracies[] = {0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.2, 1.5, 1.8, 2.4};
 constexpr double anglePerMetre = 1.26 / 1.2; // appendices
-constexpr std::uint64_t mostTried = 20000;   // a curve needs no more
+constexpr std::uint64_t maxTried = 20000;    // a curve needs no more
 
 // The scans as they lie when the second is expected at the truth but for an error.
 ScanPair expectedWithin(const ScanPair &scans, const vectorlib::PermittedError &error,
@@ -60,7 +60,7 @@ SearchStages stagesAt(const SearchScene &scene, double accuracy, int runs, std::
     vectorlib::PublishedSearch search;
     search.settings.permitted = {row.accuracy, row.accuracy, row.angle};
     search.combine.keep = 1;
-    search.combine.most = mostTried;
+    search.combine.most = maxTried;
     vectorlib::CorrespondenceFinder find;
     find.settings.permitted = search.settings.permitted;
     for (const ScanPair &scans : scene.pairs)

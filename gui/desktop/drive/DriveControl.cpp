@@ -145,8 +145,8 @@ void DriveControl::takeMost(const QJsonValue &motion) {
         putLimit(least(limit_, most_));
 }
 
-void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
-    inputs_.steer(input, wish, isHeld);
+void DriveControl::steer(const QString &input, const Twist2D &request, bool isHeld) {
+    inputs_.steer(input, request, isHeld);
     if (isHeld)
         fleet_.keepChoice();
     if (inputs_.isAnyHeld())
@@ -170,8 +170,8 @@ void DriveControl::putLimit(const Twist2D &limit) {
     Q_EMIT changed();
 }
 
-Twist2D DriveControl::wish() const {
-    const Twist2D share = inputs_.wish();
+Twist2D DriveControl::request() const {
+    const Twist2D share = inputs_.request();
     return {share.vx * limit_.vx, share.vy * limit_.vy, share.omega * limit_.omega};
 }
 
@@ -266,7 +266,7 @@ void DriveControl::ask() {
 void DriveControl::send() {
     if (!std::exchange(isDriving_, true))
         answered_.start();
-    commanded_ = wish();
+    commanded_ = request();
     const QJsonObject command{{"vx", commanded_.vx},
                               {"vy", commanded_.vy},
                               {"omega", commanded_.omega},

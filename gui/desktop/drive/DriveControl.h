@@ -15,7 +15,7 @@
 
 namespace hermes::desktop {
 
-/// Drives the chosen robot: takes what stick, keys and gamepad wish, asks for the control, sends motion
+/// Drives the chosen robot: takes what stick, keys and gamepad request, asks for the control, sends motion
 /// commands at 20 Hz with their time, and stops. Whatever ends a drive (released, focus lost, link lost,
 /// a command refused, another robot chosen, STOP) ends it with a stop; then every input has to be at rest
 /// before one counts again. While another client has the control nothing is sent to the motors but STOP.
@@ -30,9 +30,9 @@ public:
 
     explicit DriveControl(Fleet &fleet, QObject *parent = nullptr);
 
-    /// What an input wishes: each of the three from -1 to 1 of the largest speed. isHeld: its dead-man key or
-    /// button is down; released it wishes nothing.
-    void steer(const QString &input, const Twist2D &wish, bool isHeld);
+    /// What an input requests: each of the three from -1 to 1 of the largest speed. isHeld: its dead-man key
+    /// or button is down; released it requests nothing.
+    void steer(const QString &input, const Twist2D &request, bool isHeld);
     /// What the whole stick means, in m/s and rad/s. Nothing but setLimit() raises one; smaller largest
     /// speeds of the robot lower it.
     const Twist2D &limit() const { return limit_; }
@@ -126,8 +126,8 @@ private:
     void onState(const QJsonValue &state);
     void onReplay();
     void onOdometry(const TopicUpdate &update);
-    /// What all inputs wish together, in m/s and rad/s.
-    Twist2D wish() const;
+    /// What all inputs request together, in m/s and rad/s.
+    Twist2D request() const;
     void tell(const QString &problem);
 
     Fleet &fleet_;

@@ -6,7 +6,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr std::size_t mostSamples = 60000; // of a calibration: twenty minutes
+constexpr std::size_t maxSamples = 60000; // of a calibration: twenty minutes
 
 QString keyOf(const QString &kind) {
     return "gamepads/" + kind;
@@ -51,7 +51,7 @@ void DriveGamepad::beginCalibration() {
 
 void DriveGamepad::sample() {
     auto &samples = step_ == Step::Rest ? atRest_ : moved_;
-    if (samples.size() < mostSamples)
+    if (samples.size() < maxSamples)
         samples.push_back(pad_.sticks());
 }
 

@@ -8,12 +8,12 @@
 
 namespace hermes::desktop {
 
-/// What stick, keys and gamepad wish together, and whether all of them were at rest since a drive has ended.
-/// A release that a press follows at once is none: keyboards that repeat a held key send such pairs.
+/// What stick, keys and gamepad request together, and whether all of them were at rest since a drive has
+/// ended. A release that a press follows at once is none: keyboards that repeat a held key send such pairs.
 class DriveInputs {
 public:
-    void steer(const QString &input, const Twist2D &wish, bool isHeld) {
-        inputs_[input] = {wish, isHeld};
+    void steer(const QString &input, const Twist2D &request, bool isHeld) {
+        inputs_[input] = {request, isHeld};
         if (isHeld)
             rest_ = 0;
     }
@@ -21,14 +21,14 @@ public:
         return std::any_of(inputs_.begin(), inputs_.end(), [](const Input &input) { return input.isHeld; });
     }
     /// Each from -1 to 1.
-    Twist2D wish() const {
+    Twist2D request() const {
         Twist2D sum;
         for (const Input &input : inputs_) {
             if (!input.isHeld)
                 continue;
-            sum.vx += input.wish.vx;
-            sum.vy += input.wish.vy;
-            sum.omega += input.wish.omega;
+            sum.vx += input.request.vx;
+            sum.vy += input.request.vy;
+            sum.omega += input.request.omega;
         }
         return {qBound(-1.0, sum.vx, 1.0), qBound(-1.0, sum.vy, 1.0), qBound(-1.0, sum.omega, 1.0)};
     }
@@ -47,7 +47,7 @@ private:
     static constexpr int wholeRest = 3; // turns
 
     struct Input {
-        Twist2D wish;
+        Twist2D request;
         bool isHeld = false;
     };
 

@@ -10,7 +10,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr int longestPadName = 40;
-constexpr int mostEvents = 1000; // of one turn: a broken device is not to hold the window
+constexpr int maxEvents = 1000; // of one turn: a broken device is not to hold the window
 
 constexpr std::array<SDL_GameControllerAxis, gamepadAxes> stickAxes{
     SDL_CONTROLLER_AXIS_LEFTX, SDL_CONTROLLER_AXIS_LEFTY, SDL_CONTROLLER_AXIS_RIGHTX};
@@ -42,7 +42,7 @@ Gamepad::~Gamepad() {
 void Gamepad::poll() {
     bool isStop = false;
     SDL_Event event;
-    for (int i = 0; i < mostEvents && SDL_PollEvent(&event) != 0; ++i) {
+    for (int i = 0; i < maxEvents && SDL_PollEvent(&event) != 0; ++i) {
         if (event.type == SDL_CONTROLLERBUTTONDOWN && pad_ && event.cbutton.which == device_ &&
             event.cbutton.button == SDL_CONTROLLER_BUTTON_B)
             isStop = true;

@@ -7,7 +7,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr double leastPlay = 0.05, mostPlay = 0.3, playOverNoise = 3;
+constexpr double leastPlay = 0.05, maxPlay = 0.3, playOverNoise = 3;
 constexpr int numbersOfAxis = 4;
 
 QString nameOf(std::size_t axis) {
@@ -31,7 +31,7 @@ std::pair<double, double> rangeOf(const std::vector<GamepadSticks> &sticks, std:
 } // namespace
 
 bool GamepadCalibration::Axis::isPossible() const {
-    return std::abs(middle) < 1 && play >= 0 && play <= mostPlay && least >= -1 && most <= 1 &&
+    return std::abs(middle) < 1 && play >= 0 && play <= maxPlay && least >= -1 && most <= 1 &&
            middle - least > play + 0.1 && most - middle > play + 0.1;
 }
 
@@ -57,7 +57,7 @@ Result<GamepadCalibration> GamepadCalibration::of(const std::vector<GamepadStick
         const auto [restLeast, restMost] = rangeOf(resting, i);
         axis.middle = (restLeast + restMost) / 2;
         axis.play = std::max(leastPlay, playOverNoise * (restMost - restLeast) / 2);
-        if (axis.play > mostPlay)
+        if (axis.play > maxPlay)
             return failure(QT_TRANSLATE_NOOP("Gamepad", "%1: it moved while it was to rest"), i);
         std::tie(axis.least, axis.most) = rangeOf(moving, i);
         if (axis.middle - axis.least < leastRange || axis.most - axis.middle < leastRange ||

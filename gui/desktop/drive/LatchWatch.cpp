@@ -57,7 +57,7 @@ void LatchWatch::look(const std::function<void()> &done) {
             if (guard && guard->turn_ == turn && (!link || guard->take(*link, state)))
                 answered();
         };
-        daemon->client().call("motor.state", QJsonObject(), take, patience);
+        daemon->client().call("motor.state", QJsonObject(), take, timeout);
     }
     answered();
 }

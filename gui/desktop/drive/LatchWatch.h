@@ -12,7 +12,7 @@ namespace hermes::desktop {
 class LatchWatch : public QObject {
     Q_OBJECT
 public:
-    static constexpr std::chrono::milliseconds period{200}, patience{2000};
+    static constexpr std::chrono::milliseconds period{200}, timeout{2000};
 
     explicit LatchWatch(Fleet &fleet, QObject *parent = nullptr);
 

@@ -16,7 +16,7 @@ public:
 
 Q_SIGNALS:
     /// Each from -1 to 1; isHeld: the mouse button is down.
-    void moved(const vectorlib::Twist2D &wish, bool isHeld);
+    void moved(const vectorlib::Twist2D &request, bool isHeld);
 
 protected:
     void paintEvent(QPaintEvent *event) override;

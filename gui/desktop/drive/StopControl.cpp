@@ -88,12 +88,12 @@ void StopControl::onMoved(const DaemonLink *daemon, const Robot *from, const Rob
         pressed_.remove(from);
 }
 
-void StopControl::onRobotGone(const Robot *robot, const Robot *heir) {
-    if (pressed_.remove(robot) && heir)
-        pressed_.insert(heir);
+void StopControl::onRobotGone(const Robot *robot, const Robot *successor) {
+    if (pressed_.remove(robot) && successor)
+        pressed_.insert(successor);
     for (Line &line : lines_)
         if (line.robot == robot)
-            line.robot = heir; // one that is on its way goes on, whoever it belongs to
+            line.robot = successor; // one that is on its way goes on, whoever it belongs to
     follow();
     Q_EMIT changed();
 }

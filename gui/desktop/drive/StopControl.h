@@ -42,7 +42,7 @@ private:
     void follow();
     void reach(DaemonLink *daemon);
     void onMoved(const DaemonLink *daemon, const Robot *from, const Robot *to);
-    void onRobotGone(const Robot *robot, const Robot *heir);
+    void onRobotGone(const Robot *robot, const Robot *successor);
     void onChanged(const StopLine *stop);
     /// With the robot that it is of.
     struct Line {

@@ -95,7 +95,7 @@ void EventWatch::lookAtHealth(const DaemonLink &daemon) {
         return; // what was wrong may still be
     QStringList now;
     for (const HealthItem &item : daemon.status().health) {
-        if (item.level == "ok" || now.size() == mostItems)
+        if (item.level == "ok" || now.size() == maxItems)
             continue;
         const QString key = keyOf(daemon, "health " + shortLine(item.name, longestItem));
         const QString text = shortLine(inPlainWords(item.name + ": " + item.message), longestEvent);

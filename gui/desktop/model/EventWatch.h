@@ -11,7 +11,7 @@ class EventWatch : public QObject {
     Q_OBJECT
 public:
     /// Of a daemon, so many items of its health.
-    static constexpr int mostItems = 50;
+    static constexpr int maxItems = 50;
     /// A daemon that has just begun is not well yet: until then its health makes no events.
     static constexpr std::chrono::seconds settling{3};
 

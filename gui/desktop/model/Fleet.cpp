@@ -42,8 +42,8 @@ Result<void> Fleet::add(const QString &address) {
     if (addresses_.contains(known))
         return {};
     addresses_.append(known);
-    if (!robot_ && wish_.isEmpty())
-        wish_ = known;
+    if (!robot_ && preferred_.isEmpty())
+        preferred_ = known;
     if (hasPort) {
         entryAt({host, url->port}).isAdded = true;
     } else {
@@ -76,7 +76,7 @@ void Fleet::onReady(const Place &place) {
 
 void Fleet::onChanged(const Place &place) {
     const Entry &entry = entries_.at(place);
-    if (!entry.namer && entry.isOfHost() != bool(entry.robot))
+    if (!entry.namedBy && entry.isOfHost() != bool(entry.robot))
         distribute();
 }
 
@@ -135,7 +135,7 @@ void Fleet::rename(Robot &robot, const QString &name) {
     robot.setGivenName(given);
 }
 
-void Fleet::wish(const QString &address) {
+void Fleet::prefer(const QString &address) {
     const auto hostIn = [](const QString &one) {
         return one.section('#', 0, 0).section(QRegularExpression(":\\d+$"), 0, 0);
     };
@@ -143,12 +143,12 @@ void Fleet::wish(const QString &address) {
     if (isMeant_ || address.isEmpty() ||
         (!addresses_.isEmpty() && std::none_of(addresses_.begin(), addresses_.end(), leadsThere)))
         return;
-    wish_ = address;
+    preferred_ = address;
     distribute();
 }
 
 QString Fleet::chosenAddress() const {
-    return !wish_.isEmpty() ? wish_ : robot_ ? robot_->address() : QString();
+    return !preferred_.isEmpty() ? preferred_ : robot_ ? robot_->address() : QString();
 }
 
 void Fleet::choose(Robot *robot) {
@@ -164,14 +164,14 @@ void Fleet::choose(DaemonLink *daemon) {
 }
 
 void Fleet::goAlong(Robot *robot) {
-    if (wish_.isEmpty())
+    if (preferred_.isEmpty())
         setChosen(robot, robotOf(daemon_) == robot ? daemon_.data() : lastDaemonOf(robot));
 }
 
 void Fleet::keepChoice() {
     isMeant_ = isMeant_ || robot_;
     if (isMeant_)
-        wish_.clear();
+        preferred_.clear();
 }
 
 DaemonLink *Fleet::lastDaemonOf(const Robot *robot) const {

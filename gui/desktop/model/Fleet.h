@@ -60,10 +60,10 @@ public:
     void choose(DaemonLink *daemon);
     /// Chooses the robot of this address as soon as it is there, unless the operator has chosen before, or
     /// nothing of its host was added.
-    void wish(const QString &address);
+    void prefer(const QString &address);
     /// What will be chosen, or is.
     QString chosenAddress() const;
-    /// Chooses it for what has become of the chosen one, unless another is wished for.
+    /// Chooses it for what has become of the chosen one, unless another is preferred.
     void goAlong(Robot *robot);
     /// Whatever is chosen is meant from now on, even if nobody has chosen it.
     void keepChoice();
@@ -78,8 +78,8 @@ Q_SIGNALS:
     void daemonChosen(hermes::desktop::DaemonLink *daemon);
     /// A supervisor has named it, or does so no more.
     void moved(hermes::desktop::DaemonLink *daemon, hermes::desktop::Robot *from, hermes::desktop::Robot *to);
-    /// It is not one of the robots any more; heir: who stands for it now, or null.
-    void robotGone(hermes::desktop::Robot *robot, hermes::desktop::Robot *heir);
+    /// It is not one of the robots any more; successor: who stands for it now, or null.
+    void robotGone(hermes::desktop::Robot *robot, hermes::desktop::Robot *successor);
 
 private:
     using Place = std::pair<QString, quint16>; // host and port
@@ -88,8 +88,8 @@ private:
         bool isAdded = false;  ///< by its address: shown although it has never answered
         bool isSought = false; ///< at its usual port: shown once it has answered
         Robot *robot = nullptr;
-        Robot *led = nullptr;   ///< whose supervisor it is
-        Robot *namer = nullptr; ///< whose supervisor names it, or it is
+        Robot *led = nullptr;     ///< whose supervisor it is
+        Robot *namedBy = nullptr; ///< whose supervisor names it, or it is
 
         /// Shown there while no supervisor names it; one that was named before until it ends.
         bool isOfHost() const { return isAdded || (isSought ? link->isKnown() : link->isConnected()); }
@@ -115,7 +115,7 @@ private:
     void tellConflicts();
     void forgetHost(const QString &host);
 
-    Robot *heirOf(const Robot &gone, const std::vector<Move> &moves) const;
+    Robot *successorOf(const Robot &gone, const std::vector<Move> &moves) const;
     void followChoice(const std::vector<Move> &moves, const Robots &gone);
     /// daemon: none of another robot.
     void setChosen(Robot *robot, DaemonLink *daemon);
@@ -132,7 +132,7 @@ private:
     Robot *robot_ = nullptr;
     QPointer<DaemonLink> daemon_;
     std::map<const Robot *, QPointer<DaemonLink>> lastDaemons_; ///< chosen of each robot
-    QString wish_;
+    QString preferred_;
     bool isMeant_ = false;
 };
 

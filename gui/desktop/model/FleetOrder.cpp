@@ -7,8 +7,8 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr std::ptrdiff_t mostAtHost = 300; // daemons, as far as supervisors name them
-constexpr int mostConflicts = 5;           // that are told one by one
+constexpr std::ptrdiff_t maxAtHost = 300; // daemons, as far as supervisors name them
+constexpr int maxConflicts = 5;           // that are told one by one
 
 } // namespace
 
@@ -43,23 +43,23 @@ void Fleet::setPlaces(const QMap<QString, QString> &places) {
 // what it likes.
 void Fleet::findNamers() {
     for (auto &[place, entry] : entries_)
-        entry.namer = entry.led;
+        entry.namedBy = entry.led;
     for (const auto &robot : robots_)
         for (const quint16 port : robot->named()) {
             const auto isThere = [&](const auto &entry) { return entry.first.first == robot->host(); };
             if (!entries_.count({robot->host(), port}) &&
-                std::count_if(entries_.begin(), entries_.end(), isThere) >= mostAtHost)
+                std::count_if(entries_.begin(), entries_.end(), isThere) >= maxAtHost)
                 continue;
             Entry &entry = entryAt({robot->host(), port});
-            if (!entry.led && (!entry.namer || entry.robot == robot.get()))
-                entry.namer = robot.get();
+            if (!entry.led && (!entry.namedBy || entry.robot == robot.get()))
+                entry.namedBy = robot.get();
         }
 }
 
 std::vector<Fleet::Move> Fleet::reassign() {
     std::vector<Move> moves;
     for (auto &[place, entry] : entries_) {
-        Robot *to = entry.namer;
+        Robot *to = entry.namedBy;
         Robot *const from = entry.robot;
         if (!to && entry.isOfHost()) {
             const QString address = places_.value(entry.link->address(), place.first);
@@ -109,7 +109,7 @@ void Fleet::distribute(std::unique_ptr<Robot> removed) {
         gone.push_back(std::move(removed));
     followChoice(moves, gone);
     for (std::size_t i = 0; i < gone.size(); ++i)
-        Q_EMIT robotGone(gone[i].get(), i < empty ? heirOf(*gone[i], moves) : nullptr);
+        Q_EMIT robotGone(gone[i].get(), i < empty ? successorOf(*gone[i], moves) : nullptr);
     tellConflicts();
     for (const auto &robot : robots_)
         for (const Move &move : moves)
@@ -161,8 +161,8 @@ void Fleet::tellConflicts() {
             lines.prepend(
                 tr("%1 of its daemons can be driven, of which one is: make them robots of their own")
                     .arg(drivable));
-        const int more = lines.size() - mostConflicts;
-        lines = lines.mid(0, mostConflicts);
+        const int more = lines.size() - maxConflicts;
+        lines = lines.mid(0, maxConflicts);
         if (more > 0)
             lines.append(tr("and %1 more").arg(more));
         robot->setConflicts(lines);
@@ -214,7 +214,7 @@ void Fleet::forgetHost(const QString &host) {
     }
 }
 
-Robot *Fleet::heirOf(const Robot &gone, const std::vector<Move> &moves) const {
+Robot *Fleet::successorOf(const Robot &gone, const std::vector<Move> &moves) const {
     for (const Move &move : moves)
         if (move.from == &gone && move.to)
             return move.to;
@@ -229,12 +229,12 @@ void Fleet::followChoice(const std::vector<Move> &moves, const Robots &gone) {
     for (const auto &robot : gone) {
         lastDaemons_.erase(robot.get());
         if (robot.get() == robot_)
-            next = heirOf(*robot, moves);
+            next = successorOf(*robot, moves);
     }
-    if (Robot *const wished = robotAt(wish_)) {
-        next = wished;
-        wish_.clear();
-    } else if (!isMeant_ && wish_.isEmpty()) {
+    if (Robot *const preferred = robotAt(preferred_)) {
+        next = preferred;
+        preferred_.clear();
+    } else if (!isMeant_ && preferred_.isEmpty()) {
         for (const Move &move : moves)
             if (move.to && move.from == robot_)
                 next = move.to;

@@ -51,11 +51,11 @@ QString MacroStep::title() const {
 
 QString MacroStep::problem() const {
     const int bytes = compact(QJsonDocument(params)).size();
-    if (bytes > mostParams)
+    if (bytes > maxParams)
         return QObject::tr("The parameters of %1 have %2 bytes; a button keeps %3 at most.")
             .arg(shortLine(title(), longestStepTitle))
             .arg(bytes)
-            .arg(mostParams);
+            .arg(maxParams);
     for (const QString &name : {robot, daemon, method})
         if (text(name, longestPlace) != name)
             return QObject::tr("%1 has a name of %2 characters; a button keeps one line of %3 at most.")
@@ -87,7 +87,7 @@ Macro Macro::from(const QJsonObject &json) {
         MacroStep step{text(value["robot"], longestPlace), text(value["daemon"], longestPlace),
                        text(value["method"], longestPlace), value["params"].toObject(),
                        qBound(0.0, value["pause_s"].toDouble(), MacroStep::longestPause_s)};
-        if (int(macro.steps.size()) < mostSteps && !step.method.isEmpty() && step.problem().isEmpty())
+        if (int(macro.steps.size()) < maxSteps && !step.method.isEmpty() && step.problem().isEmpty())
             macro.steps.push_back(step);
         else
             return {macro.name, {}}; // a part of it would be something else

@@ -10,7 +10,7 @@ namespace hermes::desktop {
 /// One command to a daemon of a robot, and how long to wait after its answer.
 struct MacroStep {
     static constexpr double longestPause_s = 3600;
-    static constexpr int mostParams = 20000; ///< bytes, as the layout keeps them
+    static constexpr int maxParams = 20000; ///< bytes, as the layout keeps them
 
     QString robot, daemon, method;
     QJsonObject params;
@@ -28,7 +28,7 @@ struct MacroStep {
 
 /// Commands under one name, run one after the other.
 struct Macro {
-    static constexpr int longestName = 40, mostSteps = 50;
+    static constexpr int longestName = 40, maxSteps = 50;
 
     QString name;
     std::vector<MacroStep> steps;

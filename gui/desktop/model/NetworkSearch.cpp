@@ -13,7 +13,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr std::chrono::seconds longestSearch{10};
-constexpr int mostDaemons = 50;
+constexpr int maxDaemons = 50;
 
 QString program() {
     const QString beside = QCoreApplication::applicationDirPath() + "/hermesctl";
@@ -67,7 +67,7 @@ void NetworkSearch::finish(int status) {
     }
     QStringList urls;
     for (const QJsonValue &daemon : QJsonDocument::fromJson(process_.readAllStandardOutput()).array())
-        if (urls.size() < mostDaemons)
+        if (urls.size() < maxDaemons)
             urls.append(addressOf(daemon.toObject()));
     Q_EMIT found(urls);
 }

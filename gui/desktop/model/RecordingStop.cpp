@@ -18,7 +18,7 @@ RecordingStop::RecordingStop(Fleet &fleet, const QString &title, QObject *parent
     : QObject(parent)
     , fleet_(fleet)
     , title_(title) {
-    connect(&timer_, &QTimer::timeout, this, &RecordingStop::goOn);
+    connect(&timer_, &QTimer::timeout, this, &RecordingStop::resume);
     timer_.start(std::chrono::seconds(1));
 }
 
@@ -64,7 +64,7 @@ QStringList RecordingStop::silent() const {
     return names;
 }
 
-void RecordingStop::goOn() {
+void RecordingStop::resume() {
     const std::vector<Robot *> all = robots();
     if (all.empty()) {
         timer_.stop();

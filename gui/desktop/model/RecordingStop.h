@@ -42,7 +42,7 @@ private:
     };
 
     std::vector<Robot *> robots() const;
-    void goOn();
+    void resume();
     void ask(const QString &address, const SessionMember &member);
     bool mayBeAsked(const QString &address) const;
     void take(const QString &address, const SessionMember &member, const QJsonObject &state);

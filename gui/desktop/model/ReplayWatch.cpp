@@ -6,10 +6,10 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int mostNames = 3;
+constexpr int maxNames = 3;
 constexpr std::chrono::milliseconds period{250};
-constexpr std::size_t othersTurns = 8;       // of the period, between two questions to a robot not chosen
-constexpr std::size_t mostOthersAtOnce = 50; // robots; of more than 400 each is asked less often
+constexpr std::size_t othersTurns = 8;      // of the period, between two questions to a robot not chosen
+constexpr std::size_t maxOthersAtOnce = 50; // robots; of more than 400 each is asked less often
 
 QString textOf(const QString &daemon, const QJsonValue &source) {
     QString text = ReplayWatch::tr("%1 replays %2")
@@ -24,8 +24,8 @@ QString textOf(const QString &daemon, const QJsonValue &source) {
 }
 
 QString listed(const QStringList &names) {
-    const int more = names.size() - mostNames;
-    const QString first = names.mid(0, mostNames).join(", ");
+    const int more = names.size() - maxNames;
+    const QString first = names.mid(0, maxNames).join(", ");
     return more > 0 ? ReplayWatch::tr("%1 and %2 more").arg(first).arg(more) : first;
 }
 
@@ -53,7 +53,7 @@ void ReplayWatch::ask() {
     if (fleet_.robot())
         askAll(*fleet_.robot());
     const auto &robots = fleet_.robots();
-    const std::size_t turns = std::max(othersTurns, robots.size() / mostOthersAtOnce + 1);
+    const std::size_t turns = std::max(othersTurns, robots.size() / maxOthersAtOnce + 1);
     turn_ = (turn_ + 1) % turns;
     for (std::size_t i = turn_; i < robots.size(); i += turns)
         if (robots[i].get() != fleet_.robot())

@@ -8,7 +8,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr std::size_t mostProcesses = 100; // of one supervisor
+constexpr std::size_t maxProcesses = 100; // of one supervisor
 
 } // namespace
 
@@ -144,9 +144,9 @@ void Robot::takeProcesses(WireView data) {
     const QString before = std::exchange(toldName_, shortLine(told->robot, longestName));
     processes_ = std::move(told->processes);
     const std::size_t all = processes_.size();
-    processes_.resize(std::min(all, mostProcesses));
-    problem_ = all > mostProcesses
-                   ? tr("%1 more processes of the supervisor are not shown").arg(all - mostProcesses)
+    processes_.resize(std::min(all, maxProcesses));
+    problem_ = all > maxProcesses
+                   ? tr("%1 more processes of the supervisor are not shown").arg(all - maxProcesses)
                    : QString();
     std::set<quint16> named;
     for (const ProcessStatus &process : processes_)

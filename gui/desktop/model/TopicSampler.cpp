@@ -123,7 +123,7 @@ void TopicSampler::keep(Samples &samples, const QPointF &sample) {
         samples.clear();
     }
     samples.push_back(sample);
-    while (samples.front().x() < sample.x() - keep_s || samples.size() > mostSamples)
+    while (samples.front().x() < sample.x() - keep_s || samples.size() > maxSamples)
         samples.pop_front();
 }
 

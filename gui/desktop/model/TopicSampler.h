@@ -20,7 +20,7 @@ class TopicSampler : public QObject {
 public:
     static constexpr double keep_s = 600;
     static constexpr double maxRate_hz = 20;
-    static constexpr std::size_t mostSamples = std::size_t(2 * keep_s * maxRate_hz);
+    static constexpr std::size_t maxSamples = std::size_t(2 * keep_s * maxRate_hz);
     /// Beyond it a value is not kept: no axis can show it.
     static constexpr double largest = 1e15;
     /// A stamp that is older than the one before by no more than this came late, and is left out; else the

@@ -23,7 +23,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestMethod = 80, longestLine = 500, longestAnswer = 100000, mostMethods = 1000;
+constexpr int longestMethod = 80, longestLine = 500, longestAnswer = 100000, maxMethods = 1000;
 
 QString text(const QJsonValue &value) {
     if (value.isObject())
@@ -197,7 +197,7 @@ void CommandsPanel::offerSteps() {
         const Macro &macro = buttons_.all()[std::size_t(i)];
         QAction *const action = menu->addAction(QString(macro.name).replace('&', "&&"));
         action->setData(i);
-        action->setEnabled(int(macro.steps.size()) < Macro::mostSteps);
+        action->setEnabled(int(macro.steps.size()) < Macro::maxSteps);
     }
     update();
 }
@@ -227,7 +227,7 @@ void CommandsPanel::listMethods() {
             const QString name = method["name"].toString();
             if (!(name + method["summary"].toString()).contains(filter_->text(), Qt::CaseInsensitive))
                 continue;
-            if (methods_->count() >= mostMethods) {
+            if (methods_->count() >= maxMethods) {
                 ++unlisted;
                 continue;
             }

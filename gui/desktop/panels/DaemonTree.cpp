@@ -13,7 +13,7 @@ namespace {
 enum DaemonColumn { NameColumn, StateColumn };
 constexpr int conditionRole = Qt::UserRole + 1; // whose icon and colour stand there: to set them costs
 
-constexpr int longestWord = 20, mostHealthItems = 50, iconRoom = 34;
+constexpr int longestWord = 20, maxHealthItems = 50, iconRoom = 34;
 
 Condition conditionOf(const QString &level) {
     return level == "ok" ? Condition::Ready : level == "error" ? Condition::Fault : Condition::Warning;
@@ -163,7 +163,7 @@ void DaemonTree::showDaemon(QTreeWidgetItem &item, const Robot &robot, const Dae
 void DaemonTree::showHealth(QTreeWidgetItem &item, const DaemonLink &daemon) {
     const std::vector<HealthItem> &health = daemon.status().health;
     const int count = daemon.isConnected() && !daemon.isSilent() ? int(health.size()) : 0;
-    const int shown = qMin(count, mostHealthItems);
+    const int shown = qMin(count, maxHealthItems);
     const int rows = shown + (count > shown ? 1 : 0);
     while (item.childCount() > rows)
         delete item.takeChild(item.childCount() - 1);

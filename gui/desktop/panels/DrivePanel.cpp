@@ -68,7 +68,7 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
     connect(blind_, &QPushButton::clicked, &drive, &DriveControl::driveBlindly);
 
     connect(stick_, &Stick::moved, this,
-            [this](const Twist2D &wish, bool isHeld) { drive_.steer("stick", wish, isHeld); });
+            [this](const Twist2D &request, bool isHeld) { drive_.steer("stick", request, isHeld); });
     connect(takeOver_, &QPushButton::clicked, &drive, &DriveControl::takeOver);
     connect(&drive, &DriveControl::changed, this, &DrivePanel::update);
     update();

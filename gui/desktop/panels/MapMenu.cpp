@@ -16,7 +16,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestPath = 120, mostMaps = 200;
+constexpr int longestPath = 120, maxMaps = 200;
 
 QDialog *makeDialog(QWidget *parent, const QString &title) {
     auto *const dialog = new QDialog(parent);
@@ -65,6 +65,7 @@ MapMenu::MapMenu(QWidget *parent)
     add(tr("&Export on the robot..."), "exportMap", "map.export", &MapMenu::exportAs);
     undo_ = add(tr("&Undo"), "undoMap", "map.undo", &MapMenu::bringBack);
     redo_ = add(tr("&Redo"), "redoMap", "map.undo", &MapMenu::bringForth);
+    confirm_ = add(tr("&Confirm the place..."), "confirmPlace", "pose.set", &MapMenu::confirm);
     addSeparator();
     mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", nullptr);
     localization_ =
@@ -155,7 +156,7 @@ void MapMenu::open() {
         maps->setRootIsDecorated(false);
         int count = 0;
         for (const QJsonValue &map : list["maps"].toArray()) {
-            if (++count > mostMaps)
+            if (++count > maxMaps)
                 break;
             const auto time = timeOf(map["modified"].toDouble());
             const QString kind = map["journal"].toBool() ? tr(" (a drive, goes on)") : QString();
@@ -290,6 +291,13 @@ void MapMenu::undo(bool again) {
          });
 }
 
+void MapMenu::confirm() {
+    ask(tr("Is the robot really where the map shows it? What it sees is drawn there from now on, whatever "
+           "the "
+           "scans say."),
+        tr("It is there"), [this] { Q_EMIT confirmed(); });
+}
+
 void MapMenu::setMode(const QString &mode) {
     call("matcher.start", {{"mode", mode}}, [this, mode](const QJsonValue &) {
         question_.close();
@@ -309,6 +317,10 @@ void MapMenu::readMode() {
         localization_->setChecked((*state)["mode"] == QJsonValue("localization"));
         name(undo_, tr("&Undo"), (*state)["undoes"].toString());
         name(redo_, tr("&Redo"), (*state)["redoes"].toString());
+        if ((*state)["place"] == QJsonValue("known")) {
+            confirm_->setEnabled(false);
+            confirm_->setToolTip(tr("The place of the robot in the map is known."));
+        }
     });
 }
 

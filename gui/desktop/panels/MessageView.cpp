@@ -11,7 +11,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int mostRows = 400, mostOfOne = 40, deepestShown = 8, longestShown = 120;
+constexpr int maxRows = 400, maxOfOne = 40, deepestShown = 8, longestShown = 120;
 constexpr double rate_hz = 10, heavyRate_hz = 2;
 
 QString wireNumberText(WireView value) {
@@ -98,7 +98,7 @@ void MessageView::refresh() {
 
 void MessageView::take(const TopicUpdate &update) {
     stamp_ = update.stamp;
-    room_ = mostRows;
+    room_ = maxRows;
     const bool isFirst = tree_->topLevelItemCount() == 0;
     if (isFirst)
         new QTreeWidgetItem(tree_);
@@ -117,8 +117,8 @@ void MessageView::fill(QTreeWidgetItem *item, WireView value, const QJsonObject 
         item->setToolTip(0, tip);
     const int before = item->childCount();
     fillChildren(item, value, schema, depth);
-    constexpr int mostOpened = 8; // of a list or an object
-    if (before == 0 && item->childCount() > 0 && item->childCount() <= mostOpened && depth < 3)
+    constexpr int maxOpened = 8; // of a list or an object
+    if (before == 0 && item->childCount() > 0 && item->childCount() <= maxOpened && depth < 3)
         item->setExpanded(true);
 }
 
@@ -126,11 +126,11 @@ void MessageView::fillChildren(QTreeWidgetItem *item, WireView value, const QJso
     std::vector<std::pair<QString, WireView>> inner;
     const std::size_t all = depth < deepestShown ? value.size() : 0;
     if (value.kind() == WireView::Kind::Array)
-        for (std::size_t i = 0; i < std::min<std::size_t>(all, mostOfOne); ++i)
+        for (std::size_t i = 0; i < std::min<std::size_t>(all, maxOfOne); ++i)
             inner.emplace_back(QString::number(i), value[i]);
     else if (all > 0)
         value.forEachMember([&inner](const QString &name, WireView member) {
-            if (inner.size() < mostOfOne)
+            if (inner.size() < maxOfOne)
                 inner.emplace_back(name, member);
         });
     const int count = std::min(int(inner.size()), std::max(0, room_));

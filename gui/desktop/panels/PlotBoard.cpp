@@ -63,7 +63,7 @@ PlotBoard::Pane &PlotBoard::newPane() {
 bool PlotBoard::add(const FieldId &field) {
     if (has(field))
         return true;
-    if (curves() >= mostCurves)
+    if (curves() >= maxCurves)
         return false;
     insert(panes_[chosen_], field, std::nullopt);
     showCurves();

@@ -16,7 +16,7 @@ class PlotPane;
 class PlotBoard : public QWidget {
     Q_OBJECT
 public:
-    static constexpr int mostPanes = 8, mostCurves = 32;
+    static constexpr int maxPanes = 8, maxCurves = 32;
 
     explicit PlotBoard(Fleet &fleet, QWidget *parent = nullptr);
 
@@ -34,7 +34,7 @@ public:
     void addPane();
     /// With its curves; the last one is only emptied.
     void removePane();
-    bool canAddPane() const { return panes_.size() < std::size_t(mostPanes); }
+    bool canAddPane() const { return panes_.size() < std::size_t(maxPanes); }
     int chosenPane() const { return int(chosen_); }
     void choosePane(int pane);
 

@@ -33,12 +33,12 @@ void PlotBoard::clear() {
 void PlotBoard::setState(const QJsonObject &state) {
     clear();
     const QJsonArray panes = state["panes"].toArray();
-    for (int i = 0; i < std::min(panes.size(), mostPanes); ++i) {
+    for (int i = 0; i < std::min(panes.size(), maxPanes); ++i) {
         Pane &pane = i == 0 ? panes_.front() : newPane();
         for (const QJsonValue &one : panes[i].toArray()) {
             const FieldId field{one["daemon"].toString(), one["topic"].toString(), one["field"].toString()};
             const QJsonValue right = one["right"];
-            if (!field.topic.isEmpty() && curves() < mostCurves && !has(field))
+            if (!field.topic.isEmpty() && curves() < maxCurves && !has(field))
                 insert(pane, field, right.isBool() ? std::make_optional(right.toBool()) : std::nullopt);
         }
     }

@@ -17,14 +17,14 @@ PlotSets::PlotSets(QWidget *parent)
 
 void PlotSets::setSets(const QJsonObject &sets) {
     sets_ = {};
-    for (auto set = sets.begin(); set != sets.end() && sets_.size() < mostSets; ++set)
+    for (auto set = sets.begin(); set != sets.end() && sets_.size() < maxSets; ++set)
         if (!set.key().isEmpty() && set.value().isObject())
             sets_[shortLine(set.key(), longestName)] = set.value();
 }
 
 void PlotSets::save(const QString &name, const QJsonObject &set) {
     const QString shown = shortLine(name.trimmed(), longestName);
-    if (shown.isEmpty() || (!sets_.contains(shown) && sets_.size() >= mostSets))
+    if (shown.isEmpty() || (!sets_.contains(shown) && sets_.size() >= maxSets))
         return;
     sets_[shown] = set;
     Q_EMIT changed();

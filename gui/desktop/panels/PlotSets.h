@@ -11,7 +11,7 @@ namespace hermes::desktop {
 class PlotSets : public QMenu {
     Q_OBJECT
 public:
-    static constexpr int mostSets = 100, longestName = 40;
+    static constexpr int maxSets = 100, longestName = 40;
 
     explicit PlotSets(QWidget *parent = nullptr);
 

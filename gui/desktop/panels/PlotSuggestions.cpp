@@ -30,7 +30,7 @@ protected:
     }
 };
 
-constexpr int mostSuggestions = 6, mostSuggestedFields = 4, mostSeen = 60, longestSuggestion = 48;
+constexpr int maxSuggestions = 6, maxSuggestedFields = 4, maxSeen = 60, longestSuggestion = 48;
 
 /// What operators look at first.
 const QStringList units{"m/s", "rad/s", "V", "A", "°C", "m", "rad", "Hz"};
@@ -45,7 +45,7 @@ QString leaf(const QString &path) {
 
 /// A few numbers together say more than one alone; of many none stands out.
 int rank(std::size_t count) {
-    return count > std::size_t(mostSuggestedFields) ? 2 : count == 1 ? 1 : 0;
+    return count > std::size_t(maxSuggestedFields) ? 2 : count == 1 ? 1 : 0;
 }
 
 } // namespace
@@ -72,11 +72,11 @@ std::vector<PlotSuggestions::Suggestion> PlotSuggestions::find() const {
     for (const DaemonLink *daemon :
          fleet_.robot() ? fleet_.robot()->daemons() : std::vector<DaemonLink *>()) {
         const QJsonArray topics = daemon->description()["x-topics"].toArray();
-        for (int i = 0; i < std::min(topics.size(), mostSeen); ++i) {
+        for (int i = 0; i < std::min(topics.size(), maxSeen); ++i) {
             const QString topic = topics[i]["name"].toString();
             const QJsonObject schema = topics[i]["schema"].toObject();
             std::map<int, std::vector<FieldId>> found;
-            for (const QString &path : numericPaths(schema, mostSeen, UnknownLists::One))
+            for (const QString &path : numericPaths(schema, maxSeen, UnknownLists::One))
                 if (const int unit = units.indexOf(unitAt(schema, path)); unit >= 0)
                     found[unit].push_back({daemon->address(), topic, path});
             for (auto &[unit, fields] : found) {
@@ -89,15 +89,15 @@ std::vector<PlotSuggestions::Suggestion> PlotSuggestions::find() const {
     }
     std::vector<Suggestion> all;
     for (auto &[unit, suggestion] : best) {
-        if (int(suggestion.fields.size()) > mostSuggestedFields)
-            suggestion.fields.resize(mostSuggestedFields);
+        if (int(suggestion.fields.size()) > maxSuggestedFields)
+            suggestion.fields.resize(maxSuggestedFields);
         QStringList names;
         for (const FieldId &field : suggestion.fields)
             if (!names.contains(leaf(field.path)))
                 names.append(leaf(field.path));
         suggestion.text =
             tr("%1: %2 (%3)").arg(suggestion.fields.front().topic, names.join(", "), units[unit]);
-        if (int(all.size()) < mostSuggestions)
+        if (int(all.size()) < maxSuggestions)
             all.push_back(suggestion);
     }
     return all;

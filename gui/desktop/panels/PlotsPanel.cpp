@@ -158,7 +158,7 @@ void PlotsPanel::tick(const FieldId &field, bool isOn) {
         return board_->remove(field);
     if (board_->add(field))
         return;
-    message_->tell(tr("No more than %1 curves.").arg(PlotBoard::mostCurves), true);
+    message_->tell(tr("No more than %1 curves.").arg(PlotBoard::maxCurves), true);
     onBoardChanged();
 }
 

@@ -234,7 +234,7 @@ QString RecordPanel::markText() {
 }
 
 void RecordPanel::list() {
-    recorder().list(mostRecordings, [this, listing = ++listing_](const SessionList &found) {
+    recorder().list(maxRecordings, [this, listing = ++listing_](const SessionList &found) {
         if (listing != listing_)
             return; // asked for anew, maybe of another robot
         list_ = found;

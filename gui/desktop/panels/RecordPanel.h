@@ -22,7 +22,7 @@ class RecordPanel : public QWidget {
     Q_OBJECT
 public:
     /// Of each logger, the newest so many recordings are listed.
-    static constexpr int mostRecordings = 200;
+    static constexpr int maxRecordings = 200;
 
     explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
     /// Loggers replay, whoever began it.

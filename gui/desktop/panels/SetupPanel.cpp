@@ -22,7 +22,7 @@ namespace hermes::desktop {
 namespace {
 
 enum ChangeColumn { SettingColumn, NowColumn, NewColumn };
-constexpr int mostFindings = 500;
+constexpr int maxFindings = 500;
 
 QTreeWidget *makeTable(const QString &name, const QStringList &header) {
     auto *const table = new QTreeWidget;
@@ -157,7 +157,7 @@ void SetupPanel::follow() {
         "settings.get", {{"path", "setup.folder"}}, this,
         [this](const Result<QJsonValue> &folder) { folder_ = folder ? folder->toString() : QString(); });
     call<QStringList>("setup.samples", {}, [this](const QStringList &names) {
-        for (const QString &name : names.mid(0, mostFindings))
+        for (const QString &name : names.mid(0, maxFindings))
             samples_->addItem(tr("Begin with the sample %1").arg(shortLine(name, 40)), name);
     });
 }
@@ -216,7 +216,7 @@ void SetupPanel::find() {
 void SetupPanel::showFound(const Findings &found) {
     found_->clear();
     for (QStringList &row : rowsOf(found, tr("the tick \"Ask silent lines\"")))
-        if (found_->topLevelItemCount() < mostFindings) {
+        if (found_->topLevelItemCount() < maxFindings) {
             row.front() = spokenKind(row.front());
             found_->addTopLevelItem(rowOf(row));
         }
@@ -257,7 +257,7 @@ void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings,
     QString last;
     int rows = 0;
     for (const SettingChange &change : changes) {
-        if (++rows > mostFindings)
+        if (++rows > maxFindings)
             break;
         if (change.daemon != last) {
             if (file)

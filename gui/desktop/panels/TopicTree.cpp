@@ -10,8 +10,8 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int mostTopics = 200, mostFields = 200;
-constexpr std::size_t mostMeasured = 60; // of the 100 subscriptions that a daemon grants
+constexpr int maxTopics = 200, maxFields = 200;
+constexpr std::size_t maxMeasured = 60; // of the 100 subscriptions that a daemon grants
 
 enum Role { AddressRole = Qt::UserRole, TopicRole, PathRole, DaemonRole, DescriptionRole, HeavyRole };
 
@@ -114,10 +114,9 @@ void TopicTree::listTopics() {
                 const int all = daemon->topics().size();
                 const QString title = fleet_.titleOf(*daemon);
                 row->setText(
-                    0,
-                    all <= mostTopics
-                        ? title
-                        : tr("%1 (%2 topics, of which %3 are listed)").arg(title).arg(all).arg(mostTopics));
+                    0, all <= maxTopics
+                           ? title
+                           : tr("%1 (%2 topics, of which %3 are listed)").arg(title).arg(all).arg(maxTopics));
             }
     isListing_ = false;
 }
@@ -140,7 +139,7 @@ void TopicTree::addTopics(QTreeWidgetItem *row, DaemonLink *daemon) {
         listed.insert(row->child(i)->data(0, TopicRole).toString());
     QHash<QString, QJsonObject> described;
     for (const QString &topic : daemon->topics()) {
-        if (listed.contains(topic) || row->childCount() >= mostTopics)
+        if (listed.contains(topic) || row->childCount() >= maxTopics)
             continue;
         if (described.isEmpty())
             described = topicsOf(*daemon);
@@ -161,8 +160,7 @@ void TopicTree::addTopic(QTreeWidgetItem *row, const QString &topic, const QJson
 }
 
 void TopicTree::open(QTreeWidgetItem *topic) {
-    addFields(topic,
-              numericPaths(descriptionOf(*topic)["schema"].toObject(), mostFields, UnknownLists::None));
+    addFields(topic, numericPaths(descriptionOf(*topic)["schema"].toObject(), maxFields, UnknownLists::None));
     opening_.insert(topic); // lists are as long as those of its next message
     if (topic->childCount() == 0)
         Q_EMIT told(tr("Waiting for a message of %1 ...").arg(topic->text(0)));
@@ -180,7 +178,7 @@ void TopicTree::addFields(QTreeWidgetItem *topic, const QStringList &paths) {
     for (int i = 0; i < topic->childCount(); ++i)
         listed.insert(topic->child(i)->data(0, PathRole).toString());
     for (const QString &path : paths) {
-        if (listed.contains(path) || topic->childCount() >= mostFields)
+        if (listed.contains(path) || topic->childCount() >= maxFields)
             continue;
         const QString name = path.isEmpty() ? topic->data(0, TopicRole).toString() : path;
         const QJsonObject what = schemaAt(schema, path);
@@ -199,7 +197,7 @@ void TopicTree::addFields(QTreeWidgetItem *topic, const QStringList &paths) {
 void TopicTree::take(QTreeWidgetItem *topic, const TopicUpdate &update) {
     if (opening_.erase(topic) == 0)
         return;
-    addFields(topic, numericPaths(update.data, mostFields));
+    addFields(topic, numericPaths(update.data, maxFields));
     QTimer::singleShot(0, this, &TopicTree::measureAll); // the meter may be needed no more
     Q_EMIT told(topic->childCount() == 0 ? tr("%1 has no number to plot.").arg(topic->text(0)) : QString());
 }
@@ -249,7 +247,7 @@ void TopicTree::measureAll() {
 
 void TopicTree::measure(QTreeWidgetItem *topic) {
     const auto found = meters_.find(topic);
-    if (!isMeasured(topic) || (found == meters_.end() && meters_.size() >= mostMeasured)) {
+    if (!isMeasured(topic) || (found == meters_.end() && meters_.size() >= maxMeasured)) {
         meters_.erase(topic);
         return topic->setText(1, {});
     }

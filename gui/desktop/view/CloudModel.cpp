@@ -61,7 +61,7 @@ void CloudModel::forget() {
 }
 
 void CloudModel::take(const CloudMessage &cloud) {
-    const std::size_t count = std::min({cloud.x.size(), cloud.y.size(), cloud.z.size(), mostPoints});
+    const std::size_t count = std::min({cloud.x.size(), cloud.y.size(), cloud.z.size(), maxPoints});
     const std::size_t most = std::max({cloud.x.size(), cloud.y.size(), cloud.z.size()});
     const auto isSeen = [](float value) { return std::abs(value) <= farthest_m; }; // NaN is not
     points_.clear();

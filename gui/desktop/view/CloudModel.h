@@ -21,7 +21,7 @@ struct CloudPoint {
 class CloudModel : public QObject {
     Q_OBJECT
 public:
-    static constexpr std::size_t mostPoints = 100000;
+    static constexpr std::size_t maxPoints = 100000;
     static constexpr double maxRate_hz = 20; // lidars turn no faster
     /// No lidar sees farther (m).
     static constexpr float farthest_m = 1000;

@@ -8,7 +8,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr double step_m = 0.02;
-constexpr int mostPoints = 100000;
+constexpr int maxPoints = 100000;
 /// Nobody knows what the robot did meanwhile.
 constexpr double longestGap_s = 3, longestFastGap_s = 30;
 /// How far the robot can have come: what poses are wrong by, the faster of both speeds and half as much more,
@@ -49,8 +49,8 @@ void DrivenPath::add(const Pose2D &pose, const PathMoment &moment, int keyScan) 
     last_ = moment;
     if (!way_.isEmpty() && distance < step_m)
         return;
-    if (way_.size() >= mostPoints)
-        forgetOldest(mostPoints / 10);
+    if (way_.size() >= maxPoints)
+        forgetOldest(maxPoints / 10);
     if (isBroken)
         breaks_.append(way_.size());
     way_.append(point);

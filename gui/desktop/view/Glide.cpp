@@ -39,7 +39,7 @@ void Glide::leap(const Pose2D &leap) {
 bool Glide::start(int edges, const KeyScans &corrected) {
     from_ = shown_.graph.poses;
     const int common = from_.size();
-    if (common == 0 || common > corrected.size() || corrected.size() > mostKeyScans || edges > mostEdges) {
+    if (common == 0 || common > corrected.size() || corrected.size() > maxKeyScans || edges > maxEdges) {
         end();
         return false;
     }

@@ -27,7 +27,7 @@ public:
     /// Nobody sees less (m), on the scale at which a map is looked at.
     static constexpr double leastMove_m = 0.01;
     /// Larger maps are not animated: each picture of the movement would take too long.
-    static constexpr int mostEdges = 10000, mostKeyScans = 20000;
+    static constexpr int maxEdges = 10000, maxKeyScans = 20000;
 
     enum class Phase { Rests, Holds, Moves };
 

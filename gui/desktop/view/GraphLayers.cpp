@@ -9,7 +9,7 @@ namespace {
 
 /// Pixels between key scans that are drawn, and how many dots at most.
 constexpr double leastStep = 8;
-constexpr int mostDots = 10000;
+constexpr int maxDots = 10000;
 
 double trustWidth(std::size_t trustClass) {
     return 9 - double(trustClass);
@@ -48,8 +48,8 @@ int MapPainter::paintGraph(QPainter &painter) const {
     for (const Step &step : drive()) {
         lines.append(step.line);
         const bool isSeen = seen.contains(step.line.p2());
-        leftOut += isSeen && dots.size() >= mostDots;
-        if (isSeen && dots.size() < mostDots)
+        leftOut += isSeen && dots.size() >= maxDots;
+        if (isSeen && dots.size() < maxDots)
             dots.append(QRectF(step.line.p2() - QPointF(2, 2), QSizeF(5, 5)));
     }
     leftOut += paintLines(painter, lines, QPen(mapColours().text, 1));

@@ -14,12 +14,12 @@ bool KeyScanGraph::take(const GraphMessage &message) {
         return true;
     }
     const bool isNext = message.cleared || double(message.revision) <= revision_ + 1;
-    if (!isNext || message.first > (known_.size() < mostKeyScans ? known_.size() : message.size)) {
+    if (!isNext || message.first > (known_.size() < maxKeyScans ? known_.size() : message.size)) {
         isBehind_ = true;
         return false;
     }
     revision_ = double(message.revision);
-    size_ = int(qMin<qint64>(message.size, mostKeyScans));
+    size_ = int(qMin<qint64>(message.size, maxKeyScans));
     addPoses(message);
     addLoops(message.loops);
     return true;
@@ -36,7 +36,7 @@ void KeyScanGraph::clear() {
 void KeyScanGraph::addPoses(const GraphMessage &message) {
     qint64 number = message.first;
     for (std::size_t i = 0; i < message.poses.size(); ++i, ++number) {
-        if (number >= mostKeyScans || number >= message.size) {
+        if (number >= maxKeyScans || number >= message.size) {
             ignored_ += message.poses.size() - i;
             return;
         }
@@ -59,7 +59,7 @@ void KeyScanGraph::addLoops(const std::vector<GraphLoop> &loops) {
     const auto isKnown = [this](qint64 number) { return number >= 0 && number < known_.size(); };
     for (const GraphLoop &loop : loops)
         if (isKnown(loop.from) && isKnown(loop.to) && loop.weight >= 0 && loop.weight <= 1 &&
-            known_.loops.size() < mostLoops)
+            known_.loops.size() < maxLoops)
             known_.loops.append(loop);
         else
             ++ignored_;

@@ -25,7 +25,7 @@ struct KeyScans {
 /// sense.
 class KeyScanGraph {
 public:
-    static constexpr int mostKeyScans = 200000, mostLoops = 200000;
+    static constexpr int maxKeyScans = 200000, maxLoops = 200000;
 
     /// Takes a message. False: messages before it were lost, the whole is to be asked for; what comes until
     /// then is passed over.
@@ -36,7 +36,7 @@ public:
     /// A large graph comes in parts.
     bool isWhole() const { return !isBehind_ && known_.size() >= size_; }
     /// Since the last call: values that are no numbers, impossible coordinates, loops between key scans that
-    /// there are not, what is beyond mostKeyScans and mostLoops.
+    /// there are not, what is beyond maxKeyScans and maxLoops.
     quint64 takeIgnored() { return std::exchange(ignored_, 0); }
 
 private:

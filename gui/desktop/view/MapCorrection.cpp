@@ -20,7 +20,7 @@ void MapModel::onGraph(const GraphMessage &message) {
         graphs_.renew();
     else if (graph_.isWhole() && graph_.known().size() > 0)
         graphIsWhole();
-    goOn();
+    resume();
     Q_EMIT changed();
 }
 
@@ -105,7 +105,7 @@ void MapModel::expectCorrection(Sign sign) {
 }
 
 /// After each message: the picture waits on, or begins to move.
-void MapModel::goOn() {
+void MapModel::resume() {
     if (glide_.phase() != Glide::Phase::Holds)
         return;
     const bool areParts = !isWhole() || !graph_.isWhole();

@@ -121,12 +121,12 @@ void MapModel::onMap(const MapMessage &map) {
         return maps_.renew();
     }
     revision_ = double(map.revision);
-    size_ = int(qMin<qint64>(map.size, mostEdges));
+    size_ = int(qMin<qint64>(map.size, maxEdges));
     for (const MapEdgeMessage &edge : map.edges)
         addEdge(edge);
     for (qint64 removed : map.removed)
         removeEdge(removed);
-    goOn();
+    resume();
     Q_EMIT changed();
 }
 
@@ -134,7 +134,7 @@ void MapModel::addEdge(const MapEdgeMessage &edge) {
     const auto line = toLine(edge.x1, edge.y1, edge.x2, edge.y2);
     const auto row = rows_.constFind(edge.id);
     const bool isNew = row == rows_.constEnd();
-    if (!line || (isNew && edges_.size() >= mostEdges)) {
+    if (!line || (isNew && edges_.size() >= maxEdges)) {
         ++ignored_;
         return;
     }
@@ -185,7 +185,7 @@ void MapModel::onPose(const PoseMessage &message) {
     if (poseLead_ == 0)
         paths_[MovingMap::Matched].add(*pose_, moment(twist_), newestKeyScan());
     placeScan();
-    goOn();
+    resume();
     Q_EMIT changed();
 }
 

@@ -19,7 +19,7 @@ namespace hermes::desktop {
 class MapModel : public QObject {
     Q_OBJECT
 public:
-    static constexpr int mostEdges = 200000;
+    static constexpr int maxEdges = 200000;
     /// So long the picture waits for a corrected map, longer while parts of it come, and so long the notice
     /// of it stands.
     static constexpr std::chrono::milliseconds signWait{2000}, partsWait{10000}, noticeTime{4000};
@@ -69,7 +69,7 @@ public:
     void clearPaths();
 
     /// What came and is not shown: values that are no numbers, or impossible coordinates (beyond farthest_m),
-    /// edges beyond mostEdges, and of the graph what KeyScanGraph passes over.
+    /// edges beyond maxEdges, and of the graph what KeyScanGraph passes over.
     quint64 ignored() const { return ignored_; }
 
     /// All edges; null rectangle without any.
@@ -113,7 +113,7 @@ private:
     void graphIsWhole();
     void correctPaths(const QVector<Pose2D> &before);
     void forgetGraph();
-    void goOn();
+    void resume();
     void onWaitOver();
     void startGlide();
     void showGlide();
@@ -141,7 +141,7 @@ private:
     std::pair<std::pair<Freshness::State, QString>, std::pair<Freshness::State, QString>> shownAge_;
     Paths paths_;
     MapKey map_{0, false};                       // that the paths are of
-    static constexpr std::size_t mostAside = 3;  // of sets of paths
+    static constexpr std::size_t maxAside = 3;   // of sets of paths
     std::deque<std::pair<MapKey, Paths>> aside_; // until their map is back; the oldest first
 
     KeyScanGraph graph_;

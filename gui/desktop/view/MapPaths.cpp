@@ -24,7 +24,7 @@ void MapModel::turnTo(MapKey map) {
         paths_ = std::move(kept->second);
         aside_.erase(kept);
     }
-    if (aside_.size() > mostAside)
+    if (aside_.size() > maxAside)
         aside_.pop_front();
     pose_.reset();
     covariance_.reset();

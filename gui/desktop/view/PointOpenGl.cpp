@@ -27,10 +27,10 @@ void main() {
 }
 )";
 
-const char *const wish = "HERMES_OPENGL";
+const char *const setting = "HERMES_OPENGL";
 
 bool isOff() {
-    return qgetenv(wish) == "off";
+    return qgetenv(setting) == "off";
 }
 
 /// Of Mesa, by the names that they give themselves.
@@ -47,7 +47,7 @@ std::unique_ptr<PointOpenGl> PointOpenGl::make() {
     if (isOff())
         return nullptr;
     std::unique_ptr<PointOpenGl> points(new PointOpenGl);
-    return points->begin(qgetenv(wish) == "on") ? std::move(points) : nullptr;
+    return points->begin(qgetenv(setting) == "on") ? std::move(points) : nullptr;
 }
 
 std::unique_ptr<QThread> PointOpenGl::load() {

@@ -121,7 +121,7 @@ bool isSecret(const QJsonObject &schema) {
 }
 
 QString summaryOf(const QJsonValue &value) {
-    constexpr int mostParts = 6;
+    constexpr int maxParts = 6;
     if (value.isString())
         return shortLine(value.toString(), 40);
     if (value.isArray())
@@ -136,7 +136,7 @@ QString summaryOf(const QJsonValue &value) {
         if (object[key].isString())
             parts.append(shortLine(object[key].toString(), 40));
     const bool isNamed = !parts.isEmpty();
-    for (auto member = object.begin(); member != object.end() && parts.size() < mostParts; ++member)
+    for (auto member = object.begin(); member != object.end() && parts.size() < maxParts; ++member)
         if (!isNamed || !names.contains(member.key()))
             parts.append(shortLine(member.key(), 20) + ": " +
                          (member->isObject() ? fieldTr("%1 values").arg(member->toObject().size())

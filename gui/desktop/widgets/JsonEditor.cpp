@@ -50,7 +50,7 @@ void JsonEditor::show(QWidget *shown) {
 }
 
 void JsonEditor::setValue(const QJsonValue &value) {
-    if (countValues(value, mostValues) > mostValues)
+    if (countValues(value, maxValues) > maxValues)
         return setTooLong(value);
     const QString text = indented(value);
     if (!isShowable(text))

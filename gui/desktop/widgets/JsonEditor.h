@@ -12,7 +12,7 @@ namespace hermes::desktop {
 class JsonEditor : public ValueEditor {
     Q_OBJECT
 public:
-    static constexpr int mostValues = 5000;
+    static constexpr int maxValues = 5000;
 
     explicit JsonEditor(QWidget *parent = nullptr);
 

@@ -248,7 +248,7 @@ void ListEditor::number() {
         for (QToolButton *const button : {row.up, row.down, row.remove})
             button->setAccessibleName(button->toolTip());
     }
-    const int most = std::min(mostRows, schema_["maxItems"].toInt(mostRows));
+    const int most = std::min(maxRows, schema_["maxItems"].toInt(maxRows));
     add_->setEnabled(count < most);
     add_->setToolTip(count < most ? tr("Adds a row at the end") : tr("%1 rows are the most").arg(most));
     setFocusProxy(rows_.empty() ? static_cast<QWidget *>(add_) : focusOrder().constFirst());

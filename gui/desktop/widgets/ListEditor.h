@@ -16,7 +16,7 @@ namespace hermes::desktop {
 class ListEditor : public ValueEditor {
     Q_OBJECT
 public:
-    static constexpr int mostRows = 100;
+    static constexpr int maxRows = 100;
 
     ListEditor(const QJsonObject &schema, const EditorPlace &place, QWidget *parent = nullptr);
     ~ListEditor() override;

@@ -15,7 +15,7 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int mostMembers = 100;
+constexpr int maxMembers = 100;
 
 /// Its keys are not only those that the schema names.
 bool isOpen(const QJsonObject &schema) {
@@ -92,7 +92,7 @@ void ObjectEditor::setValue(const QJsonValue &value) {
     isGiven_ = !value.isUndefined();
     QStringList keys, shown;
     for (auto property = properties_.begin(); property != properties_.end(); ++property)
-        if (keys.size() < mostMembers && (isRequired(property.key()) || object.contains(property.key())))
+        if (keys.size() < maxMembers && (isRequired(property.key()) || object.contains(property.key())))
             keys.append(property.key());
     for (auto member = object.begin(); member != object.end(); ++member)
         if (!properties_.contains(member.key()))
@@ -227,7 +227,7 @@ void ObjectEditor::offer() {
     bool hasOptional = false;
     for (auto property = properties_.begin(); property != properties_.end(); ++property) {
         hasOptional = hasOptional || !isRequired(property.key());
-        if (find(property.key()) || absent_->actions().size() >= mostMembers)
+        if (find(property.key()) || absent_->actions().size() >= maxMembers)
             continue;
         const QString title = shortLine(titleOf(property.key(), property->toObject()), longestTitle);
         QAction *const action = absent_->addAction(QString(title).replace('&', "&&"));
@@ -237,7 +237,7 @@ void ObjectEditor::offer() {
     absent_->setToolTipsVisible(true);
     field_->setVisible(hasOptional);
     field_->setEnabled(!absent_->isEmpty());
-    free_->setEnabled(int(rows_.size()) < mostMembers);
+    free_->setEnabled(int(rows_.size()) < maxMembers);
     const QWidgetList order = focusOrder();
     setFocusProxy(order.isEmpty() ? nullptr : order.constFirst());
 }

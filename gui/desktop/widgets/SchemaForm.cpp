@@ -18,7 +18,7 @@ namespace {
 
 constexpr int roomy = 700; // pixels: there is room for descriptions
 
-constexpr int mostSteps = 10000; // of a check, which runs with each key
+constexpr int maxSteps = 10000; // of a check, which runs with each key
 
 /// As the window writes paths: "a.0.b" for "a[0].b".
 QString dotted(QString path) {
@@ -85,7 +85,7 @@ void SchemaForm::addRows(const QJsonObject &schema, const QString &prefix) {
         const QJsonObject inner = property.value().toObject();
         if (isGroup(inner))
             addRows(inner, path);
-        else if (int(order_.size()) < mostRows && rows_.count(path) == 0)
+        else if (int(order_.size()) < maxRows && rows_.count(path) == 0)
             addRow(path, inner, schema["required"].toArray().contains(property.key()));
         else
             ++unshown_;
@@ -269,7 +269,7 @@ void SchemaForm::showErrors(const QJsonArray &errors) {
 void SchemaForm::check() {
     errors_.clear();
     const QJsonObject now = values();
-    const bool isCheap = isCheapToCheck(schema_, now, mostSteps);
+    const bool isCheap = isCheapToCheck(schema_, now, maxSteps);
     if (validator_ && isCheap)
         for (const SchemaViolation &violation : validator_->check(now))
             errors_[dotted(violation.path)] = violation.expected;

@@ -22,7 +22,7 @@ class SchemaForm : public QWidget {
     Q_OBJECT
 public:
     /// More rows than this are no form; the rest is counted.
-    static constexpr int mostRows = 120;
+    static constexpr int maxRows = 120;
 
     explicit SchemaForm(QWidget *parent = nullptr);
 
@@ -90,7 +90,7 @@ private:
     std::shared_ptr<EditorRoom> room_;
     std::optional<SchemaValidator> validator_; // none: cannot be checked
     QString hindrance_;                        // why not
-    int unshown_ = 0;                          // values beyond mostRows
+    int unshown_ = 0;                          // values beyond maxRows
     std::map<QString, Row> rows_;              // by dotted path
     std::vector<QString> order_;
     std::vector<std::pair<PlainLabel *, QString>> headings_; // of the groups

@@ -43,7 +43,7 @@ void StructureEditor::giveRoomBack() {
 bool StructureEditor::suitsRows(const QJsonValue &value) const {
     const bool isKind = value.isUndefined() || (isList_ ? value.isArray() : value.isObject());
     const int rows = rowsOf(value, schema_);
-    return isKind && place_.depth < deepest && rows <= ListEditor::mostRows && rows <= place_.room->rows;
+    return isKind && place_.depth < deepest && rows <= ListEditor::maxRows && rows <= place_.room->rows;
 }
 
 void StructureEditor::put(ValueEditor *inner) {
@@ -63,7 +63,7 @@ void StructureEditor::put(ValueEditor *inner) {
 void StructureEditor::setValue(const QJsonValue &value) {
     giveRoomBack();
     const bool wantsRows = suitsRows(value);
-    const int size = std::max(leastOfText, countValues(value, JsonEditor::mostValues));
+    const int size = std::max(leastOfText, countValues(value, JsonEditor::maxValues));
     const bool isTooMuch = !wantsRows && size > place_.room->values;
     if (wantsRows)
         place_.room->rows -= rows_ = rowsOf(value, schema_);

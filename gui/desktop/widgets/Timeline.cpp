@@ -19,7 +19,7 @@ namespace {
 
 constexpr int radius = 6, lineWidth = 4, margin = radius + 3, markHeight = 7; // pixels
 constexpr int nearMark = 4;                                                   // pixels
-constexpr int mostNamed = 5;
+constexpr int maxNamed = 5;
 constexpr double beforeEnd_s = 0.2; // what is taken: at its very end the replay would be over
 
 } // namespace
@@ -103,7 +103,7 @@ QString Timeline::textAt(int x) const {
     QStringList lines{durationText(timeAt(x))};
     for (const Mark &mark : marks_)
         if (mark.t_s <= duration_s_ && std::abs(pointOf(mark.t_s).x() - x) <= nearMark) {
-            if (lines.size() > mostNamed) {
+            if (lines.size() > maxNamed) {
                 lines.append(tr("and more"));
                 break;
             }

@@ -196,7 +196,7 @@ void Evaluation::compareRevisits() {
         });
     };
     forEachPair([this](const Pair &, const Pair &) { ++revisitPairs_; });
-    const std::size_t step = std::max<std::size_t>(1, (revisitPairs_ + mostPairs - 1) / mostPairs);
+    const std::size_t step = std::max<std::size_t>(1, (revisitPairs_ + maxPairs - 1) / maxPairs);
     errorOf_.resize(reference_.size());
     std::size_t number = 0;
     forEachPair([&](const Pair &earlier, const Pair &later) {

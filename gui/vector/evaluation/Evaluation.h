@@ -34,7 +34,7 @@ public:
     /// Stamps belong to each other within this; seconds.
     static constexpr double sameStamp = 0.01;
     /// More pairs of places met again than this are thinned evenly.
-    static constexpr std::size_t mostPairs = 2000000;
+    static constexpr std::size_t maxPairs = 2000000;
 
     /// A trajectory of as many poses as the log has scans belongs to them one by one, another one by its
     /// stamps. `name` is that of the trajectory, for messages. Throws Failure when fewer than two poses have

@@ -99,7 +99,7 @@ private:
         int subscription;
     };
 
-    static constexpr qint64 mostWaiting = 1 << 20; // bytes
+    static constexpr qint64 maxWaiting = 1 << 20; // bytes
 
     template <typename Work>
     void inThread(const Work &work) {
@@ -209,7 +209,7 @@ private:
     void keepBusy(QTcpSocket &client, Write write) {
         auto *const timer = new QTimer(&client);
         connect(timer, &QTimer::timeout, &client, [&client, write]() mutable {
-            for (int i = 0; i < 200 && client.bytesToWrite() < mostWaiting; ++i)
+            for (int i = 0; i < 200 && client.bytesToWrite() < maxWaiting; ++i)
                 write();
         });
         timer->start(1);

@@ -61,9 +61,9 @@ private Q_SLOTS:
         QFETCH(QString, letter);
         open(
             {macro("Old", {step("motorcontrol", "settings.get", {{"path", "wheels"}, {"changes", false}})})});
-        const QString most = letter.repeated((MacroStep::mostParams - bytesOf({})) / letter.toUtf8().size());
+        const QString most = letter.repeated((MacroStep::maxParams - bytesOf({})) / letter.toUtf8().size());
         const QString large = most + letter;
-        QVERIFY(bytesOf(most) <= MacroStep::mostParams && bytesOf(large) > MacroStep::mostParams);
+        QVERIFY(bytesOf(most) <= MacroStep::maxParams && bytesOf(large) > MacroStep::maxParams);
         const QString found =
             QString("settings.get have %1 bytes; a button keeps 20000 at most").arg(bytesOf(large));
         chooseMethod("motorcontrol", "settings.get");
@@ -99,7 +99,7 @@ private Q_SLOTS:
         QFETCH(QString, letter);
         open(
             {macro("Old", {step("motorcontrol", "settings.get", {{"path", "wheels"}, {"changes", false}})})});
-        const QString most = letter.repeated((MacroStep::mostParams - bytesOf({})) / letter.toUtf8().size());
+        const QString most = letter.repeated((MacroStep::maxParams - bytesOf({})) / letter.toUtf8().size());
         chooseMethod("motorcontrol", "settings.get");
         paste(callForm(), "path", most);
         find<QPushButton>("addStep")->menu()->actions()[0]->trigger();

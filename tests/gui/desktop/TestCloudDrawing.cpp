@@ -175,10 +175,10 @@ private Q_SLOTS:
     }
 
 private:
-    /// Null: not here. wish: of $HERMES_OPENGL.
-    static std::unique_ptr<PointOpenGl> openGl(const char *wish) {
+    /// Null: not here. request: of $HERMES_OPENGL.
+    static std::unique_ptr<PointOpenGl> openGl(const char *request) {
         const QByteArray before = qgetenv("HERMES_OPENGL");
-        qputenv("HERMES_OPENGL", wish);
+        qputenv("HERMES_OPENGL", request);
         auto made = PointOpenGl::make();
         before.isNull() ? qunsetenv("HERMES_OPENGL") : qputenv("HERMES_OPENGL", before);
         return made;

@@ -283,8 +283,8 @@ private Q_SLOTS:
         ConnectedClient owner(asOwner(robot_->address())); // who may
         QTest::keyPress(window_.get(), Qt::Key_W);
         awaitMotion();
-        const QJsonObject wish{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}};
-        const auto taken = owner.callAndWait("control.acquire", wish);
+        const QJsonObject request{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}};
+        const auto taken = owner.callAndWait("control.acquire", request);
         QVERIFY2(taken, taken ? "" : qPrintable(taken.error().message));
         for (int i = 0; i < 20; ++i) {
             const auto driven = owner.callAndWait("motor.drive", QJsonObject{{"vx", -0.2}});

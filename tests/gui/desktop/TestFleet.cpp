@@ -136,7 +136,7 @@ private Q_SLOTS:
         const FakeDaemon one(supervisor("one", {})), other(supervisor("other", {}));
         for (const bool isMeant : {false, true}) {
             Fleet fleet;
-            fleet.wish(addressOf(other));
+            fleet.prefer(addressOf(other));
             QVERIFY(fleet.add(addressOf(one)));
             QTRY_VERIFY(fleet.robotAt(addressOf(one)));
             if (isMeant)

@@ -186,11 +186,11 @@ private Q_SLOTS:
         now.graph = before;
         Glide glide;
         glide.hold(now, {});
-        QVERIFY(glide.start(Glide::mostEdges, after));
+        QVERIFY(glide.start(Glide::maxEdges, after));
         glide.hold(now, {});
-        QVERIFY(!glide.start(Glide::mostEdges + 1, after));
+        QVERIFY(!glide.start(Glide::maxEdges + 1, after));
         QVERIFY(glide.phase() == Glide::Phase::Rests);
-        now.graph.poses.resize(Glide::mostKeyScans + 1);
+        now.graph.poses.resize(Glide::maxKeyScans + 1);
         now.graph.poses[0].x = 1;
         after.poses.resize(now.graph.poses.size());
         glide.hold(now, {});

@@ -97,10 +97,10 @@ private Q_SLOTS:
         row("a million key scans",
             {{1, true, 0, many, std::vector<double>(many.size(), 1), {}, 1000000},
              {2, false, 1000000, {{0, 0, 0}}, {1}, {}, 1000001}},
-            1000000 - KeyScanGraph::mostKeyScans + 1, KeyScanGraph::mostKeyScans, 0);
+            1000000 - KeyScanGraph::maxKeyScans + 1, KeyScanGraph::maxKeyScans, 0);
         row("a million loops",
             {{1, true, 0, {{0, 0, 0}, {1, 0, 0}}, {1, 1}, std::vector<GraphLoop>(1000000, {0, 1, 1}), 2}},
-            1000000 - KeyScanGraph::mostLoops, 2, KeyScanGraph::mostLoops);
+            1000000 - KeyScanGraph::maxLoops, 2, KeyScanGraph::maxLoops);
     }
 
     void graphWithoutSense() {

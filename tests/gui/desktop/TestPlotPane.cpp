@@ -109,7 +109,7 @@ private Q_SLOTS:
 
         const QPoint from = at(-20).toPoint(), to = at(-10).toPoint();
         QTest::mousePress(pane_.get(), Qt::LeftButton, {}, from);
-        moveTo(from + QPoint(2, 0), Qt::LeftButton); // a click is no wish to look elsewhere
+        moveTo(from + QPoint(2, 0), Qt::LeftButton); // a click is no request to look elsewhere
         QVERIFY(!time_->isHeld());
         moveTo((from + to) / 2, Qt::LeftButton);
         moveTo(to, Qt::LeftButton);

@@ -86,7 +86,7 @@ private Q_SLOTS:
         QCOMPARE(int(panel_->board().panes().size()), 1);
         for (int i = 0; i < 20; ++i)
             panel_->findChild<QAction *>("addPane")->trigger();
-        QCOMPARE(int(panel_->board().panes().size()), PlotBoard::mostPanes);
+        QCOMPARE(int(panel_->board().panes().size()), PlotBoard::maxPanes);
         QVERIFY(window_->window.height() <= 720); // no higher for it
     }
 

@@ -107,7 +107,7 @@ private Q_SLOTS:
     void framesOfALongDrive() {
         // Before the link stands: it would be lost while nobody answers.
         const auto walls = manyWalls(1, 20000), drive = longDrive(1, 50000, 0);
-        const int edges = Glide::mostEdges, keyScans = Glide::mostKeyScans;
+        const int edges = Glide::maxEdges, keyScans = Glide::maxKeyScans;
         const auto fewer = manyWalls(2, edges), same = manyWalls(3, edges);
         const auto bent = longDrive(2, keyScans, 0), corrected = longDrive(3, keyScans, 0.05);
         FakeDaemon daemon{Mischief{}};

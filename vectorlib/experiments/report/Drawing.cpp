@@ -13,7 +13,7 @@ using Kind = Picture::Kind;
 
 namespace {
 
-constexpr int mostLines = 200;      // of the grid, each way
+constexpr int maxLines = 200;       // of the grid, each way
 constexpr double poseLength = 0.35; // metres, from a robot's place to the tip of its heading
 
 struct At {
@@ -60,9 +60,9 @@ void Drawing::writeSvg(std::ostream &out, double x, double y, double width, doub
         return At{{x + (p.x - box.low.x) * scale, y + (box.high.y - p.y) * scale}};
     };
     out << "<path stroke=\"#e3e7ee\" stroke-width=\"0.6\" d=\"";
-    for (const double gx : Picture::gridLines(box.low.x, box.high.x, gridStep, mostLines))
+    for (const double gx : Picture::gridLines(box.low.x, box.high.x, gridStep, maxLines))
         out << 'M' << at({gx, box.low.y}) << 'L' << at({gx, box.high.y});
-    for (const double gy : Picture::gridLines(box.low.y, box.high.y, gridStep, mostLines))
+    for (const double gy : Picture::gridLines(box.low.y, box.high.y, gridStep, maxLines))
         out << 'M' << at({box.low.x, gy}) << 'L' << at({box.high.x, gy});
     out << "\"/>\n";
     for (const Picture::Layer &layer : picture_.layers()) {

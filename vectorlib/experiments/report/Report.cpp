@@ -9,7 +9,7 @@ namespace {
 void searchAsPublished(CaseReport &report, const ReportSettings &settings) {
     vectorlib::PublishedSearch search;
     search.settings = settings.search;
-    search.combine.keep = settings.mostCombinations;
+    search.combine.keep = settings.maxCombinations;
     const vectorlib::PublishedResult &found =
         search(report.scans.fixed.segments, report.scans.moving.segments);
     report.result = found.search;

@@ -16,7 +16,7 @@ struct ReportSettings {
     /// PublishedSearch instead of CorrespondenceFinder: every reliable, unambiguous combination of bundles,
     /// accepted where it is permitted and of little discrepancy.
     bool everyCombination = false;
-    std::size_t mostCombinations = 100; ///< shown of a case
+    std::size_t maxCombinations = 100; ///< shown of a case
 };
 
 /// The registration of two consecutive scans of a world. Thesis appendices A and C.

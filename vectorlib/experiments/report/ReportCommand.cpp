@@ -84,7 +84,7 @@ struct ReportCommand {
         s.scan.sigma = sigma.value_or(s.scan.sigma);
         s.search = search.over(s.search);
         s.everyCombination = everyCombination;
-        s.mostCombinations = most.value_or(s.mostCombinations);
+        s.maxCombinations = most.value_or(s.maxCombinations);
         return s;
     }
     template <typename Report>

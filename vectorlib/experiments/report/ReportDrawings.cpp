@@ -6,7 +6,7 @@ using Point = vectorlib::Vector2D<double>;
 
 namespace {
 
-constexpr std::size_t mostDots = 250; // of a scan in a picture
+constexpr std::size_t maxDots = 250; // of a scan in a picture
 
 const Ink common{Ink::Kind::Area, "commonarea", "#b7d9c0", 0, "Common valid area"};
 const Ink difference{Ink::Kind::Area, "discrepancyarea", "#f2a65a", 0, "Discrepancy area"};
@@ -21,7 +21,7 @@ const Ink path{Ink::Kind::Lines, "robotpath", "#56b4e9", 0.8, "Robot path", true
 std::vector<Point> thinned(const std::vector<vectorlib::Vector2D<float>> &points,
                            const vectorlib::Transformation2D &t) {
     std::vector<Point> result;
-    const std::size_t step = points.size() / mostDots + 1;
+    const std::size_t step = points.size() / maxDots + 1;
     for (std::size_t i = 0; i < points.size(); i += step)
         result.push_back(t * Point(points[i]));
     return result;

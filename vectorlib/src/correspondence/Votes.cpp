@@ -124,7 +124,7 @@ VECTORLIB_BODY void ShiftVotes::smooth() {
     most_ = 0;
     for (int i = 0; i < blocks; ++i) {
         const std::int16_t most = simd::largestOfSixteen(to + i * block);
-        mostOf_[static_cast<std::size_t>(i)] = most;
+        maxOf_[static_cast<std::size_t>(i)] = most;
         most_ = std::max(most_, most);
     }
 }
@@ -137,7 +137,7 @@ VECTORLIB_BODY void ShiftVotes::collectPeaks(int degrees, std::vector<MotionVote
     };
     int least = static_cast<int>(share * most_);
     for (int i = 0; i < blocks; ++i) {
-        if (mostOf_[static_cast<std::size_t>(i)] <= least)
+        if (maxOf_[static_cast<std::size_t>(i)] <= least)
             continue;
         for (int at = i * block; at < (i + 1) * block; ++at) {
             if (smooth_[static_cast<std::size_t>(at)] <= least || !isPeak(at))

@@ -43,7 +43,7 @@ VECTORLIB_BODY bool DriveBreaks::doesBreak(const LoopCloser &loops, std::size_t 
             if (motion.translation().norm() > reach || isNext)
                 continue;
             const PointAgreement found = compared(loops.keys()[before], loops.keys()[behind], motion);
-            if (found.explained() > mostExplained)
+            if (found.explained() > maxExplained)
                 return false;
             ++pairs;
             explained += found.explained();

@@ -63,7 +63,7 @@ VECTORLIB_BODY std::optional<PoseConstraint> DriveRefiner::measured(const Scan &
 
 VECTORLIB_BODY void DriveRefiner::take(const PoseConstraint &c) {
     const Eigen::Vector3d off = graph_.errorOf(c);
-    if (off.head<2>().norm() <= settings.mostXY && std::abs(off[2]) <= settings.mostAlpha)
+    if (off.head<2>().norm() <= settings.maxXY && std::abs(off[2]) <= settings.maxAlpha)
         graph_.constraints.push_back(c);
 }
 
@@ -122,7 +122,7 @@ VECTORLIB_BODY void DriveRefiner::findCandidates(std::size_t key, SegmentGrid &g
         const Pose2D &there = graph_.poses[keys_[k].scan];
         const double apart = std::hypot(here.x - there.x, here.y - there.y);
         const double turn = std::abs(std::remainder(here.theta - there.theta, 2 * pi));
-        if (apart < settings.reach && turn < settings.mostTurn &&
+        if (apart < settings.reach && turn < settings.maxTurn &&
             keys_[key].way - keys_[k].way >= settings.leastWay)
             candidates_.push_back({apart + 0.5 * turn, k});
     });

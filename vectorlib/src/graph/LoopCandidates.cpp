@@ -46,7 +46,7 @@ LoopCandidates::nearest(const Pose2D &here, std::size_t most, std::size_t sure,
                         const LoopCandidateSettings &settings) {
     const std::size_t last = scans_.size() - 1;
     const Vector2D<double> place(here.x, here.y);
-    const double farthest = settings.reach + settings.mostDrift;
+    const double farthest = settings.reach + settings.maxDrift;
     near_.clear();
     grid_.query(place - Vector2D<double>(farthest, farthest), place + Vector2D<double>(farthest, farthest),
                 [&](int number) {
@@ -81,7 +81,7 @@ LoopCandidates::far(std::size_t sure, const std::vector<std::size_t> &except,
         settings.farDeviations * std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>()
                                                .computeDirect(widest, Eigen::EigenvaluesOnly)
                                                .eigenvalues()[1]);
-    if (!(farthest > settings.reach + settings.mostDrift))
+    if (!(farthest > settings.reach + settings.maxDrift))
         return std::nullopt;
     const Eigen::Matrix2d reach = Eigen::Matrix2d::Identity() * settings.reach * settings.reach;
     const Eigen::Matrix2d sureInformation = (widest + reach).inverse();

@@ -159,7 +159,7 @@ VECTORLIB_BODY void LoopCloser::enter(std::size_t k, PointSpan<float> points) {
 
 VECTORLIB_BODY void LoopCloser::bridge() {
     const std::size_t key = keys_.size() - 1;
-    for (std::size_t back = 2; back <= settings.mostBridged && back <= key; ++back)
+    for (std::size_t back = 2; back <= settings.maxBridged && back <= key; ++back)
         if (const auto loop = gate_.isAcross(key - back, key) ? std::nullopt : loopWith(key - back))
             believe(*loop);
 }
@@ -205,7 +205,7 @@ VECTORLIB_BODY bool LoopCloser::isNear(const PoseConstraint &c, const PoseConstr
     const double most =
         known ? doubt(c.from, known->from) + doubt(c.to, known->to) - settings.reach : doubt(c.from, c.to);
     const Eigen::Vector3d off = graph_.errorOf(c);
-    return off.head<2>().norm() < most && std::abs(off[2]) < settings.mostTurn;
+    return off.head<2>().norm() < most && std::abs(off[2]) < settings.maxTurn;
 }
 
 VECTORLIB_BODY std::optional<PoseConstraint> LoopCloser::loopWith(std::size_t earlier) {

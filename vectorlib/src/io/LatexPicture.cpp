@@ -130,7 +130,7 @@ VECTORLIB_BODY LatexPicture::LatexPicture(const Picture &picture, const LatexFra
     , low_(picture.box().low)
     , grid_(picture.gridStep()) {
     const Point size = picture.box().size();
-    if (std::max(size.x, size.y) < mostLines * frame.grid) // a finer one would be a grey area
+    if (std::max(size.x, size.y) < maxLines * frame.grid) // a finer one would be a grey area
         grid_ = frame.grid;
     scale_ = std::min(frame.width / size.x, frame.height / size.y);
     size_ = size * scale_;
@@ -158,9 +158,9 @@ VECTORLIB_BODY void LatexPicture::writeLegend(std::ostream &out, const std::vect
 
 VECTORLIB_BODY void LatexPicture::writeGrid(std::ostream &out) const {
     const Point high = low_ + size_ / scale_;
-    for (const double x : Picture::gridLines(low_.x, high.x, grid_, mostLines))
+    for (const double x : Picture::gridLines(low_.x, high.x, grid_, maxLines))
         writeLine(out, at({x, low_.y}), at({x, high.y}));
-    for (const double y : Picture::gridLines(low_.y, high.y, grid_, mostLines))
+    for (const double y : Picture::gridLines(low_.y, high.y, grid_, maxLines))
         writeLine(out, at({low_.x, y}), at({high.x, y}));
     const double step = picture_.gridStep();
     std::size_t widest = 1;
@@ -188,8 +188,8 @@ VECTORLIB_BODY void LatexPicture::writeLayer(std::ostream &out, const Picture::L
     else if (layer.kind == Kind::Area)
         writeArea(out, layer);
     else
-        for (std::size_t i = 0; i < layer.vertices.size(); i += mostVertices)
-            writePart(out, layer, i, std::min(i + mostVertices, layer.vertices.size()));
+        for (std::size_t i = 0; i < layer.vertices.size(); i += maxVertices)
+            writePart(out, layer, i, std::min(i + maxVertices, layer.vertices.size()));
     if (layer.kind == Kind::Segments && layer.style.normals)
         writeNormals(out, layer);
 }

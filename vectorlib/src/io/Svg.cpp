@@ -31,7 +31,7 @@ VECTORLIB_BODY Picture::Box Picture::box() const {
 
 VECTORLIB_BODY double Picture::gridStep() const {
     const Point size = box().size();
-    const double wanted = std::max(size.x, size.y) / mostLines;
+    const double wanted = std::max(size.x, size.y) / maxLines;
     const double power = std::pow(10, std::floor(std::log10(wanted)));
     for (const double factor : {1.0, 2.0, 5.0})
         if (factor * power >= wanted)
@@ -92,7 +92,7 @@ VECTORLIB_BODY void SvgPicture::layOut() {
     const Box whole = box();
     const Point size = whole.size();
     origin_ = whole.low;
-    scale_ = std::min(mostWide / size.x, mostHigh / size.y);
+    scale_ = std::min(maxWide / size.x, maxHigh / size.y);
     plot_ = size * scale_;
     width_ =
         std::max({left + plot_.x + right, 480.0, left + 8.5 * static_cast<double>(title().size()) + right});

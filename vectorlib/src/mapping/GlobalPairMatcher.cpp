@@ -200,7 +200,7 @@ VECTORLIB_BODY void GlobalPairMatcher::followOpenDirection() {
         const bool followed = std::any_of(candidates_.begin(), candidates_.end(), [&](const auto &s) {
             return isNear({0, 0, s.pose.alpha()}, {0, 0, start.pose.alpha()}, 1, settings.farAlpha);
         });
-        if (start.score < least || followed || candidates_.size() > mostFollowed)
+        if (start.score < least || followed || candidates_.size() > maxFollowed)
             continue;
         candidates_.push_back(start);
         for (double side : {-step, step})

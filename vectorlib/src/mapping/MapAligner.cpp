@@ -119,7 +119,7 @@ VECTORLIB_BODY MapAlignment MapAligner::confirm(VectorMap &fixed, const std::vec
     result.overlap = registration(fixed, moving, told);
     inFixed_.index().follow(fixed.slots());
     forEachFit(result.overlap.motion, [&](const PlaceFit &fit) {
-        result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= mostHidden;
+        result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= maxHidden;
         result.against += isAgainst(fit);
     });
     if (result.against > 0 && 2 * result.against >= result.agree)
@@ -148,11 +148,11 @@ VECTORLIB_BODY void MapAligner::findPlaces(const std::vector<MapEdge> &map) {
             taken.insert(square);
             places_.push_back(place);
         }
-    if (places_.size() <= mostPlaces)
+    if (places_.size() <= maxPlaces)
         return;
-    for (std::size_t i = 0; i < mostPlaces; ++i)
-        places_[i] = places_[i * places_.size() / mostPlaces];
-    places_.resize(mostPlaces);
+    for (std::size_t i = 0; i < maxPlaces; ++i)
+        places_[i] = places_[i * places_.size() / maxPlaces];
+    places_.resize(maxPlaces);
 }
 
 VECTORLIB_BODY double MapAligner::see(const std::vector<LineSegment2D<double>> &walls, PlaceOfMap &place) {

@@ -9,7 +9,7 @@ VECTORLIB_BODY void MapLocalizer::take(const TimedScan &scan) {
         seek();
     else
         follow();
-    if (kept_.size() <= settings.mostKept)
+    if (kept_.size() <= settings.maxKept)
         return;
     if (state_ == State::Proposed)
         drop();
@@ -33,7 +33,7 @@ VECTORLIB_BODY void MapLocalizer::seek() {
 
 VECTORLIB_BODY bool MapLocalizer::isFarFromSought(const TimedScan &scan) {
     ++sinceSought_;
-    if (searches_ == 0 || sinceSought_ >= settings.mostKept)
+    if (searches_ == 0 || sinceSought_ >= settings.maxKept)
         return true;
     if (sought_ && scan.odometry && scan.odometry->epoch() == sought_->epoch)
         return isKeyMotion(sought_->robot.inverse() * scan.odometry->at(scan.stamp));

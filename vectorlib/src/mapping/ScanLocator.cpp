@@ -114,7 +114,7 @@ VECTORLIB_BODY ScanLocator::Found ScanLocator::find(MapBuilder &builder, TimedSc
         const TwistCorrection::Result wrong = twistError(builder, scan);
         found.straight = wrong.bend <= straight_m;
         found.again = tries > 1 || !found.straight;
-        if (found.straight || tries == mostTries)
+        if (found.straight || tries == maxTries)
             break;
         twist = {twist.vx + wrong.twist.vx, twist.vy + wrong.twist.vy, twist.omega + wrong.twist.omega};
     }

@@ -10,7 +10,7 @@ namespace vectorlib {
 VECTORLIB_BODY TwistCorrection::Result
 TwistCorrection::operator()(PointSpan<float> points, const std::vector<float> &seconds, float reference,
                             const std::vector<LineSegment2D<double>> &known) {
-    const std::size_t count = std::min(points.size(), seconds.size()), step = count / mostPoints + 1;
+    const std::size_t count = std::min(points.size(), seconds.size()), step = count / maxPoints + 1;
     const double xy = std::pow(deviation / deviationXY, 2), alpha = std::pow(deviation / deviationAlpha, 2);
     edges_.assign(known.begin(), known.end());
     findNear(points, count, step);

@@ -12,7 +12,7 @@ VECTORLIB_BODY double PlaceFit::leadOver(const PlaceFit &other) const {
         sum += more;
         strongest = std::max(strongest, more);
     }
-    const double byHidden = std::min(said.back() - other.said.back(), mostHiddenLead * points);
+    const double byHidden = std::min(said.back() - other.said.back(), maxHiddenLead * points);
     return points > 0 ? (sum - strongest + byHidden) / points : 0;
 }
 

@@ -83,7 +83,7 @@ VECTORLIB_BODY void PlaceScan::takeWalls(const std::vector<EdgeRaw2D> &edges) {
 }
 
 VECTORLIB_BODY void PlaceScan::takePoints(PointSpan<float> points) {
-    index_.build(points, mostRead);
+    index_.build(points, maxRead);
     Vector2D<float> last(1e9f, 1e9f);
     const float least = static_cast<float>(spacing * spacing);
     for (int i = 0; i < index_.size(); ++i) {
@@ -98,14 +98,14 @@ VECTORLIB_BODY void PlaceScan::takePoints(PointSpan<float> points) {
 VECTORLIB_BODY void PlaceScan::takePointsOfWalls() {
     for (const LineSegment2D<double> &wall : walls_) {
         const double count = std::clamp(std::ceil(wall.length() / spacing), 1.0, 1000.0);
-        for (double k = 0.5; k < count && points_.size() < mostRead; ++k)
+        for (double k = 0.5; k < count && points_.size() < maxRead; ++k)
             points_.push_back({Vector2D<float>(wall.begin() + wall.direction() * (wall.length() * k / count)),
                                Vector2D<float>(wall.direction())});
     }
 }
 
 VECTORLIB_BODY void PlaceScan::thin() {
-    const std::size_t most = mostPoints, n = points_.size();
+    const std::size_t most = maxPoints, n = points_.size();
     wallOfPoint_ = spacing * std::max(1.0, double(n) / double(std::max<std::size_t>(1, most)));
     if (n <= most)
         return;
@@ -116,7 +116,7 @@ VECTORLIB_BODY void PlaceScan::thin() {
 
 VECTORLIB_BODY void PlaceIndex::clear() {
     PlaceIndex empty;
-    empty.tiles_.mostEntries = tiles_.mostEntries;
+    empty.tiles_.maxEntries = tiles_.maxEntries;
     *this = std::move(empty);
 }
 

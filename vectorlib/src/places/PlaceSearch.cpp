@@ -12,9 +12,9 @@ VECTORLIB_BODY void PlaceProposals::begin(const PlaceScan &scan) {
     few_.clear();
     // Every 27th, so that the first ones are from all over the scan.
     const std::size_t all = scan.points().size();
-    for (std::size_t k = 0; k < mostPoints; ++k)
-        if (const std::size_t i = k * 27 % mostPoints; i < all)
-            few_.push_back(scan.points()[all > mostPoints ? i * all / mostPoints : i]);
+    for (std::size_t k = 0; k < maxPoints; ++k)
+        if (const std::size_t i = k * 27 % maxPoints; i < all)
+            few_.push_back(scan.points()[all > maxPoints ? i * all / maxPoints : i]);
 }
 
 VECTORLIB_BODY void PlaceProposals::order(const LineSegment2D<double> &wall) {
@@ -103,7 +103,7 @@ VECTORLIB_BODY const Relocalized &PlaceSearch::operator()(const std::vector<MapE
     const auto end = begin + std::chrono::duration_cast<Clock::duration>(
                                  std::chrono::duration<double>(std::clamp(maxSeconds, 0.0, 1e6)));
     // As often as it is asked whether it is late.
-    const std::size_t steps = slots.size() / 64 + propose.mostWalls * slots.size() / 16;
+    const std::size_t steps = slots.size() / 64 + propose.maxWalls * slots.size() / 16;
     std::size_t asked = 0;
     const auto isLate = [&, end] {
         if (progress)

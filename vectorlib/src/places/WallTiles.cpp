@@ -40,7 +40,7 @@ VECTORLIB_BODY void TileTable::grow() {
 VECTORLIB_BODY bool WallTiles::add(int number, const Wall &wall) {
     std::size_t needed = 0;
     forEachTile(wall, near, [&](std::int32_t, std::int32_t) { ++needed; });
-    if (entries_ + needed > mostEntries)
+    if (entries_ + needed > maxEntries)
         return false;
     entries_ += needed;
     if (static_cast<std::size_t>(number) >= walls_.size())
@@ -89,7 +89,7 @@ VECTORLIB_BODY bool WallTiles::shows(Vector p, std::uint8_t bit) {
 
 VECTORLIB_BODY int WallTiles::rasterOf(Tile &t) {
     if (t.raster < 0) {
-        if (rasters_.size() >= mostRasters)
+        if (rasters_.size() >= maxRasters)
             forgetRasters();
         t.raster = static_cast<int>(rasters_.size());
         rasters_.emplace_back();

@@ -11,9 +11,9 @@ VECTORLIB_BODY void ScanSurface::build(const ScanIndex &scan) {
     do {
         cut(scan, least);
         least *= 1.5f;
-    } while (pieces_.size() > mostPieces && least < 1e6f);
-    if (pieces_.size() > mostPieces)
-        pieces_.resize(mostPieces);
+    } while (pieces_.size() > maxPieces && least < 1e6f);
+    if (pieces_.size() > maxPieces)
+        pieces_.resize(maxPieces);
     std::sort(pieces_.begin(), pieces_.end(),
               [](const SurfacePiece &a, const SurfacePiece &b) { return a.direction < b.direction; });
 }

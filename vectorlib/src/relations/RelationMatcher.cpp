@@ -185,18 +185,18 @@ VECTORLIB_BODY void RelationMatcher::searchAll() {
         for (int j = 0; j < first_.columns(); ++j)
             if (score_.referenceTable()(i, j))
                 all_.push_back({i, j});
-    if (all_.size() > mostPairs) {
+    if (all_.size() > maxPairs) {
         const auto shorter = [&](const CorrespondencePair &p) {
             return std::min(reference_.segments()[static_cast<std::size_t>(p.fixed)].segment.length(),
                             current_.segments()[static_cast<std::size_t>(p.moving)].segment.length());
         };
-        std::nth_element(all_.begin(), all_.begin() + mostPairs, all_.end(),
+        std::nth_element(all_.begin(), all_.begin() + maxPairs, all_.end(),
                          [&](const CorrespondencePair &a, const CorrespondencePair &b) {
                              const double la = shorter(a), lb = shorter(b);
                              return la != lb ? la > lb
                                              : std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
                          });
-        all_.resize(mostPairs);
+        all_.resize(maxPairs);
     }
     place(all_, 8);
 }

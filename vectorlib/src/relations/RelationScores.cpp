@@ -38,8 +38,8 @@ VECTORLIB_BODY void RelationScores::operator()(const Segments &reference, const 
     table.reset(reference.size(), current.size());
     isCut_ = false;
     compared_ = 0;
-    mostScores_ = settings.maxScores;
-    mostCompared_ = settings.maxCompared;
+    maxScores_ = settings.maxScores;
+    maxCompared_ = settings.maxCompared;
     scoreLengths(ofReference, current, ofCurrent, table);
     scoreCorners(ofReference, ofCurrent, table);
     scorePairs(ofCurrent.parallels(), ofReference, ofCurrent, table);

@@ -107,7 +107,7 @@ private:
     std::array<std::size_t, 361> begins_{}; // of the fixed pieces, by whole degrees
     float cell_ = 0.2f;
     Counts counts_, rows_, smooth_;
-    std::array<std::int16_t, blocks> mostOf_{}; // each sixteen cells
+    std::array<std::int16_t, blocks> maxOf_{}; // each sixteen cells
     std::int16_t most_ = 0;
 };
 

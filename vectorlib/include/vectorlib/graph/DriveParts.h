@@ -29,7 +29,7 @@ public:
     /// Share of the points, as of PointAgreement: more of any pair, and the drive goes on; less of all of
     /// them together that can be judged, and there is no evidence; more of these that are contradicted, and
     /// it broke.
-    double mostExplained = 0.4, leastJudged = 0.1, leastContradicted = 0.55;
+    double maxExplained = 0.4, leastJudged = 0.1, leastContradicted = 0.55;
 
     /// The key scans with which something new begins; ascending, never the first one.
     std::vector<std::size_t> operator()(const LoopCloser &loops);

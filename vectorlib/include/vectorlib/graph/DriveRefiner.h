@@ -20,13 +20,13 @@ namespace vectorlib {
 struct DriveRefinerSettings {
     double keyWay = 0.5, keyTurn = 0.3; ///< between key scans; metres, radians
     /// Key scans that are nearer and less turned from each other are compared; metres, radians.
-    double reach = 2, mostTurn = 1;
+    double reach = 2, maxTurn = 1;
     double leastWay = 8;     ///< of the drive between them; metres
     std::size_t perScan = 2; ///< earlier passes that a key scan is compared with
     double passWay = 2;      ///< of the drive between two passes; metres
     /// What a match needs to count; see PointAgreement.
     double minExplained = 0.6, maxContradicted = 0.1;
-    double mostXY = 0.3, mostAlpha = 0.1; ///< what it may be off the poses; metres, radians
+    double maxXY = 0.3, maxAlpha = 0.1; ///< what it may be off the poses; metres, radians
     /// Standard deviations that a match has beside its own; metres, radians.
     double matchedXY = 0.01, matchedAlpha = 0.003;
     /// With which the way from scan to scan stays as it is: of a metre, and of a radian; metres, radians.
@@ -36,7 +36,7 @@ struct DriveRefinerSettings {
 /// Makes the poses of a drive whose loops are closed more exact: scans that lie near each other are matched
 /// anew by their points, from where they are, and all poses move so that they fit. Each scan is matched with
 /// the key scan before it, each key scan with those of earlier passes. It refines: poses that are off by more
-/// than mostXY stay off.
+/// than maxXY stay off.
 class DriveRefiner {
 public:
     DriveRefinerSettings settings;

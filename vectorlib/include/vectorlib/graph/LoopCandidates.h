@@ -36,10 +36,10 @@ private:
 
 /// Which scans of a drive may show one place.
 struct LoopCandidateSettings {
-    double leastWay = 8;  ///< of the drive between two scans of a loop; metres
-    double reach = 2;     ///< scans nearer than this show the same; metres
-    double mostDrift = 6; ///< that the nearest scans may be farther apart, as the drive is in doubt; metres
-    double passWay = 2;   ///< of the drive between two passes; metres
+    double leastWay = 8; ///< of the drive between two scans of a loop; metres
+    double reach = 2;    ///< scans nearer than this show the same; metres
+    double maxDrift = 6; ///< that the nearest scans may be farther apart, as the drive is in doubt; metres
+    double passWay = 2;  ///< of the drive between two passes; metres
     /// Where the drive may have gone astray farther than that, a scan is looked for among all within so many
     /// standard deviations.
     double farDeviations = 3;
@@ -74,7 +74,7 @@ public:
     const DriveUncertainty &uncertainty() const { return uncertainty_; }
     /// By how much the drive may be astray between two scans, where the nearest scans are asked for; metres.
     double doubtBetween(std::size_t from, std::size_t to, const LoopCandidateSettings &settings) const {
-        return settings.reach + std::min(scans_[to].doubt - scans_[from].doubt, settings.mostDrift);
+        return settings.reach + std::min(scans_[to].doubt - scans_[from].doubt, settings.maxDrift);
     }
     /// Where the last scan is near `here`: the nearest scans of earlier passes, one of each, so many at most.
     /// The drive is in doubt since each of them, or no more than since scan `sure`. Valid until the next

@@ -26,7 +26,7 @@ struct LoopCloserSettings : LoopCandidateSettings {
     std::size_t perScan = 2;          ///< earlier passes that a scan is compared with, as the nearest ones
     /// A loop that turns the scan by more (radians), or moves it farther than the nearest scans are looked
     /// for, waits until others agree with it.
-    double mostTurn = 0.5;
+    double maxTurn = 0.5;
     /// So many loops must agree then, and one more for each tenfold number of scans among which it was found.
     std::size_t farAgreeing = 4;
     /// Standard deviations of a metre that was tracked, and of a radian; metres, radians. Variances grow with
@@ -37,10 +37,10 @@ struct LoopCloserSettings : LoopCandidateSettings {
     double gate = 18;
     /// Of one that was guessed and not found by matching; metres, radians, and of its length.
     double guessedXY = 1, guessedAlpha = 0.3, guessedPart = 0.5;
-    double placedAlpha = 2;      ///< where the sensor was put elsewhere, as far as it was put; radians
-    double odometryPart = 0.3;   ///< of the metres, where it is by odometry
-    double likely = 0.3;         ///< probability with which a motion that is not accepted is a better guess
-    std::size_t mostBridged = 3; ///< how many key scans back such a one is matched at most
+    double placedAlpha = 2;     ///< where the sensor was put elsewhere, as far as it was put; radians
+    double odometryPart = 0.3;  ///< of the metres, where it is by odometry
+    double likely = 0.3;        ///< probability with which a motion that is not accepted is a better guess
+    std::size_t maxBridged = 3; ///< how many key scans back such a one is matched at most
     /// What a match has beside its own covariance: scans are never quite of one moment and one plane.
     double matchedXY = 0.02, matchedAlpha = 0.005;
     /// A loop is news that misses the poses by more; metres, radians. Then they are due to be moved.

@@ -59,9 +59,9 @@ public:
 private:
     using Point = Picture::Point;
     using Kind = Picture::Kind;
-    static constexpr std::size_t mostVertices = 400; ///< of one command: TeX keeps all of a path at once
+    static constexpr std::size_t maxVertices = 400; ///< of one command: TeX keeps all of a path at once
 
-    static constexpr int mostLines = 200; ///< of a grid that is asked for
+    static constexpr int maxLines = 200; ///< of a grid that is asked for
 
     struct At {
         Point p;

@@ -30,7 +30,7 @@ const char *distinct(std::size_t i);
 /// draw. What is not finite, or farther than any place (1e150), is left out.
 class Picture {
 public:
-    static constexpr int mostLines = 10; ///< of the grid, and one more
+    static constexpr int maxLines = 10; ///< of the grid, and one more
 
     using Point = Vector2D<double>;
 
@@ -114,7 +114,7 @@ public:
     /// lines cross the longer side of the box.
     double gridStep() const;
     /// Where the lines of a grid are from low to high, at most one more than `most`.
-    static std::vector<double> gridLines(double low, double high, double step, int most = mostLines);
+    static std::vector<double> gridLines(double low, double high, double step, int most = maxLines);
 
 private:
     static bool isPlace(Point p) { return std::abs(p.x) <= 1e150 && std::abs(p.y) <= 1e150; }
@@ -142,8 +142,8 @@ public:
     void write(std::ostream &out);
 
 private:
-    static constexpr double left = 56, right = 24, bottom = 62, rowHeight = 20, mostWide = 1200,
-                            mostHigh = 1200, normalLength = 7;
+    static constexpr double left = 56, right = 24, bottom = 62, rowHeight = 20, maxWide = 1200,
+                            maxHigh = 1200, normalLength = 7;
 
     void layOut();
     Point toPixel(Point p) const {

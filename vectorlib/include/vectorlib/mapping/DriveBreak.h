@@ -13,10 +13,10 @@ class DriveBreak {
 public:
     /// By how much more of a scan may lie behind walls of the map than before the break; a share of its
     /// points.
-    double mostHidden = 0.15;
+    double maxHidden = 0.15;
     /// By how much more of a scan than usual the scan before may contradict, where the two were taken close
     /// together: it saw something farther away there. A share of its points, and how many times the usual.
-    double mostTorn = 0.06, usualTorn = 3;
+    double maxTorn = 0.06, usualTorn = 3;
 
     /// The sensor was put somewhere: nothing is suspicious before a scan is matched there.
     void place() {
@@ -48,7 +48,7 @@ public:
     /// pose.
     bool isContradicted(ScanReport::Outcome outcome, double hidden, bool isUnknown) {
         hidden_ = hidden;
-        const bool isContradicted = isSuspect_ && (hidden - knownHidden_ > mostHidden || isUnknown);
+        const bool isContradicted = isSuspect_ && (hidden - knownHidden_ > maxHidden || isUnknown);
         isSuspect_ = isSuspect_ && (isContradicted || outcome == ScanReport::Outcome::Lost);
         return isContradicted;
     }
@@ -60,7 +60,7 @@ private:
     void follow(bool isCompared, double contradicted) {
         isTorn_ = isCompared && torn_ > 0 && contradicted < quiet * torn_;
         const bool mayBeTorn =
-            isCompared && !isInsisted_ && contradicted > mostTorn + usualTorn * contradicted_;
+            isCompared && !isInsisted_ && contradicted > maxTorn + usualTorn * contradicted_;
         torn_ = mayBeTorn ? contradicted : 0;
         contradicted_ += usualShare * (contradicted - contradicted_);
     }

@@ -194,7 +194,7 @@ private:
     GlobalPairVerdict verdict() const;
 
     static constexpr int allPoints = 1 << 20;
-    static constexpr std::size_t mostFollowed = 100; // solutions; then no further heading
+    static constexpr std::size_t maxFollowed = 100; // solutions; then no further heading
 
     ScanSurface fixed_, moving_;
     TurnVotes turns_;

@@ -87,11 +87,11 @@ struct MapAlignment {
 /// like another one of its own map does not count: rooms that are alike fold no map.
 class MapAligner {
 public:
-    double spacing = 2;           ///< between places; metres
-    std::size_t mostPlaces = 150; ///< spread evenly
-    double reach = 10;            ///< of what is seen from a place; metres
-    double leastSeen = 6;         ///< of walls from a place; metres
-    std::size_t leastAgree = 3;   ///< places
+    double spacing = 2;          ///< between places; metres
+    std::size_t maxPlaces = 150; ///< spread evenly
+    double reach = 10;           ///< of what is seen from a place; metres
+    double leastSeen = 6;        ///< of walls from a place; metres
+    std::size_t leastAgree = 3;  ///< places
     /// Two places agree when one leads to the other within this, and so much of the way between them.
     double same = 0.4, bent = 0.03;
     double sameAlpha = 0.1; ///< radians
@@ -107,7 +107,7 @@ public:
     MapAlignment confirm(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &told);
 
 private:
-    static constexpr double mostHidden = 0.25, leastAlike = 0.5; // shares of what is seen from a place
+    static constexpr double maxHidden = 0.25, leastAlike = 0.5; // shares of what is seen from a place
 
     struct PlaceOfMap {
         Pose2D pose;                  // in the second map
@@ -145,7 +145,7 @@ private:
         return against;
     }
     static bool isAgainst(const PlaceFit &fit) {
-        return fit.hiddenShare() > mostHidden && fit.explainedShare() < leastAlike;
+        return fit.hiddenShare() > maxHidden && fit.explainedShare() < leastAlike;
     }
     template <typename Take>
     void forEachFit(const Transformation2D &motion, Take take) {

@@ -25,7 +25,7 @@ struct MapLocalizerSettings {
     double sameXY = 0.5, sameAlpha = 0.17; ///< two ways to one place agree within this; metres, radians
     int lostBeforeDropped = 3;             ///< lost scans in a row that refute a place not yet confirmed
     int lostBeforeSearch = 10;             ///< in a row, after which the place is sought again
-    std::size_t mostKept = 1000;           ///< scans without a place that are kept until it is found
+    std::size_t maxKept = 1000;            ///< scans without a place that are kept until it is found
 };
 
 /// A scan of the drive. Without a pose nothing tells where it was taken.

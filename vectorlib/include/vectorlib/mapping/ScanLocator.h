@@ -61,7 +61,7 @@ public:
 private:
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
-    static constexpr int mostTries = 3;
+    static constexpr int maxTries = 3;
     // Below that reliability the walls leave a direction open.
     static constexpr double openReliability = 0.1;
     static constexpr std::int64_t knownForLong = 10;        // scans

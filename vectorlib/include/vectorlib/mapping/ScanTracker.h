@@ -43,7 +43,7 @@ struct ScanTrackerSettings {
     /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
     double moment = 0.5;
     /// How much of the last scans may speak against a pose in a finished map; see ScanTracker::against.
-    double mostAgainst = 0.35;
+    double maxAgainst = 0.35;
     /// The place is sought where a growing map contradicts it, see DriveBreak; else the map goes on there
     /// after lost scans.
     bool seekWhereContradicted = true;
@@ -144,9 +144,9 @@ public:
     /// What speaks against the pose in a finished map, as of CounterEvidence; 0 while the map grows.
     double against() const { return maps() ? 0 : evidence_.value(); }
     /// Whether little does.
-    bool agrees() const { return against() < 0.5 * settings_.mostAgainst; }
+    bool agrees() const { return against() < 0.5 * settings_.maxAgainst; }
     /// Whether that is too much for the pose to be right: the scan then counts as lost.
-    bool isContradicted() const { return against() > settings_.mostAgainst; }
+    bool isContradicted() const { return against() > settings_.maxAgainst; }
     /// What it goes by; nothing where it is 0 anyway.
     std::optional<PoseTrust::Features> trustFeatures() const;
     /// The frame of the odometry in that of the map, by the last scan that had any.
@@ -188,7 +188,7 @@ private:
     void checkOdometry(const TimedScan &scan);
     void followOpen(const TimedScan &scan);
     double belief() const {
-        return std::min(open_.belief(), std::clamp(2 - 2 * against() / settings_.mostAgainst, 0.0, 1.0));
+        return std::min(open_.belief(), std::clamp(2 - 2 * against() / settings_.maxAgainst, 0.0, 1.0));
     }
     bool isByScan() const {
         return located_.isWellExpected && (builder.isExpectedByScan() || builder.isPassedOver());

@@ -18,13 +18,13 @@ namespace vectorlib {
 /// where the edges tell nothing, the velocity used is taken to be right.
 class TwistCorrection {
 public:
-    std::size_t mostPoints = 600; ///< of a scan with more, every n-th takes part
-    double gate = 0.3;            ///< points farther from every edge take no part at first; metres
-    double lastGate = 0.1;        ///< the same in the last steps
-    double gateFactor = 0.7;      ///< how fast the one narrows to the other
-    double deviation = 0.1;       ///< of one point; weighs points against the velocity used; metres
-    double deviationXY = 0.5;     ///< of the velocity used; m/s
-    double deviationAlpha = 1;    ///< the same; rad/s
+    std::size_t maxPoints = 600; ///< of a scan with more, every n-th takes part
+    double gate = 0.3;           ///< points farther from every edge take no part at first; metres
+    double lastGate = 0.1;       ///< the same in the last steps
+    double gateFactor = 0.7;     ///< how fast the one narrows to the other
+    double deviation = 0.1;      ///< of one point; weighs points against the velocity used; metres
+    double deviationXY = 0.5;    ///< of the velocity used; m/s
+    double deviationAlpha = 1;   ///< the same; rad/s
     int iterations = 4;
 
     /// The correction of a velocity, and what it is worth.

@@ -17,9 +17,9 @@ namespace vectorlib {
 
 /// How a scan lies in a map at some pose.
 struct PlaceFit {
-    static constexpr double mostHiddenLead = 0.0125; ///< of a lead, by what walls hide
-    Transformation2D pose;                           ///< of the sensor in the map's frame
-    double points = 0;                               ///< that were compared
+    static constexpr double maxHiddenLead = 0.0125; ///< of a lead, by what walls hide
+    Transformation2D pose;                          ///< of the sensor in the map's frame
+    double points = 0;                              ///< that were compared
     double explained = 0;   ///< of them, with a wall of the map beside them that faces alike
     double distances = 0;   ///< sum of their squared distances from it; m^2
     double hidden = 0;      ///< explained points that another wall of the map hides

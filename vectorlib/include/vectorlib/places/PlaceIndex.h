@@ -60,8 +60,8 @@ private:
 /// about as much wall each. Keeps its buffers.
 class PlaceScan {
 public:
-    std::size_t mostPoints = 160; ///< that are compared with a map
-    double spacing = 0.08;        ///< between them, at least; metres
+    std::size_t maxPoints = 160; ///< that are compared with a map
+    double spacing = 0.08;       ///< between them, at least; metres
     ScanObjects objects;
 
     /// Edges and points in the sensor's frame, metres; points counter-clockwise. Without points the edges
@@ -74,8 +74,8 @@ public:
     double wallOfPoint() const { return wallOfPoint_; }
 
 private:
-    static constexpr std::size_t mostRead = 4000; // of a scan with more points, every n-th is read
-    static constexpr double crossing = 0.5;       // sine of the angle of walls that cross
+    static constexpr std::size_t maxRead = 4000; // of a scan with more points, every n-th is read
+    static constexpr double crossing = 0.5;      // sine of the angle of walls that cross
 
     void takeWalls(const std::vector<EdgeRaw2D> &edges);
     void takePoints(PointSpan<float> points);

@@ -34,7 +34,7 @@ public:
     double overhang = 0.5;     ///< of the shorter wall beyond the longer one, at least; metres
     double step = 0.25;        ///< along the wall; metres
     std::size_t fewWalls = 2;  ///< of the scan that are slid in any case
-    std::size_t mostWalls = 5; ///< that are slid while no pose is good
+    std::size_t maxWalls = 5;  ///< that are slid while no pose is good
     double good = 0.75;        ///< share of such a pose
     double worse = 0.35;       ///< than the best: proposals that are left out; share
     std::size_t most = 48;     ///< proposals
@@ -47,7 +47,7 @@ public:
         begin(scan);
         std::size_t number = 0;
         for (const LineSegment2D<double> &wall : scan.walls()) {
-            if (number++ >= (best_ >= good ? fewWalls : mostWalls))
+            if (number++ >= (best_ >= good ? fewWalls : maxWalls))
                 break;
             const std::size_t all = index.size() - index.leftOut();
             parts_ += all;
@@ -71,8 +71,8 @@ public:
 
 private:
     using Vector = Vector2D<double>;
-    static constexpr std::size_t mostPoints = 64; // that are looked up
-    static constexpr std::size_t room = 4096;     // for poses that are not yet told apart
+    static constexpr std::size_t maxPoints = 64; // that are looked up
+    static constexpr std::size_t room = 4096;    // for poses that are not yet told apart
     struct Turned {
         Vector position;
         std::uint8_t facing;

@@ -93,7 +93,7 @@ public:
     static constexpr double near = 0.35;  ///< a tile lists the walls that are so near to it; metres
 
     /// Of walls in tiles, some 100 bytes each at worst: walls beyond are refused.
-    std::size_t mostEntries = 8000000;
+    std::size_t maxEntries = 8000000;
 
     /// The wall that was added under this number.
     const Wall &wall(int number) const { return walls_[static_cast<std::size_t>(number)]; }
@@ -140,7 +140,7 @@ public:
 private:
     using Raster = std::array<std::uint8_t, side * side>;
     static constexpr int unknown = -2, none = -1;
-    static constexpr std::size_t mostRasters = 1u << 20; // 64 MiB
+    static constexpr std::size_t maxRasters = 1u << 20; // 64 MiB
     struct Tile {
         std::int32_t i, j;
         int raster;             // -1: not drawn

@@ -91,15 +91,15 @@ struct Expectation {
 
 /// Settings of PointRefinement.
 struct PointRefinementSettings {
-    std::size_t mostPoints = 500; ///< of a scan with more, every n-th takes part
-    double gate = 0.15;           ///< points farther apart are no pairs; metres
-    double gateFactor = 0.6;      ///< how fast a wider first gate narrows to it
-    double scale = 0.25;          ///< a residual of this share of the gate weighs a quarter
-    double deviation = 0.14;      ///< of one point; weighs points against the expected pose; metres
-    int sample = 3;               ///< every n-th point takes part until the steps are small
-    double smallStep = 0.01;      ///< from here on all points do; metres, and radians
-    double lastStep = 0.0015;     ///< with a smaller one the search ends; metres, and radians
-    int iterations = 15;          ///< most steps
+    std::size_t maxPoints = 500; ///< of a scan with more, every n-th takes part
+    double gate = 0.15;          ///< points farther apart are no pairs; metres
+    double gateFactor = 0.6;     ///< how fast a wider first gate narrows to it
+    double scale = 0.25;         ///< a residual of this share of the gate weighs a quarter
+    double deviation = 0.14;     ///< of one point; weighs points against the expected pose; metres
+    int sample = 3;              ///< every n-th point takes part until the steps are small
+    double smallStep = 0.01;     ///< from here on all points do; metres, and radians
+    double lastStep = 0.0015;    ///< with a smaller one the search ends; metres, and radians
+    int iterations = 15;         ///< most steps
 };
 
 /// Brings the points of a scan onto those of another: Gauss-Newton steps on the distances of the points of
@@ -112,8 +112,8 @@ public:
 
     /// Takes two scans, each in its sensor's frame and in the order of ScanOrder; metres.
     void start(PointSpan<float> fixed, PointSpan<float> moving) {
-        fixed_.build(fixed, settings.mostPoints);
-        moving_.build(moving, settings.mostPoints);
+        fixed_.build(fixed, settings.maxPoints);
+        moving_.build(moving, settings.maxPoints);
     }
     /// The scans as they were taken.
     const ScanIndex &fixed() const { return fixed_; }

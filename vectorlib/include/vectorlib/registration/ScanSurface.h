@@ -27,9 +27,9 @@ struct SurfacePiece {
 /// scans.
 class ScanSurface {
 public:
-    float spacing = 0.10f;        ///< least distance of neighbouring pieces; metres
-    float longest = 0.30f;        ///< no point stands for more than so much of a surface; metres
-    std::size_t mostPieces = 150; ///< of a scan with more, pieces lie farther apart
+    float spacing = 0.10f;       ///< least distance of neighbouring pieces; metres
+    float longest = 0.30f;       ///< no point stands for more than so much of a surface; metres
+    std::size_t maxPieces = 150; ///< of a scan with more, pieces lie farther apart
 
     /// Takes the surfaces of a scan.
     void build(const ScanIndex &scan);

@@ -24,10 +24,10 @@ namespace vectorlib {
 /// column invalid (Algorithm 7), or all that is not in its order (Algorithm 10). Keeps its buffers.
 class PairSearch {
 public:
-    double threshold = 0;                     ///< merged scores must be above it
-    double window = 5 * pi / 180;             ///< of rotations; radians
-    bool sameOrder = false;                   ///< Algorithm 10 instead of 7
-    static constexpr int mostSteps = 1 << 14; ///< pairs looked at, matched or not
+    double threshold = 0;                    ///< merged scores must be above it
+    double window = 5 * pi / 180;            ///< of rotations; radians
+    bool sameOrder = false;                  ///< Algorithm 10 instead of 7
+    static constexpr int maxSteps = 1 << 14; ///< pairs looked at, matched or not
 
     /// rotation(row, column) is the angle that turns the current segment onto the reference one. What was
     /// matched stays in the table, its rivals are gone. fixed is a row, moving a column.
@@ -36,7 +36,7 @@ public:
         pairs_.clear();
         MatchingTable::Cell best = table.maximum();
         const double angle = best.score > 0 ? rotation(best.row, best.column) : 0;
-        for (int step = 0; best.score > threshold && step < mostSteps; ++step) {
+        for (int step = 0; best.score > threshold && step < maxSteps; ++step) {
             if (std::abs(wrapAngle(rotation(best.row, best.column) - angle)) <= window) {
                 pairs_.push_back({best.row, best.column});
                 table.take(best.row, best.column);

@@ -103,7 +103,7 @@ public:
 
 private:
     using Pairs = std::vector<CorrespondencePair>;
-    static constexpr int mostPairs = 48; ///< of the last search
+    static constexpr int maxPairs = 48; ///< of the last search
 
     struct Place {
         Transformation2D pose;

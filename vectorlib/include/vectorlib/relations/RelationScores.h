@@ -89,11 +89,11 @@ private:
                          const CornerRelation &c, const std::vector<Corner> &current,
                          const MatchingTable &table);
     bool hasRoom(const MatchingTable &table, std::size_t more) {
-        isCut_ = isCut_ || table.scores() + more > mostScores_;
+        isCut_ = isCut_ || table.scores() + more > maxScores_;
         return !isCut_;
     }
     bool mayCompare() {
-        isCut_ = isCut_ || compared_ >= mostCompared_;
+        isCut_ = isCut_ || compared_ >= maxCompared_;
         return !isCut_;
     }
     static double scoreOf(int count, std::size_t matches) {
@@ -109,7 +109,7 @@ private:
     CornerTable cornersToReference_, cornersToCurrent_;
     std::vector<int> numbers_;
     std::vector<Cells> cells_;
-    std::size_t compared_ = 0, mostScores_ = 0, mostCompared_ = 0;
+    std::size_t compared_ = 0, maxScores_ = 0, maxCompared_ = 0;
     bool isCut_ = false;
 };
 
