@@ -16,7 +16,7 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr std::chrono::milliseconds timeout{1000}; // of questions that only explain a failure
+constexpr std::chrono::milliseconds adviceTimeout{1000}; // of questions that only explain a failure
 
 QJsonObject ofDaemon(Client &client, const Arguments &arguments, const char *method) {
     const auto answer = ask(client, arguments, method);
@@ -50,14 +50,14 @@ bool speaksTls(const InterfaceUrl &url) {
     QSslSocket socket;
     socket.setPeerVerifyMode(QSslSocket::VerifyNone);
     socket.connectToHostEncrypted(url.host, url.port);
-    return socket.waitForEncrypted(int(timeout.count()));
+    return socket.waitForEncrypted(int(adviceTimeout.count()));
 }
 
 /// Of an address, in the usual framing.
 bool speaksPlainText(const InterfaceUrl &url) {
     Client client;
-    return connectOnce(client, placeOf(url), timeout) &&
-           client.callAndWait("daemon.info", QJsonObject(), timeout);
+    return connectOnce(client, placeOf(url), adviceTimeout) &&
+           client.callAndWait("daemon.info", QJsonObject(), adviceTimeout);
 }
 
 /// Why a daemon and this client have not come to terms over TLS.
@@ -135,8 +135,8 @@ QStringList otherFraming(const Arguments &arguments) {
             continue;
         const QString other = QString("%1?protocol=%2").arg(url->toString(), framing);
         Client client;
-        if (!connectOnce(client, other, timeout) ||
-            !client.callAndWait("daemon.info", QJsonObject(), timeout))
+        if (!connectOnce(client, other, adviceTimeout) ||
+            !client.callAndWait("daemon.info", QJsonObject(), adviceTimeout))
             continue;
         return {QString("the daemon at %1 speaks %2, and was spoken to in %3; name it as '%4'")
                     .arg(url->toString(), framing, url->protocol(), other)};
@@ -263,7 +263,7 @@ QStringList adviceFor(const Error &error, Client &client, const Arguments &argum
     const QString &command = arguments.command;
     const bool isCall = command == "call";
     if (error.is(ErrorCode::TimedOut)) {
-        if (!client.callAndWait("daemon.info", QJsonObject(), timeout))
+        if (!client.callAndWait("daemon.info", QJsonObject(), adviceTimeout))
             return otherFraming(arguments);
         return arguments.timeoutIsGiven && isCall
                    ? QStringList("the daemon answers other requests: this one takes longer; without "

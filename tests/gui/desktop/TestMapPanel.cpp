@@ -148,6 +148,19 @@ private Q_SLOTS:
         TRY_CONTAINS(message(), ".csv on the robot");
         trigger("mapping");
         QTRY_COMPARE(message(), QString("The map grows."));
+
+        const Pose2D at = *model().pose();
+        Q_EMIT view().placed({at.x + 3, at.y, at.theta + 1}); // where the scans do not agree
+        QTRY_VERIFY2(message().startsWith("Placed at"), qPrintable(message()));
+        auto *const menu = panel()->findChild<QToolButton *>("mapMenu")->menu();
+        Q_EMIT menu->aboutToShow();
+        trigger("confirmPlace");
+        accept();
+        QTRY_VERIFY2(message().startsWith("The place is confirmed."), qPrintable(message()));
+        Q_EMIT menu->aboutToShow();
+        QTRY_VERIFY(!panel()->findChild<QAction *>("confirmPlace")->isEnabled()); // it is known
+        trigger("undoMap");
+        QTRY_VERIFY2(message().startsWith("Undone: Place."), qPrintable(message()));
     }
 
     void matcherGoneAndBack() {
