@@ -1,63 +1,15 @@
 #pragma once
 
 #include "common/Result.h"
-#include "protocol/serial/Crc32c.h"
+#include "common/files/AppendFile.h"
+#include "daemons/scanmatcher/JournalBlock.h"
 #include "vectorlib/graph/MappedDrive.h"
 
 #include <QByteArray>
-#include <QCborStreamWriter>
 
 #include <chrono>
-#include <cstdint>
 #include <future>
 #include <mutex>
-
-namespace hermes::scanmatcher::journal {
-
-/// What the first item of a journal says of it.
-constexpr char mark[] = "hermes-journal";
-constexpr int version = 1;
-
-/// A table of a block: its name, and the numbers of a row. Poses and motions are x, y (m), heading (rad).
-struct Table {
-    const char *name;
-    int columns;
-};
-
-/// 32 bit a number, in the sensor's frame: n, mean x, y, moments xx, xy, yy, segment x1, y1, x2, y2, sigma.
-constexpr Table edges{"edges", 11}, points{"points", 2};
-/// 64 bit a number; the same as an edge, after id and observations, in the map's frame.
-constexpr Table known{"known", 13};
-/// key, motion since that key, effort, trust, edges.
-constexpr Table scans{"scans", 7};
-/// scan, motion since the key before, effort, variances, tracked pose, way, doubt, points.
-constexpr Table keys{"keys", 13};
-/// from, to, motion, information (upper triangle), may be wrong, weight.
-constexpr Table motions{"motions", 13};
-/// Of the last keys, and of the last motions: those before keep theirs.
-constexpr Table poses{"poses", 3}, weights{"weights", 1};
-/// Motion since the last key, way, turned, variances, doubt.
-constexpr Table since{"since", 8};
-/// Loops tried, closed, whether any was found and is news since the last correction, keys then.
-constexpr Table progress{"progress", 5};
-
-/// Of typed arrays with the least byte first (RFC 8746), and of CBOR itself (RFC 8949).
-constexpr std::uint64_t floats = 85, doubles = 86, cbor = 55799;
-
-/// What a journal is a row of: an array of a check sum and the content. The first one begins the file.
-inline QByteArray item(const QByteArray &content, bool isFirst = false) {
-    QByteArray bytes;
-    QCborStreamWriter out(&bytes);
-    if (isFirst)
-        out.append(QCborTag(cbor));
-    out.startArray(2);
-    out.append(quint64(crc32c(content.constData(), std::size_t(content.size()))));
-    out.append(content);
-    out.endArray();
-    return bytes;
-}
-
-} // namespace hermes::scanmatcher::journal
 
 namespace hermes::scanmatcher {
 
@@ -95,10 +47,7 @@ public:
     DriveJournal(QString folder, QString name)
         : file_(std::move(folder), std::move(name)) {}
     /// Waits for the disk.
-    ~DriveJournal() {
-        settle();
-        file_.close();
-    }
+    ~DriveJournal() { settle(); }
 
     // In one thread:
 
@@ -123,31 +72,28 @@ private:
         std::size_t scans = 0, keys = 0, motions = 0;
         bool isBegun = false;
     };
+    struct Written {
+        bool isUsable = true; // else a new file has to be begun
+        QString fault;
+    };
     /// Used by one thread at a time.
-    struct File {
+    struct File : AppendFile {
         File(QString folder_, QString name_)
             : folder(std::move(folder_))
             , name(std::move(name_)) {}
-        QString folder, name, path;
-        int number = -1; // the descriptor
-        qint64 size = 0;
+        QString folder, name;
 
-        // False: what is in it is no longer of use, a new one has to be begun.
-        bool append(const QByteArray &bytes, QString &fault);
-        bool open(QString &fault);
-        void close();
-    };
-    struct Written {
-        bool isUsable = true;
-        QString fault;
+        Written write(const QByteArray &bytes);
+        // Gives what is wrong; empty: nothing.
+        QString begin();
     };
 
     bool hasNews(const vectorlib::MappedDrive &drive) const;
     void start(const vectorlib::MappedDrive &drive, const std::vector<double> &trust);
     QByteArray encode(const vectorlib::MappedDrive &drive, const std::vector<double> &trust,
                       Mark &mark) const;
-    static QByteArray block(const vectorlib::MappedDrive &drive, const std::vector<double> &trust, Mark &mark,
-                            std::size_t scans, bool isWhole);
+    static journal::Block block(const vectorlib::MappedDrive &drive, const std::vector<double> &trust,
+                                Mark &mark, std::size_t scans, bool isWhole);
     void settle();
 
     File file_;

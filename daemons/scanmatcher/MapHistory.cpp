@@ -18,7 +18,7 @@ std::size_t MapHistory::add(Step step) {
 
 std::size_t MapHistory::addReplay(vectorlib::VectorMap map) {
     std::vector<Step> redone = std::exchange(redone_, {});
-    const std::size_t gone = add({"replay", std::move(map), false, {}, {}, false});
+    const std::size_t gone = add({"replay", std::move(map), false, {}, {}});
     redone_ = std::move(redone);
     return gone;
 }
@@ -53,7 +53,7 @@ std::optional<MapHistory::Step> MapHistory::take(bool again) {
 void MapHistory::put(Step back, bool again) {
     if (back.map && !back.isPose) // where the sensor is in the map that is back is not known
         for (Step &older : again ? redone_ : undone_)
-            older.wasSought = true;
+            older.place = vectorlib::PlaceState::Sought;
     (again ? undone_ : redone_).push_back(std::move(back));
 }
 

@@ -2,6 +2,7 @@
 
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/mapping/PlaceKnowledge.h"
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <QString>
@@ -24,7 +25,7 @@ public:
         bool isPose = false;                     ///< the sensor was put elsewhere
         vectorlib::Pose2D before;                ///< of the sensor, in the frame of that map
         vectorlib::Pose2D told;                  ///< instead of it, in the frame of the map of now
-        bool wasSought = false;                  ///< the place before
+        vectorlib::PlaceState place = vectorlib::PlaceState::Known; ///< what was known of it before
     };
 
     /// A command was carried out: what was undone cannot be carried out again. Returns how many maps are gone

@@ -87,13 +87,8 @@ void ScanMatcher::declareMatcherCommands() {
                    .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
                    .asyncHandler([this](const Call &call, const Reply &reply) {
                        const Pose2D pose = toPose(call.params);
-                       worker_->post([this, pose, isSure = call.flag("confirm"),
-                                      reply](vectorlib::ScanTracker &tracker) {
-                           const Pose2D before = tracker.motion().pose();
-                           const bool wasSought = place_ == vectorlib::PlaceState::Sought;
-                           isSure ? tracker.place(pose, 1) : tracker.claim(pose);
-                           place_ = tracker.placeState();
-                           rememberPose("pose.set", before, wasSought);
+                       worker_->post([this, pose, isSure = call.flag("confirm"), reply] {
+                           map_->setPose(pose, isSure);
                            reply.result(QJsonValue());
                        });
                    }));
@@ -104,8 +99,7 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     if (!reference || !current)
         return reply.error(reference ? current.error() : reference.error());
     const Pose2D expected = toPose(call.value("expected").toObject());
-    worker_->post([reference = reference->data, current = current->data, expected,
-                   reply](vectorlib::ScanTracker &) {
+    worker_->post([reference = reference->data, current = current->data, expected, reply] {
         vectorlib::MapBuilder pair;
         pair.track.settings = vectorlib::TrackingSettings::forPoorExpectation();
         pair.extract.segment.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, reference.rays);

@@ -48,7 +48,7 @@ void ScanMatcher::updateHealth() {
                      "connected to " + address + unreadable(source_.rejected()));
     health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
                  !replayed_ ? QString("live scans are matched")
-                 : keepsLiveMap_
+                 : map_ && map_->keepsLiveMap()
                      ? QString("a replay is matched, in a map of its own; the live map is kept, with its "
                                "drive, until live scans come")
                      : QString("a replay is matched"));
@@ -123,7 +123,7 @@ void ScanMatcher::updateJournalHealth() {
                  {{"path", journal.path}, {"bytes", journal.bytes}, {"scans", qint64(journal.scans)}});
 }
 
-void ScanMatcher::noteSkipped(const Outcome &outcome) {
+void ScanMatcher::noteSkipped(const ScanOutcome &outcome) {
     if (outcome.outcome != vectorlib::ScanReport::Outcome::Skipped) {
         skipped_ = {};
         return;
@@ -170,7 +170,7 @@ void ScanMatcher::updateTrackingHealth() {
             : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
-    const PlaceState place = place_;
+    const PlaceState place = this->place();
     if (place == PlaceState::Told)
         message += "; the scans do not confirm the place that was told: nothing is mapped until they do, or "
                    "pose.set insists with confirm";

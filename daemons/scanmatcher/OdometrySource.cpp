@@ -141,13 +141,16 @@ void OdometrySource::report(Health &health) {
     else if (!fault_.isEmpty())
         set(HealthLevel::Warn, QString("no odometry from %1: %2; poses are expected from the scans alone")
                                    .arg(address_, fault_));
-    else if (withoutInARow_ >= mayBeWithout)
-        set(HealthLevel::Warn, QString("the last %1 scans found no odometry of their time; their poses were "
-                                       "expected from the scans alone")
-                                   .arg(withoutInARow_));
     else {
         const HealthLevel level = faults_.level(double(refused_ + dropped_ + contradicted_));
-        set(level, "connected to " + address_ + pastText(level != HealthLevel::Ok));
+        const QString past = pastText(level != HealthLevel::Ok);
+        if (withoutInARow_ >= mayBeWithout)
+            set(HealthLevel::Warn, QString("the last %1 scans found no odometry of their time; their poses "
+                                           "were expected from the scans alone")
+                                           .arg(withoutInARow_) +
+                                       past);
+        else
+            set(level, "connected to " + address_ + past);
     }
 }
 

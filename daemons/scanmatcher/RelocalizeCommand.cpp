@@ -5,7 +5,6 @@
 namespace hermes::scanmatcher {
 
 using vectorlib::Relocalized;
-using PlaceState = vectorlib::PlaceState;
 
 namespace {
 
@@ -33,13 +32,8 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     if (relocalizing_) // calls that pile up would keep the scans waiting
         return reply.error({ErrorCode::NotReady, "another search of the map is under way"});
     relocalizing_ = true;
-    worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
-        const Pose2D before = tracker.motion().pose();
-        const bool wasSought = place_ == PlaceState::Sought;
-        const Relocalized found = tracker.relocalize(apply);
-        place_ = tracker.placeState();
-        if (apply && found.isFound())
-            rememberPose("pose.relocalize", before, wasSought);
+    worker_->post([this, apply, reply] {
+        const Relocalized found = map_->relocalize(apply);
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing_ = false;
             RelocalizeAnswer answer;
@@ -53,36 +47,6 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
             reply.result(asJson(answer));
         });
     });
-}
-
-// After a scan; searches the whole map when it is time to. What waits for a place goes on when it is found.
-std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
-    const bool confirms = tracker.wantsToConfirm();
-    const std::optional<Relocalized> found = tracker.recover();
-    place_ = tracker.placeState();
-    if (confirms && found) {
-        QMetaObject::invokeMethod(this, [isConfirmed = place_ == PlaceState::Known, text = found->text()] {
-            logInfo("tracking", QString("a second search %1 the place: %2")
-                                    .arg(isConfirmed ? "confirms" : "does not confirm")
-                                    .arg(QString::fromStdString(text)));
-        });
-        return std::nullopt;
-    }
-    if (found && !found->isFound() && newMap_ == NewMap::WhenNowhere) {
-        newMap_ = NewMap::Due; // not now: what the scan gave is to be told
-        QMetaObject::invokeMethod(this, [this] {
-            if (worker_)
-                worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
-        });
-    }
-    return found;
-}
-
-// Until it is found or told, scans count as lost.
-void ScanMatcher::seek(vectorlib::ScanTracker &tracker, NewMap newMap) {
-    newMap_ = newMap;
-    tracker.seek();
-    place_ = tracker.placeState();
 }
 
 void ScanMatcher::showRecovery(const Relocalized &recovery) {

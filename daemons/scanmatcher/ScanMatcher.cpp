@@ -5,19 +5,15 @@
 #include "common/Time.h"
 #include "protocol/wire/Fields.h"
 
-#include <Eigen/LU>
+#include <utility>
 
 namespace hermes::scanmatcher {
 
-using vectorlib::ScanReport;
-using vectorlib::ScanTracker;
+using vectorlib::PlaceState;
 
 namespace {
 
-QString toText(ScanReport::Outcome outcome) {
-    static constexpr const char *texts[] = {"matched", "lost", "skipped"};
-    return QString(texts[int(outcome)]); // in the order of the enumeration
-}
+constexpr double longestGap_s = 1; // between scans of a replay that follow each other
 
 QString toText(PlaceState place) {
     switch (place) {
@@ -31,53 +27,6 @@ QString toText(PlaceState place) {
         break;
     }
     return "known";
-}
-
-// Nothing where the pairs leave a direction open.
-std::optional<Covariance> covariance(const vectorlib::Match &match) {
-    const Eigen::FullPivLU<Eigen::Matrix3d> lu(match.information);
-    if (match.pairs.empty() || !lu.isInvertible())
-        return std::nullopt;
-    const Eigen::Matrix3d inverse = lu.inverse();
-    Covariance result;
-    for (int i = 0; i < 9; ++i)
-        result[std::size_t(i)] = inverse(i / 3, i % 3);
-    return result;
-}
-
-ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
-    const vectorlib::MapBuilder &builder = tracker.builder;
-    const ScanReport &report = builder.report();
-    const vectorlib::Match &match = builder.match();
-    ScanResult result;
-    result.stamp = scan.data.stamp;
-    result.pose.pose = report.pose;
-    result.pose.twist = tracker.motion().twist();
-    const bool isMatched = report.outcome == ScanReport::Outcome::Matched;
-    if (isMatched) // else the match does not count
-        result.pose.covariance = covariance(match);
-    result.pose.outcome = toText(report.outcome);
-    result.pose.scan = scan.number;
-    result.pose.trust = tracker.trust();
-    if (const auto frame = tracker.odometryFrame())
-        result.pose.odometryFrame = frame->pose();
-    result.match = {scan.number,
-                    match.accepted && isMatched,
-                    {},
-                    match.reliability,
-                    match.ambiguity,
-                    match.matchedLength,
-                    match.visibleLength,
-                    match.rms,
-                    {report.segmentMs, report.vectorizeMs, report.matchMs, report.mapMs}};
-    for (const vectorlib::CorrespondencePair &p : match.pairs)
-        result.match.pairs.push_back({builder.candidates()[size_t(p.fixed)], p.moving});
-    const vectorlib::Transformation2D pose(report.pose);
-    for (const vectorlib::EdgeRaw2D &edge : builder.edges()) {
-        const vectorlib::LineSegment2D<double> s = pose * edge.segment;
-        result.segments.push_back({s.begin().x, s.begin().y, s.end().x, s.end().y});
-    }
-    return result;
 }
 
 } // namespace
@@ -128,25 +77,16 @@ void ScanMatcher::declareTopics() {
 
 Result<void> ScanMatcher::start() {
     const auto correct = [this](const std::shared_ptr<Correction> &correction) {
-        worker_->post([this, correction](ScanTracker &tracker) { applyCorrection(tracker, correction); });
+        worker_->post([this, correction] { map_->correct(correction); });
     };
     const auto grow = [this](const GraphMessage &more) {
         QMetaObject::invokeMethod(this, [this, more] { showGraph(more); });
     };
     corrector_ = std::make_unique<MapCorrector>(correct, grow, settings().text("map.folder"),
                                                 settings().text("map.journal"));
-    worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
-        const std::optional<vectorlib::Relocalized> recovery = find(tracker);
-        if (place_ != PlaceState::Known)
-            isInterrupted_ = true;
-        else if (!keepsLiveMap_) // else the drive is that of the live map
-            corrector_->add(tracker, scan.data.points, std::exchange(isInterrupted_, false));
-        keepMapOfStep(tracker);
-        Outcome outcome = outcomeOf(tracker, scan);
-        outcome.result.pose.corrected = std::exchange(corrected_, false);
-        outcome.recovery = recovery;
-        QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
-    });
+    MapViewer &viewer = *this;
+    map_ = std::make_unique<TrackedMap>(*this, viewer, *corrector_);
+    worker_ = std::make_unique<Worker>([this](Scan &scan) { map_->take(scan); });
     settingsChanged({});
     health().provide("tracking", [this] { updateHealth(); });
     setState(DaemonState::Ready);
@@ -174,12 +114,8 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
         return;
     corrector_->setLimit(std::size_t(1e6 * settings().number("matcher.remember_mb")));
     worker_->setQueueLimit(size_t(settings().integer("source.queue")));
-    const Setup setup{trackerSettings(), settings().number("matcher.sigma_m"), closesLoops()};
-    worker_->post([this, setup](ScanTracker &tracker) {
-        setup_ = setup;
-        setUp(tracker);
-        followDrive();
-    });
+    const TrackedMap::Setup setup{trackerSettings(), settings().number("matcher.sigma_m"), closesLoops()};
+    worker_->post([this, setup] { map_->set(setup); });
     if (active_ && !paths.filter("source.").isEmpty())
         connectToSource();
     if (active_ && !paths.filter("odometry.").isEmpty())
@@ -188,17 +124,7 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
 
 void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
-    worker_->post([this, toMap, closes = closesLoops()](ScanTracker &tracker) {
-        if (toMap && tracker.isContradicted()) // else it would be mapped at a wrong place
-            seek(tracker);
-        grows_ = toMap;
-        setup_.closesLoops = closes;
-        if (matchesReplay_)
-            setLiveMapAside();
-        worker_->tracker().grow(grows_);
-        keepMapOfStep(worker_->tracker());
-        followDrive();
-    });
+    worker_->post([this, toMap, closes = closesLoops()] { map_->grow(toMap, closes); });
     active_ = true;
     connectToSource();
     connectToOdometry();
@@ -255,34 +181,22 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
     if (scan.partial)
         return;
     if (std::exchange(replayed_, scan.replayed) != scan.replayed)
-        worker_->post([this, replayed = scan.replayed](ScanTracker &) {
-            matchesReplay_ = replayed;
-            replayed ? setLiveMapAside() : bringLiveMapBack();
-        });
-    followReplay(scan);
+        worker_->post([this, replayed = scan.replayed] { map_->followReplay(replayed); });
+    const double before = std::exchange(replayStamp_, scan.replayed ? scan.data.stamp : -1);
+    const bool leaps =
+        scan.replayed && before >= 0 && (scan.data.stamp < before || scan.data.stamp > before + longestGap_s);
+    if (leaps) // it was sought
+        worker_->post([this] { map_->leapInReplay(); });
     scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());
     worker_->push(std::move(scan));
 }
 
-ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &scan) {
-    Outcome o;
-    o.result = resultOf(tracker, scan);
-    o.outcome = tracker.builder.report().outcome;
-    o.points = scan.data.points.size();
-    o.counts = tracker.counts();
-    o.contradiction = tracker.contradiction();
-    o.scanner = tracker.scanner();
-    o.replayed = scan.replayed;
-    o.changes = takeChanges(tracker.builder.map);
-    return o;
-}
-
-void ScanMatcher::show(const Outcome &o) {
+void ScanMatcher::showScan(const ScanOutcome &o) {
     if (o.contradiction && o.counts.contradicted > counts_.contradicted)
         odometry_.contradict(*o.contradiction, !o.replayed && settings().flag("odometry.stop"));
     counts_ = o.counts;
     scanner_ = o.scanner;
-    lostInARow_ = o.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
+    lostInARow_ = o.outcome == vectorlib::ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
     if (lostInARow_ == 0)
         lastRecovery_.reset();
     noteSkipped(o);
@@ -303,25 +217,6 @@ bool ScanMatcher::closesLoops() {
     return mapping_ && settings().flag("matcher.close_loops");
 }
 
-// While a replay is mapped it waits, and the corrector rests, until the live map is back.
-void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Correction> &correction) {
-    if (keepsLiveMap_) {
-        live_->correction = correction;
-        return;
-    }
-    const vectorlib::Transformation2D before(tracker.motion().pose());
-    if (corrector_->apply(tracker, *correction)) {
-        history_.move(vectorlib::Transformation2D(tracker.motion().pose()) * before.inverse());
-        corrected_ = true;
-        QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
-            showCorrection(correction, since);
-        });
-    } else {
-        corrector_->dispose(correction);
-    }
-    corrector_->resume(); // what it tells from now on comes behind the correction
-}
-
 void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, const MapChanges &since) {
     logInfo(
         "loops",
@@ -332,6 +227,47 @@ void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, 
     publishSnapshot("map");
     publishSnapshot("graph");
     corrector_->dispose(std::make_shared<Correction>(std::move(*correction)));
+}
+
+void ScanMatcher::showMap(Edges edges, qint64 number, bool isSaved) {
+    countFrom({});
+    mirror_.replace(*edges, number);
+    mirror_.setSaved(isSaved);
+    if (worker_) // where the old map is freed, which takes its time too
+        worker_->post([old = std::move(edges)] {});
+    publishSnapshot("map");
+}
+
+void ScanMatcher::showSteps(const QString &undoes, const QString &redoes) {
+    undoes_ = undoes;
+    redoes_ = redoes;
+}
+
+void ScanMatcher::setLiveMapAside() {
+    liveView_.emplace();
+    swapLiveView();
+    logInfo("replay", "a replay is mapped apart; the live map and its drive are kept");
+}
+
+void ScanMatcher::showLiveMapAgain(const vectorlib::ScanTrackerCounts &counts) {
+    swapLiveView();
+    liveView_.reset();
+    publishSnapshot("map");
+    countFrom(counts);
+    logInfo("replay", "the live map and its drive are back; map.undo brings back the map of the replay");
+}
+
+void ScanMatcher::swapLiveView() {
+    mirror_.swap(liveView_->map);
+    graph_.swap(liveView_->graph);
+    publishSnapshot("graph");
+}
+
+void ScanMatcher::countFrom(const vectorlib::ScanTrackerCounts &counts) {
+    counts_ = counts;
+    lostInARow_ = 0;
+    doubt_ = {};
+    lastRecovery_.reset();
 }
 
 void ScanMatcher::showGraph(GraphMessage more) {
@@ -348,7 +284,7 @@ MatcherState ScanMatcher::matcherState() const {
     MatcherState state;
     state.active = active_;
     state.mode = mapping_ ? "mapping" : "localization";
-    state.place = toText(place_);
+    state.place = toText(place());
     state.undoes = undoes_;
     state.redoes = redoes_;
     state.scans = quint64(counts_.scans);

@@ -52,12 +52,7 @@ void Worker::run() {
             if (!item.job)
                 --scans_;
         }
-        if (item.job) {
-            item.job(*tracker_);
-        } else {
-            tracker_->process(item.scan.data);
-            whenDone_(*tracker_, item.scan);
-        }
+        item.job ? item.job() : take_(item.scan);
     }
 }
 

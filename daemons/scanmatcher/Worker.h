@@ -1,39 +1,30 @@
 #pragma once
 
 #include "daemons/scanmatcher/MatcherMessages.h"
-#include "vectorlib/mapping/ScanTracker.h"
 
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <thread>
 
 namespace hermes::scanmatcher {
 
-/// The thread that owns the tracker. Scans wait in a bounded queue that drops its oldest and counts; jobs
+/// The thread that matches. Scans wait in a bounded queue that drops its oldest and counts; jobs
 /// (settings, commands) are never dropped and run in order with the scans.
 class Worker {
 public:
-    using Job = std::function<void(vectorlib::ScanTracker &)>;
-    /// Called in the worker's thread after each scan; the scan has its motion compensated.
-    using Done = std::function<void(vectorlib::ScanTracker &, const Scan &)>;
+    using Job = std::function<void()>;
+    using Take = std::function<void(Scan &)>;
 
-    explicit Worker(Done done)
-        : whenDone_(std::move(done))
+    /// `take` is called in its thread with each scan.
+    explicit Worker(Take take)
+        : take_(std::move(take))
         , thread_([this] { run(); }) {}
     ~Worker() { stop(); }
     /// Finishes what waits, then ends the thread.
     void stop();
-
-    /// In its thread: the tracker that takes what comes from now on, and the one that did so.
-    std::unique_ptr<vectorlib::ScanTracker> exchange(std::unique_ptr<vectorlib::ScanTracker> other) {
-        tracker_.swap(other);
-        return other;
-    }
-    vectorlib::ScanTracker &tracker() { return *tracker_; }
 
     void push(Scan scan);
     void post(Job job);
@@ -54,9 +45,7 @@ private:
     };
     void run();
 
-    Done whenDone_;
-    std::unique_ptr<vectorlib::ScanTracker> tracker_ =
-        std::make_unique<vectorlib::ScanTracker>(); // used by the thread alone
+    const Take take_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::deque<Item> items_;

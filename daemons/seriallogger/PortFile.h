@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/AppendFile.h"
+#include "common/files/AppendFile.h"
 #include "daemons/seriallogger/ChunkQueue.h"
 
 #include <optional>

@@ -9,7 +9,7 @@
 namespace hermes::supervisor {
 namespace {
 
-constexpr std::chrono::seconds timeout{20}; // with a program on a slow board
+constexpr std::chrono::seconds checkTimeout{20}; // with a program on a slow board
 
 } // namespace
 
@@ -48,7 +48,7 @@ void SettingsCheck::next() {
             said.replace(folder_.path() + '/', ""); // where it lies for the check is nobody's concern
             onEnded(daemon, isFine ? QString() : said.isEmpty() ? "the check did not end in order" : said);
         });
-    QTimer::singleShot(timeout, process, &QProcess::kill);
+    QTimer::singleShot(checkTimeout, process, &QProcess::kill);
     process->start(SupervisedProcess::found("hermes-" + daemon), {"--check", "--config", name});
 }
 

@@ -4,7 +4,7 @@ namespace hermes::velodynelogger {
 
 namespace {
 
-constexpr std::chrono::milliseconds timeout{1000}; // a wait ends as soon as something comes
+constexpr std::chrono::milliseconds ringTimeout{1000}; // a wait ends as soon as something comes
 
 } // namespace
 
@@ -54,7 +54,7 @@ void LiveSource::run() {
         }
         if (stopping_ && ring_.used() == 0)
             return;
-        ring_.wait(timeout);
+        ring_.wait(ringTimeout);
     }
 }
 

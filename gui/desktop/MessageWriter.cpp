@@ -13,7 +13,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr std::size_t maxLines = 1000;
-constexpr std::chrono::milliseconds timeout{200};
+constexpr std::chrono::milliseconds joinTimeout{200};
 
 /// What waits; of the thread, too, which may be held in a write for ever.
 struct Waiting {
@@ -67,7 +67,7 @@ MessageWriter::~MessageWriter() {
     std::unique_lock<std::mutex> lock(waiting->mutex);
     waiting->isEnding = true;
     waiting->changed.notify_all();
-    waiting->changed.wait_for(lock, timeout, [] { return waiting->hasEnded; });
+    waiting->changed.wait_for(lock, joinTimeout, [] { return waiting->hasEnded; });
 }
 
 } // namespace hermes::desktop

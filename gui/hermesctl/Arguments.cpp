@@ -1,157 +1,160 @@
 #include "gui/hermesctl/Arguments.h"
 
 #include "gui/hermesctl/Nearest.h"
+#include "gui/hermesctl/Subcommands.h"
 
 #include <QRegularExpression>
+#include <algorithm>
 #include <cmath>
 
 namespace hermes::ctl {
 namespace {
 
-Result<double> positive(const QString &option, const QString &text) {
+/// What is wrong with the text of a number, or nothing.
+QString readNumber(const QString &text, double &value) {
     bool ok = false;
-    const double value = text.toDouble(&ok);
-    if (!ok || !std::isfinite(value) || value <= 0 || value > 1e9)
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("option %1 is \"%2\", expected a number above 0, at most 1e9").arg(option, text));
-    return value;
+    value = text.toDouble(&ok);
+    const bool isGood = ok && std::isfinite(value) && value > 0 && value <= 1e9;
+    return isGood ? QString() : '"' + text + "\", expected a number above 0, at most 1e9";
 }
 
-struct Flag {
-    const char *name;
-    bool Arguments::*member;
-};
-
-const Flag allFlags[] = {
-    {"--csv", &Arguments::csv},         {"--json", &Arguments::json},     {"--follow", &Arguments::follow},
-    {"--loop", &Arguments::loop},       {"--all", &Arguments::all},       {"--force", &Arguments::force},
-    {"--network", &Arguments::network}, {"--help", &Arguments::help},     {"-h", &Arguments::help},
-    {"--version", &Arguments::version}, {"--list", &Arguments::list},     {"--yes", &Arguments::yes},
-    {"--undo", &Arguments::undo},       {"--wheels", &Arguments::wheels},
-};
-
-bool *flagOf(Arguments &arguments, const QString &option) {
-    for (const Flag &flag : allFlags) {
-        if (option == QLatin1String(flag.name))
-            return &(arguments.*flag.member);
+/// A flag, a text or a number; a number above `most` counts as that.
+template <auto member, int most = 1000000000>
+QString take(Arguments &arguments, const QString &text) {
+    auto &place = arguments.*member;
+    using Value = std::decay_t<decltype(place)>;
+    if constexpr (std::is_same_v<Value, bool>) {
+        place = true;
+    } else if constexpr (std::is_same_v<Value, QString>) {
+        place = text;
+    } else {
+        double value = 0;
+        if (const QString wrong = readNumber(text, value); !wrong.isEmpty())
+            return wrong;
+        if (std::is_same_v<Value, int> && value != std::floor(value))
+            return text + ", expected a whole number";
+        place = Value(std::min(value, double(most)));
     }
-    return nullptr;
+    return {};
 }
 
-void takeTimeout(Arguments &arguments, double value) {
-    arguments.timeout = std::chrono::milliseconds(int(std::min(value, 1e6) * 1000));
+QString takePort(Arguments &arguments, const QString &text) {
+    const QString wrong = take<&Arguments::port>(arguments, text);
+    return wrong.isEmpty() && arguments.port > 65535 ? text + ", expected at most 65535" : wrong;
+}
+
+QString takeTimeout(Arguments &arguments, const QString &text) {
+    double seconds = 0;
+    if (const QString wrong = readNumber(text, seconds); !wrong.isEmpty())
+        return wrong;
+    arguments.timeout = std::chrono::milliseconds(int(std::min(seconds, 1e6) * 1000));
     arguments.timeoutIsGiven = true;
-}
-
-Result<void> takeWhole(Arguments &arguments, const QString &option, const QString &text, double value) {
-    if (value != std::floor(value))
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option %1 is %2, expected a whole number").arg(option, text));
-    if (option == QStringLiteral("--port") && value > 65535)
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option --port is %1, expected at most 65535").arg(text));
-    if (option == QStringLiteral("--port"))
-        arguments.port = int(value);
-    else if (option == QStringLiteral("--days"))
-        arguments.days = int(std::min(value, 36500.0));
-    else
-        arguments.count = int(value);
     return {};
 }
 
-Result<void> takeNumber(Arguments &arguments, const QString &option, const QString &text) {
-    const auto value = positive(option, text);
-    if (!value)
-        return value.error();
-    if (option == QStringLiteral("--rate"))
-        arguments.rate_hz = *value;
-    else if (option == QStringLiteral("--speed"))
-        arguments.speed = *value;
-    else if (option == QStringLiteral("--for"))
-        arguments.for_s = std::min(*value, 1e6);
-    else if (option == QStringLiteral("--timeout"))
-        takeTimeout(arguments, *value);
-    else
-        return takeWhole(arguments, option, text, *value);
-    return {};
-}
-
-Result<void> takeHost(Arguments &arguments, const QString &text) {
-    static const QRegularExpression withPort(QStringLiteral("^[^:]*:[0-9]*$"));
+QString takeHost(Arguments &arguments, const QString &text) {
+    static const QRegularExpression withPort("^[^:]*:[0-9]*$");
     if (text.isEmpty() || withPort.match(text).hasMatch())
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("option --host is \"%1\", expected a name or address without a port; a daemon "
-                           "at another port is named as HOST:PORT")
-                .arg(text));
+        return '"' + text +
+               "\", expected a name or address without a port; a daemon at another port is named as "
+               "HOST:PORT";
     arguments.host = text;
     return {};
 }
 
-Result<void> takeValue(Arguments &arguments, const QString &option, const QString &text) {
-    if (option == QStringLiteral("--host"))
-        return takeHost(arguments, text);
-    if (option == QStringLiteral("--out"))
-        arguments.out = text;
-    else if (option == QStringLiteral("--role"))
-        arguments.role = text;
-    else if (option == QStringLiteral("--daemons"))
-        arguments.daemons = text.split(QLatin1Char(','));
-    else
-        return takeNumber(arguments, option, text);
+QString takeDaemons(Arguments &arguments, const QString &text) {
+    arguments.daemons = text.split(',');
     return {};
+}
+
+Error wrongUsage(const QString &text) {
+    return {ErrorCode::InvalidParams, text};
 }
 
 } // namespace
 
-QStringList Arguments::flags() {
-    QStringList names;
-    for (const Flag &flag : allFlags)
-        names.append(QLatin1String(flag.name));
-    return names;
+const std::vector<Option> &options() {
+    static const std::vector<Option> all{
+        {"--daemons A,B",
+         "record, replay, doc --all: these daemons and no others; setup: the supervisor, the motor control",
+         takeDaemons},
+        {"--host HOST", "where daemons given by name run (127.0.0.1)", takeHost},
+        {"--timeout S",
+         "the longest wait. Without it 5 s for a connection, 120 s for the other computer of keys pair; for "
+         "a reply as long as the daemon answers other requests",
+         takeTimeout},
+        {"--json", "one JSON value, or one a line; errors too: {\"code\", \"message\", \"data\", \"hint\"}",
+         take<&Arguments::json>},
+        {"--out FILE", "prints there instead of to stdout; FILE must not exist", take<&Arguments::out>},
+        {"--force", "--out: overwrites FILE", take<&Arguments::force>},
+        {"--network", "list: who has announced itself on the network (needs Avahi)",
+         take<&Arguments::network>},
+        {"--rate HZ", "watch: at most so many messages a second", take<&Arguments::rate_hz>},
+        {"--list", "setup: only tells what is plugged in (--yes: asks silent lines, too)",
+         take<&Arguments::list>},
+        {"--yes", "setup: without questions; the wheels are off the ground", take<&Arguments::yes>},
+        {"--undo", "setup: puts back what the last one has replaced", take<&Arguments::undo>},
+        {"--wheels", "setup: only tests the wheels", take<&Arguments::wheels>},
+        {"--count N", "watch: end after N messages; log: the last N records (100)", take<&Arguments::count>},
+        {"--csv", "watch: CSV, a column for each value", take<&Arguments::csv>},
+        {"--speed X", "replay: so many times as fast (1)", take<&Arguments::speed>},
+        {"--for S", "drive: for so many seconds (10)", take<&Arguments::for_s, 1000000>},
+        {"--loop", "replay: begin anew at the end", take<&Arguments::loop>},
+        {"--role ROLE", "keys issue, pair: observer, operator, engineer, or daemon", take<&Arguments::role>},
+        {"--days N", "keys issue, pair: valid for so many days (730)", take<&Arguments::days, 36500>},
+        {"--port P", "keys pair: waits on this port (7499)", takePort},
+        {"--follow", "log: go on with new records", take<&Arguments::follow>},
+        {"--all", "doc: all daemons on one page", take<&Arguments::all>},
+        {"--help", "", take<&Arguments::help>},
+        {"-h", "", take<&Arguments::help>},
+        {"--version", "", take<&Arguments::version>},
+    };
+    return all;
 }
 
-QStringList Arguments::optionsWithValue() {
-    return {QStringLiteral("--rate"),  QStringLiteral("--timeout"), QStringLiteral("--count"),
-            QStringLiteral("--speed"), QStringLiteral("--host"),    QStringLiteral("--daemons"),
-            QStringLiteral("--out"),   QStringLiteral("--role"),    QStringLiteral("--days"),
-            QStringLiteral("--port"),  QStringLiteral("--for")};
+const Option *findOption(const QString &name) {
+    const auto found = std::find_if(options().begin(), options().end(),
+                                    [&name](const Option &option) { return option.name() == name; });
+    return found == options().end() ? nullptr : &*found;
 }
 
-bool hasSecondWord(const QString &command) {
-    return command == QStringLiteral("record") || command == QStringLiteral("keys");
+void Arguments::takeWord(const QString &word) {
+    if (command.isEmpty())
+        command = word;
+    else if (!subcommandNames(command).isEmpty())
+        command += ' ' + word;
+    else
+        words.append(word);
 }
 
 Result<Arguments> Arguments::parse(const QStringList &list) {
     Arguments result;
     for (int i = 0; i < list.size(); ++i) {
         const QString &word = list.at(i);
-        if (!word.startsWith(QLatin1Char('-'))) {
-            if (result.command.isEmpty())
-                result.command = word;
-            else
-                result.words.append(word);
+        if (!word.startsWith('-')) {
+            result.takeWord(word);
             continue;
         }
-        const QString option = word.section(QLatin1Char('='), 0, 0);
-        result.given.append(option);
-        bool *const flag = flagOf(result, word);
-        if (flag) {
-            *flag = true;
-            continue;
+        const QString name = word.section('=', 0, 0);
+        const bool inOne = word.contains('=');
+        const Option *const option = findOption(name);
+        if (!option || (inOne && !option->hasValue())) {
+            QStringList names;
+            for (const Option &one : options())
+                names.append(one.name());
+            std::stable_sort(names.begin(), names.end(), // of those as near, the longest one is meant
+                             [](const QString &a, const QString &b) { return a.size() > b.size(); });
+            return wrongUsage("unknown option " + word + didYouMean(name, names));
         }
-        if (!optionsWithValue().contains(option))
-            return Error(ErrorCode::InvalidParams,
-                         QStringLiteral("unknown option %1%2")
-                             .arg(word, didYouMean(option, flags() + optionsWithValue())));
-        const bool inOne = word.contains(QLatin1Char('='));
-        if (!inOne && i + 1 == list.size())
-            return Error(ErrorCode::InvalidParams, QStringLiteral("option %1 needs a value").arg(option));
-        const QString value = inOne ? word.section(QLatin1Char('='), 1) : list.at(++i);
-        const auto taken = takeValue(result, option, value);
-        if (!taken)
-            return taken.error();
+        result.given.append(name);
+        QString text = word.section('=', 1);
+        if (option->hasValue() && !inOne) {
+            if (++i == list.size())
+                return wrongUsage("option " + name + " needs a value");
+            text = list.at(i);
+        }
+        if (const QString wrong = option->take(result, text); !wrong.isEmpty())
+            return wrongUsage("option " + name + " is " + wrong);
     }
     return result;
 }

@@ -4,14 +4,15 @@
 
 #include <QStringList>
 #include <chrono>
+#include <vector>
 
 namespace hermes::ctl {
 
 /// The command line of hermesctl.
 struct Arguments {
-    QString command;
+    QString command;   ///< two words for `record start` and its like
     QStringList words; ///< what follows the command, options taken out
-    QString host = QStringLiteral("127.0.0.1");
+    QString host = "127.0.0.1";
     std::chrono::milliseconds timeout{5000};
     bool timeoutIsGiven = false;
     double rate_hz = 0; ///< 0: every message
@@ -40,13 +41,25 @@ struct Arguments {
 
     /// arguments without the program's name. Error: a sentence that names the option.
     static Result<Arguments> parse(const QStringList &arguments);
-
-    /// All options; those that take a value.
-    static QStringList flags();
-    static QStringList optionsWithValue();
+    /// The next one that is no option.
+    void takeWord(const QString &word);
 };
 
-/// Whether a second word belongs to the command: record start, keys issue.
-bool hasSecondWord(const QString &command);
+/// An option of hermesctl, or a short name of one.
+struct Option {
+    const char *usage;   ///< "--count N": its name, and what has to follow
+    const char *summary; ///< empty: --help has no line of it
+    /// Puts the text that follows the option into the arguments; gives what is wrong with it, or nothing.
+    QString (*take)(Arguments &arguments, const QString &text);
+
+    QString name() const { return QString(usage).section(' ', 0, 0); }
+    bool hasValue() const { return name() != usage; }
+};
+
+/// In the order of the help.
+const std::vector<Option> &options();
+
+/// nullptr where there is none.
+const Option *findOption(const QString &name);
 
 } // namespace hermes::ctl

@@ -49,13 +49,14 @@ Result<QJsonObject> assignments(const QStringList &words) {
 }
 
 void printChanged(const QJsonValue &result, const QString &daemon) {
-    const QJsonArray restart = result[QStringLiteral("restart")].toArray();
-    for (const QJsonValue &path : result[QStringLiteral("changed")].toArray())
-        printLine(path.toString() + (restart.contains(path)
-                                         ? QStringLiteral(" changed, from the next start on once saved "
-                                                          "(hermesctl call %1 settings.save)")
-                                               .arg(daemon)
-                                         : QStringLiteral(" changed")));
+    const QJsonArray restart = result["restart"].toArray();
+    for (const QJsonValue &path : result["changed"].toArray())
+        printLine(
+            path.toString() +
+            (restart.contains(path)
+                 ? QString(" changed, from the next start on once saved (hermesctl call %1 settings.save)")
+                       .arg(daemon)
+                 : " changed"));
 }
 
 using SchemaOf = std::function<QJsonObject(const QJsonValue &)>;
@@ -91,17 +92,16 @@ Result<QJsonValue> askAgain(Client &client, const Arguments &arguments, const QS
         if (result)
             return result;
         const Error &error = result.error();
-        const double wait_s = error.data[QStringLiteral("retry_after_s")].toDouble();
+        const double wait_s = error.data["retry_after_s"].toDouble();
         if (wait_s > 0 && wait_s <= longest_s && waits < 2 && !arguments.timeoutIsGiven) {
-            note(QStringLiteral("%1; tried again in %2 s").arg(error.message).arg(wait_s, 0, 'f', 1));
+            note(QString("%1; tried again in %2 s").arg(error.message).arg(wait_s, 0, 'f', 1));
             QEventLoop pause;
             QTimer::singleShot(int(wait_s * 1000) + 1, &pause, &QEventLoop::quit);
             pause.exec();
-        } else if (error.data[QStringLiteral("confirm")].toBool() && canAsk() &&
-                   !params.contains(QStringLiteral("confirm"))) {
-            if (!isConfirmed(printable(error.message) + QStringLiteral(". Do you confirm?")))
+        } else if (error.data["confirm"].toBool() && canAsk() && !params.contains("confirm")) {
+            if (!isConfirmed(printable(error.message) + ". Do you confirm?"))
                 return error;
-            params.insert(QStringLiteral("confirm"), true);
+            params.insert("confirm", true);
         } else {
             return error;
         }
@@ -112,9 +112,9 @@ QString logLine(WireView record) {
     ReadReport report;
     const auto read = readMessage<LogMessage>(record, report);
     if (!read)
-        return QStringLiteral("a record of the log cannot be read: ") + report.text();
+        return "a record of the log cannot be read: " + report.text();
     const auto time = QDateTime::fromMSecsSinceEpoch(qint64(read->stamp * 1000));
-    return QStringLiteral("%1 %2 %3: %4")
+    return QString("%1 %2 %3: %4")
         .arg(time.toString(Qt::ISODateWithMs), read->level, read->source, read->text);
 }
 
@@ -136,13 +136,10 @@ Result<void> listNetwork(const Arguments &arguments) {
     if (!found)
         return found.error();
     if (found->isEmpty())
-        return Error(
-            ErrorCode::Disconnected,
-            QStringLiteral(
-                "no daemon has announced itself; only a daemon that listens on the network does so"));
+        return Error(ErrorCode::Disconnected,
+                     "no daemon has announced itself; only a daemon that listens on the network does so");
     QJsonArray values;
-    std::vector<QStringList> rows{{QStringLiteral("name"), QStringLiteral("host"), QStringLiteral("address"),
-                                   QStringLiteral("port"), QStringLiteral("framing")}};
+    std::vector<QStringList> rows{{"name", "host", "address", "port", "framing"}};
     const QStringList heading = rows.front();
     for (const QJsonObject &daemon : *found) {
         values.append(daemon);
@@ -158,19 +155,18 @@ Result<void> listNetwork(const Arguments &arguments) {
 /// What is wrong with the reply of one that has taken the connection, where it lacks a text of that name;
 /// nothing: empty.
 QString whyUnlisted(const SessionReply &reply, const char *method, const char *member) {
-    const QString foreign = QStringLiteral("answers, but is no daemon of Hermes: ");
+    const QString foreign = "answers, but is no daemon of Hermes: ";
     if (reply.result)
-        return (*reply.result)[QLatin1String(member)].toString().isEmpty()
-                   ? foreign + QStringLiteral("its reply to %1 has no %2")
-                                   .arg(QLatin1String(method), QLatin1String(member))
+        return (*reply.result)[member].toString().isEmpty()
+                   ? foreign + QString("its reply to %1 has no %2").arg(method, member)
                    : QString();
     const Error error = reply.result.error();
     const Client::Rejected &rejected = reply.member.client->rejected();
     if (error.is(ErrorCode::MethodNotFound) || rejected.unreadable > 0 || rejected.unasked > 0)
         return foreign + error.message;
     if (error.is(ErrorCode::TimedOut) || error.is(ErrorCode::Disconnected))
-        return QStringLiteral("does not answer: ") + error.message;
-    return QStringLiteral("does not say what it is: ") + error.message;
+        return "does not answer: " + error.message;
+    return "does not say what it is: " + error.message;
 }
 
 } // namespace
@@ -191,14 +187,14 @@ Result<void> listDaemons(const Arguments &arguments) {
         if (client->isConnected())
             calls.push_back({{client->address(), client.get(), false, false}, {}});
     }
-    const auto infos = callAllAndWait(calls, QStringLiteral("daemon.info"), arguments.timeout);
+    const auto infos = callAllAndWait(calls, "daemon.info", arguments.timeout);
     auto answering = calls;
     for (std::size_t i = 0; i < calls.size(); ++i)
         if (!infos[i].result)
             answering[i].member.client = nullptr; // is not waited for again
-    const auto states = callAllAndWait(answering, QStringLiteral("daemon.status"), arguments.timeout);
+    const auto states = callAllAndWait(answering, "daemon.status", arguments.timeout);
     const auto text = [](const SessionReply &reply, const char *member, const char *unknown) {
-        const QString found = reply.result ? (*reply.result)[QLatin1String(member)].toString() : QString();
+        const QString found = reply.result ? (*reply.result)[member].toString() : QString();
         return found.isEmpty() ? QString::fromLatin1(unknown) : printable(found);
     };
     QJsonArray found;
@@ -209,39 +205,34 @@ Result<void> listDaemons(const Arguments &arguments) {
         const QString unlisted =
             nameless.isEmpty() ? whyUnlisted(states[i], "daemon.status", "state") : nameless;
         const QJsonArray wrong =
-            unlisted.isEmpty() ? wrongItems(states[i])
-                               : QJsonArray{QJsonObject{{QStringLiteral("name"), QStringLiteral("daemon")},
-                                                        {QStringLiteral("level"), QStringLiteral("error")},
-                                                        {QStringLiteral("message"), unlisted}}};
+            unlisted.isEmpty()
+                ? wrongItems(states[i])
+                : QJsonArray{QJsonObject{{"name", "daemon"}, {"level", "error"}, {"message", unlisted}}};
         if (!arguments.json) {
-            printLine(
-                QStringLiteral("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
+            printLine(QString("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
             for (const QJsonValue &item : wrong)
-                printLine(printable(QStringLiteral("  ") + wrongText(item)));
+                printLine(printable("  " + wrongText(item)));
         }
-        found.append(QJsonObject{{QStringLiteral("name"), name},
-                                 {QStringLiteral("state"), state},
-                                 {QStringLiteral("version"), version},
-                                 {QStringLiteral("address"), address},
-                                 {QStringLiteral("wrong"), wrong}});
+        found.append(QJsonObject{
+            {"name", name}, {"state", state}, {"version", version}, {"address", address}, {"wrong", wrong}});
     }
     if (arguments.json && !calls.empty())
         printJson(found);
     if (!calls.empty())
         return {};
     for (const auto &client : all)
-        if (!client->problem().contains(
-                QStringLiteral("Connection refused"))) // by a host that cannot be asked
+        if (!client->problem().contains("Connection refused")) // by a host that cannot be asked
             return Error(ErrorCode::Disconnected, client->problem());
-    return Error(ErrorCode::Disconnected,
-                 QStringLiteral("no daemon answers at its default port on %1; start one, as "
-                                "hermes-simulator; on a robot see systemctl status hermes-supervisor; "
-                                "--host HOST asks another computer, --network all of them")
-                     .arg(arguments.host));
+    return Error(
+        ErrorCode::Disconnected,
+        QString(
+            "no daemon answers at its default port on %1; start one, as hermes-simulator; on a robot see "
+            "systemctl status hermes-supervisor; --host HOST asks another computer, --network all of them")
+            .arg(arguments.host));
 }
 
 Result<void> discover(Client &client, const Arguments &arguments) {
-    const auto description = ask(client, arguments, QStringLiteral("rpc.discover"));
+    const auto description = ask(client, arguments, "rpc.discover");
     if (!description)
         return description.error();
     printLine(arguments.json ? pretty(*description) : descriptionAsText(description->toObject()));
@@ -249,15 +240,14 @@ Result<void> discover(Client &client, const Arguments &arguments) {
 }
 
 Result<void> document(Client &client, const Arguments &arguments) {
-    const auto description = ask(client, arguments, QStringLiteral("rpc.discover"));
+    const auto description = ask(client, arguments, "rpc.discover");
     if (!description)
         return description.error();
-    const auto schema = ask(client, arguments, QStringLiteral("settings.schema"));
+    const auto schema = ask(client, arguments, "settings.schema");
     if (!schema)
         return schema.error();
     if (arguments.json)
-        printJson(QJsonObject{{QStringLiteral("description"), *description},
-                              {QStringLiteral("settings"), *schema}});
+        printJson(QJsonObject{{"description", *description}, {"settings", *schema}});
     else
         printLine(descriptionAsMarkdown(description->toObject(), schema->toObject()).trimmed());
     return {};
@@ -268,21 +258,21 @@ Result<void> call(Client &client, const Arguments &arguments) {
     if (!given)
         return given.error();
     const auto schemaOf = [&arguments](const QJsonValue &description) {
-        const QJsonArray methods = description[QStringLiteral("methods")].toArray();
+        const QJsonArray methods = description["methods"].toArray();
         return parametersSchema(named(methods, arguments.words.at(1)));
     };
-    const QJsonObject params = withAngles(client, QStringLiteral("rpc.discover"), *given, schemaOf);
+    const QJsonObject params = withAngles(client, "rpc.discover", *given, schemaOf);
     const auto result = askAgain(client, arguments, arguments.words.at(1), params);
     if (!result)
         return result.error();
     printLine(pretty(*result));
-    noteAngles(client, QStringLiteral("rpc.discover"), params, schemaOf);
+    noteAngles(client, "rpc.discover", params, schemaOf);
     return {};
 }
 
 Result<void> getSettings(Client &client, const Arguments &arguments) {
-    const auto value = ask(client, arguments, QStringLiteral("settings.get"),
-                           QJsonObject{{QStringLiteral("path"), arguments.words.value(1)}});
+    const auto value =
+        ask(client, arguments, "settings.get", QJsonObject{{"path", arguments.words.value(1)}});
     if (!value)
         return value.error();
     printLine(pretty(*value));
@@ -294,23 +284,21 @@ Result<void> setSettings(Client &client, const Arguments &arguments) {
     if (!given)
         return given.error();
     const auto schemaOf = [](const QJsonValue &schema) { return schema.toObject(); };
-    const QJsonObject values = withAngles(client, QStringLiteral("settings.schema"), *given, schemaOf);
-    const auto result = ask(client, arguments, QStringLiteral("settings.set"),
-                            QJsonObject{{QStringLiteral("values"), values}});
+    const QJsonObject values = withAngles(client, "settings.schema", *given, schemaOf);
+    const auto result = ask(client, arguments, "settings.set", QJsonObject{{"values", values}});
     if (!result)
         return result.error();
     if (arguments.json)
         printJson(*result);
     else
         printChanged(*result, arguments.words.first());
-    noteAngles(client, QStringLiteral("settings.schema"), values, schemaOf);
+    noteAngles(client, "settings.schema", values, schemaOf);
     return {};
 }
 
 Result<void> showLog(Client &client, const Arguments &arguments) {
     const int count = arguments.count > 0 ? arguments.count : 100;
-    const auto records =
-        ask(client, arguments, QStringLiteral("log.tail"), QJsonObject{{QStringLiteral("count"), count}});
+    const auto records = ask(client, arguments, "log.tail", QJsonObject{{"count", count}});
     if (!records)
         return records.error();
     const auto print = [&arguments](const WireValue &record) {
@@ -326,8 +314,7 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
         result = Error(ErrorCode::Disconnected, reason);
         loop.quit();
     });
-    client.subscribe(QStringLiteral("log"), {{QStringLiteral("queue"), 1000}},
-                     [&print](const TopicUpdate &update) { print(update.data); });
+    client.subscribe("log", {{"queue", 1000}}, [&print](const TopicUpdate &update) { print(update.data); });
     runStream(loop);
     return result;
 }

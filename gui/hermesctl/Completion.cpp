@@ -35,7 +35,7 @@ public:
     Candidates candidates() {
         Candidates found;
         for (const Candidate &candidate : all())
-            if (candidate.text.startsWith(line_.current) || candidate.text == QStringLiteral(":files"))
+            if (candidate.text.startsWith(line_.current) || candidate.text == ":files")
                 found.push_back(candidate);
         return found;
     }
@@ -44,30 +44,24 @@ private:
     Candidates all() {
         if (!line_.pendingOption.isEmpty())
             return ofOption(line_.pendingOption, QString());
-        const int equals = line_.current.indexOf(QLatin1Char('='));
-        if (line_.current.startsWith(QLatin1Char('-')))
+        const int equals = line_.current.indexOf('=');
+        if (line_.current.startsWith('-'))
             return equals > 0 ? ofOption(line_.current.left(equals), line_.current.left(equals + 1))
                               : options();
         if (line_.arguments.command.isEmpty())
             return commands(QString());
-        if (hasSecondWord(line_.arguments.command))
-            return commands(line_.arguments.command + QLatin1Char(' '));
+        if (!subcommandNames(line_.arguments.command).isEmpty())
+            return commands(line_.arguments.command + ' ');
         const Subcommand *const command = findSubcommand(line_.arguments.command);
-        if (!command || line_.arguments.words.size() >= command->maxWords || command->words.empty())
-            return {};
-        const auto place = std::min(std::size_t(line_.arguments.words.size()), command->words.size() - 1);
-        return ofWord(command->words[place]);
+        return command ? ofWord(command->meaning(line_.arguments.words.size())) : Candidates();
     }
 
     static Candidates commands(const QString &begin) {
         Candidates found;
         for (const Subcommand &one : subcommands()) {
-            const QString name = QLatin1String(one.name);
-            if (!begin.isEmpty() && !name.startsWith(begin))
-                continue;
-            const QString word = name.mid(begin.size()).section(QLatin1Char(' '), 0, 0);
-            if (found.empty() || found.back().text != word)
-                found.push_back({word, QLatin1String(one.summary)});
+            const QString word = one.name().mid(begin.size()).section(' ', 0, 0);
+            if (one.name().startsWith(begin) && (found.empty() || found.back().text != word))
+                found.push_back({word, one.summary});
         }
         return found;
     }
@@ -75,23 +69,23 @@ private:
     Candidates options() const {
         QStringList names = commonOptions();
         if (const Subcommand *command = findSubcommand(line_.arguments.command))
-            names += QString::fromLatin1(command->options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
+            names += command->options();
         else
-            names.append(QStringLiteral("--version"));
+            names.append("--version");
         return plain(names);
     }
 
     Candidates ofOption(const QString &option, const QString &before) const {
-        if (option == QStringLiteral("--out"))
-            return {{QStringLiteral(":files"), QString()}};
-        if (option == QStringLiteral("--host"))
+        if (option == "--out")
+            return {{":files", QString()}};
+        if (option == "--host")
             return plain(knownHosts(promptPatience), before);
-        if (option == QStringLiteral("--role"))
+        if (option == "--role")
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
-        if (option != QStringLiteral("--daemons"))
+        if (option != "--daemons")
             return {};
         const QString given = line_.current.mid(before.size());
-        const QString listed = given.left(given.lastIndexOf(QLatin1Char(',')) + 1);
+        const QString listed = given.left(given.lastIndexOf(',') + 1);
         return plain(daemonNames(), before + listed);
     }
 
@@ -102,32 +96,27 @@ private:
         return found;
     }
 
-    Candidates ofWord(Word word) {
-        switch (word) {
-        case Word::Nothing:
-            return {};
-        case Word::Daemon:
+    /// word is one of the usage of a command.
+    Candidates ofWord(const QString &word) {
+        if (word == "D")
             return daemons();
-        case Word::Method:
+        if (word == "METHOD")
             return described(askList("rpc.discover", "methods"));
-        case Word::Parameter:
+        if (word == "NAME=VALUE")
             return parameters();
-        case Word::SettingPath:
+        if (word == "PATH")
             return plain(settingPaths(ask("settings.schema").toObject(), true));
-        case Word::SettingValue:
+        if (word == "PATH=VALUE")
             return assignments(ask("settings.schema").toObject());
-        case Word::Topic:
+        if (word == "TOPIC")
             return described(ask("topics.list").toArray());
-        case Word::Session:
+        if (word == "SESSION")
             return sessions();
-        case Word::Shell:
-            return plain(completionShells());
-        case Word::Sample:
+        if (word == "SAMPLE")
             return samples();
-        case Word::Velocity:
+        if (word.endsWith('='))
             return velocities();
-        }
-        return {};
+        return word.contains('|') ? plain(word.split('|')) : Candidates();
     }
 
     Candidates daemons() const {
@@ -151,58 +140,51 @@ private:
         }
         if (!client_->isConnected())
             return {};
-        const auto answer = client_->callAndWait(QLatin1String(method), QJsonObject(), promptPatience);
+        const auto answer = client_->callAndWait(method, QJsonObject(), promptPatience);
         return answer ? *answer : QJsonValue();
     }
 
-    QJsonArray askList(const char *method, const char *member) {
-        return ask(method)[QLatin1String(member)].toArray();
-    }
+    QJsonArray askList(const char *method, const char *member) { return ask(method)[member].toArray(); }
 
     static Candidates described(const QJsonArray &list) {
         Candidates found;
         for (const QJsonValue &one : list)
-            found.push_back(
-                {one[QStringLiteral("name")].toString(), one[QStringLiteral("summary")].toString()});
+            found.push_back({one["name"].toString(), one["summary"].toString()});
         return found;
     }
 
     Candidates parameters() {
         const QString methodName = line_.arguments.words.value(1);
-        const QString name = line_.current.section(QLatin1Char('='), 0, 0);
-        const QStringList there =
-            line_.current.contains(QLatin1Char('=')) ? whatThereIs(methodName, name) : QStringList();
+        const QString name = line_.current.section('=', 0, 0);
+        const QStringList there = line_.current.contains('=') ? whatThereIs(methodName, name) : QStringList();
         return there.isEmpty()
                    ? assignments(parametersSchema(named(askList("rpc.discover", "methods"), methodName)))
-                   : plain(there, name + QLatin1Char('='));
+                   : plain(there, name + '=');
     }
 
     QStringList whatThereIs(const QString &method, const QString &parameter) {
-        const bool isName = parameter == QStringLiteral("name");
-        if (parameter == QStringLiteral("recording") ||
-            (isName && method.startsWith(QStringLiteral("record.")) &&
-             method != QStringLiteral("record.start")))
+        const bool isName = parameter == "name";
+        if (parameter == "recording" || (isName && method.startsWith("record.") && method != "record.start"))
             return namesOf(ask("record.list").toArray());
-        if (isName && method.startsWith(QStringLiteral("process.")) &&
-            method != QStringLiteral("process.add"))
+        if (isName && method.startsWith("process.") && method != "process.add")
             return namesOf(ask("process.list").toArray());
-        return parameter == QStringLiteral("topic") ? namesOf(ask("topics.list").toArray()) : QStringList();
+        return parameter == "topic" ? namesOf(ask("topics.list").toArray()) : QStringList();
     }
 
     /// NAME= of those that are not given yet; after it what the schema allows.
     Candidates assignments(const QJsonObject &schema) const {
-        const QString path = line_.current.section(QLatin1Char('='), 0, 0);
-        if (line_.current.contains(QLatin1Char('=')))
+        const QString path = line_.current.section('=', 0, 0);
+        if (line_.current.contains('='))
             return values(path, settingSchema(schema, path));
         Candidates found;
         for (const QString &one : settingPaths(schema, false))
             if (!line_.isGiven(one))
-                found.push_back({one + QLatin1Char('='), explanation(settingSchema(schema, one))});
+                found.push_back({one + '=', explanation(settingSchema(schema, one))});
         return found;
     }
 
     Candidates samples() {
-        line_.arguments.words = QStringList(line_.arguments.daemons.value(0, QStringLiteral("supervisor")));
+        line_.arguments.words = QStringList(line_.arguments.daemons.value(0, "supervisor"));
         Candidates found;
         for (const QJsonValue &name : ask("setup.samples").toArray())
             found.push_back({name.toString(), QString()});
@@ -213,19 +195,17 @@ private:
         Candidates found;
         for (const QString &name : velocityNames())
             if (!line_.isGiven(name))
-                found.push_back({name + QLatin1Char('='), name.startsWith(QLatin1Char('v'))
-                                                              ? QStringLiteral("m/s")
-                                                              : QStringLiteral("rad/s")});
+                found.push_back({name + '=', name.startsWith('v') ? "m/s" : "rad/s"});
         return found;
     }
 
     static Candidates values(const QString &name, const QJsonObject &schema) {
         QStringList texts;
-        for (const QJsonValue &choice : schema[QStringLiteral("enum")].toArray())
+        for (const QJsonValue &choice : schema["enum"].toArray())
             texts.append(choice.isString() ? choice.toString() : shown(choice));
-        if (schema[QStringLiteral("type")].toString() == QStringLiteral("boolean"))
-            texts = QStringList{QStringLiteral("true"), QStringLiteral("false")};
-        return plain(texts, name + QLatin1Char('='));
+        if (schema["type"].toString() == "boolean")
+            texts = QStringList{"true", "false"};
+        return plain(texts, name + '=');
     }
 
     Candidates sessions() {
@@ -237,7 +217,7 @@ private:
         const auto list = await<SessionList>([&](auto done) { recorder.list(0, done); });
         Candidates found;
         for (const RecordedSession &session : list.sessions)
-            found.push_back({session.name, session.members().join(QStringLiteral(", "))});
+            found.push_back({session.name, session.members().join(", ")});
         return found;
     }
 
@@ -247,11 +227,11 @@ private:
 
 /// A shell takes it for one word and nothing else, whoever has chosen the name.
 QString quotedForShell(const QString &text) {
-    const QString plain = QStringLiteral("_-./:=,@%+");
+    const QString plain = "_-./:=,@%+";
     QString quoted;
     for (const QChar c : text) {
         if (!c.isLetterOrNumber() && !c.isSurrogate() && !plain.contains(c))
-            quoted += QLatin1Char('\\');
+            quoted += '\\';
         quoted += c;
     }
     return quoted;
@@ -266,8 +246,7 @@ int printCandidates(const QString &line) {
             continue;
         known.append(candidate.text);
         if (printable(candidate.text) == candidate.text) // nobody could type the others
-            printLine(quotedForShell(candidate.text) + QLatin1Char('\t') +
-                      printable(candidate.meaning.simplified()));
+            printLine(quotedForShell(candidate.text) + '\t' + printable(candidate.meaning.simplified()));
     }
     return 0;
 }
@@ -276,8 +255,8 @@ Result<void> completion(const Arguments &arguments) {
     const QString script = completionScript(arguments.words.first());
     if (script.isEmpty())
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("there is no completion for \"%1\", expected one of %2")
-                         .arg(arguments.words.first(), completionShells().join(QStringLiteral(", "))));
+                     QString("there is no completion for \"%1\", expected one of %2")
+                         .arg(arguments.words.first(), completionShells().join(", ")));
     if (arguments.json)
         printJson(script);
     else

@@ -12,27 +12,25 @@ namespace {
 constexpr int maxElements = 64; // of a list with a column for each
 
 QString below(const QString &path, const QString &name) {
-    return path.isEmpty() ? name : path + QLatin1Char('.') + name;
+    return path.isEmpty() ? name : path + '.' + name;
 }
 
 QString element(const QString &path, int index) {
-    return QStringLiteral("%1[%2]").arg(path).arg(index);
+    return QString("%1[%2]").arg(path).arg(index);
 }
 
 /// How many elements a list always has; 0: that may change, or they are too many.
 int fixedLength(const QJsonObject &schema) {
-    const int least = schema[QStringLiteral("minItems")].toInt(-1);
-    return least == schema[QStringLiteral("maxItems")].toInt(-2) && least <= maxElements ? std::max(least, 0)
-                                                                                         : 0;
+    const int least = schema["minItems"].toInt(-1);
+    return least == schema["maxItems"].toInt(-2) && least <= maxElements ? std::max(least, 0) : 0;
 }
 
 /// What is no field has the name data; so has what would be called as a column of the message itself.
 QString columnName(const QString &path) {
-    if (path.isEmpty() || path.startsWith(QLatin1Char('[')))
-        return QStringLiteral("data") + path;
-    const bool isTaken =
-        QStringList{QStringLiteral("stamp"), QStringLiteral("seq"), QStringLiteral("dropped")}.contains(path);
-    return isTaken ? QStringLiteral("data.") + path : path;
+    if (path.isEmpty() || path.startsWith('['))
+        return "data" + path;
+    const bool isTaken = QStringList{"stamp", "seq", "dropped"}.contains(path);
+    return isTaken ? "data." + path : path;
 }
 
 QString fieldText(const QJsonValue &value) {
@@ -44,14 +42,11 @@ QString fieldText(const QJsonValue &value) {
 } // namespace
 
 QString csvField(const QString &text) {
-    const bool needsQuotes = std::any_of(text.begin(), text.end(), [](QChar c) {
-        return c == QLatin1Char(',') || c == QLatin1Char('"') || c == QLatin1Char('\n') ||
-               c == QLatin1Char('\r');
-    });
+    const bool needsQuotes = std::any_of(
+        text.begin(), text.end(), [](QChar c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; });
     if (!needsQuotes)
         return text;
-    return QLatin1Char('"') + QString(text).replace(QLatin1Char('"'), QStringLiteral("\"\"")) +
-           QLatin1Char('"');
+    return '"' + QString(text).replace('"', "\"\"") + '"';
 }
 
 CsvTable::CsvTable(const QJsonObject &schema) {
@@ -67,27 +62,27 @@ void CsvTable::add(const Column &column) {
 
 void CsvTable::addVariants(const QJsonArray &variants, const QString &path) {
     for (const QJsonValue &variant : variants)
-        if (variant[QStringLiteral("type")].toString() != QStringLiteral("null"))
+        if (variant["type"].toString() != "null")
             addColumns(variant.toObject(), path);
 }
 
 void CsvTable::addProperties(const QJsonObject &schema, const QString &path) {
-    const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
+    const QJsonObject properties = schema["properties"].toObject();
     for (auto property = properties.begin(); property != properties.end(); ++property)
         addColumns(property.value().toObject(), below(path, property.key()));
-    const QJsonValue others = schema[QStringLiteral("additionalProperties")];
+    const QJsonValue others = schema["additionalProperties"];
     if (others.isObject() || others.toBool(true))
         add({path, QString(), true});
 }
 
 void CsvTable::addColumns(const QJsonObject &schema, const QString &path) {
     for (const char *kind : {"anyOf", "oneOf"}) {
-        if (schema.contains(QLatin1String(kind)))
-            return addVariants(schema[QLatin1String(kind)].toArray(), path);
+        if (schema.contains(kind))
+            return addVariants(schema[kind].toArray(), path);
     }
-    const QJsonValue type = schema[QStringLiteral("type")];
+    const QJsonValue type = schema["type"];
     const auto is = [&type](const char *name) {
-        return type.toString() == QLatin1String(name) || type.toArray().contains(QLatin1String(name));
+        return type.toString() == name || type.toArray().contains(name);
     };
     if (is("object"))
         return addProperties(schema, path);
@@ -96,12 +91,12 @@ void CsvTable::addColumns(const QJsonObject &schema, const QString &path) {
         if (length > 0)
             elements_.insert(path, length);
         for (int i = 0; i < length; ++i)
-            addColumns(schema[QStringLiteral("items")].toObject(), element(path, i));
+            addColumns(schema["items"].toObject(), element(path, i));
         if (length > 0)
             return;
     }
-    const bool isOpen = type.isUndefined() && !schema.contains(QStringLiteral("enum"));
-    add({path, schema[QStringLiteral("unit")].toString(), isOpen});
+    const bool isOpen = type.isUndefined() && !schema.contains("enum");
+    add({path, schema["unit"].toString(), isOpen});
 }
 
 bool CsvTable::isFixed() const {
@@ -144,8 +139,8 @@ void CsvTable::begin(const QJsonValue &first) {
         }
         for (auto field = fields.begin(); field != fields.end(); ++field) {
             const bool isBelow = column.path.isEmpty() || field.key() == column.path ||
-                                 field.key().startsWith(column.path + QLatin1Char('.')) ||
-                                 field.key().startsWith(column.path + QLatin1Char('['));
+                                 field.key().startsWith(column.path + '.') ||
+                                 field.key().startsWith(column.path + '[');
             if (isBelow && !known.contains(field.key()))
                 add({field.key(), QString(), false});
         }
@@ -155,12 +150,12 @@ void CsvTable::begin(const QJsonValue &first) {
 std::optional<QString> CsvTable::header() const {
     if (!isFixed())
         return std::nullopt;
-    QStringList names{QStringLiteral("stamp [s]"), QStringLiteral("seq"), QStringLiteral("dropped")};
+    QStringList names{"stamp [s]", "seq", "dropped"};
     for (const Column &column : columns_)
         names.append(csvField(column.unit.isEmpty()
                                   ? columnName(column.path)
-                                  : QStringLiteral("%1 [%2]").arg(columnName(column.path), column.unit)));
-    return names.join(QLatin1Char(','));
+                                  : QString("%1 [%2]").arg(columnName(column.path), column.unit)));
+    return names.join(',');
 }
 
 QString CsvTable::line(const QString &stamp, quint64 seq, quint64 dropped, const QJsonValue &data) {
@@ -171,7 +166,7 @@ QString CsvTable::line(const QString &stamp, quint64 seq, quint64 dropped, const
         texts.append(csvField(fieldText(fields.take(column.path))));
     for (auto field = fields.begin(); field != fields.end(); ++field)
         ++withoutColumn_[columnName(field.key())];
-    return texts.join(QLatin1Char(','));
+    return texts.join(',');
 }
 
 } // namespace hermes::ctl

@@ -16,7 +16,7 @@ void addPaths(QStringList &paths, const QJsonObject &schema, const QString &pref
         if (!isGroup || withGroups)
             paths.append(prefix + property.key());
         if (isGroup)
-            addPaths(paths, below, prefix + property.key() + QLatin1Char('.'), withGroups);
+            addPaths(paths, below, prefix + property.key() + '.', withGroups);
     }
 }
 
@@ -25,13 +25,13 @@ void addPaths(QStringList &paths, const QJsonObject &schema, const QString &pref
 QStringList namesOf(const QJsonArray &list) {
     QStringList names;
     for (const QJsonValue &one : list)
-        names.append(one[QStringLiteral("name")].toString());
+        names.append(one["name"].toString());
     return names;
 }
 
 QJsonObject named(const QJsonArray &list, const QString &name) {
     for (const QJsonValue &one : list) {
-        if (one[QStringLiteral("name")].toString() == name)
+        if (one["name"].toString() == name)
             return one.toObject();
     }
     return {};
@@ -39,14 +39,14 @@ QJsonObject named(const QJsonArray &list, const QString &name) {
 
 QJsonObject parametersSchema(const QJsonObject &method) {
     QJsonObject properties;
-    for (const QJsonValue &param : method[QStringLiteral("params")].toArray())
-        properties.insert(param[QStringLiteral("name")].toString(), param[QStringLiteral("schema")]);
+    for (const QJsonValue &param : method["params"].toArray())
+        properties.insert(param["name"].toString(), param["schema"]);
     return {{propertiesKey, properties}};
 }
 
 QJsonObject settingSchema(const QJsonObject &schema, const QString &path) {
     QJsonObject below = schema;
-    for (const QString &key : path.split(QLatin1Char('.')))
+    for (const QString &key : path.split('.'))
         below = below[propertiesKey].toObject()[key].toObject();
     return below;
 }
@@ -59,10 +59,10 @@ QStringList settingPaths(const QJsonObject &schema, bool withGroups) {
 
 QString explanation(const QJsonObject &schema) {
     QString text = expectation(schema);
-    if (schema.contains(QStringLiteral("default")))
-        text += QStringLiteral("; default ") + shown(schema[QStringLiteral("default")]);
-    const QString description = schema[QStringLiteral("description")].toString();
-    return description.isEmpty() ? text : text + QStringLiteral("; ") + description;
+    if (schema.contains("default"))
+        text += "; default " + shown(schema["default"]);
+    const QString description = schema["description"].toString();
+    return description.isEmpty() ? text : text + "; " + description;
 }
 
 } // namespace hermes::ctl

@@ -25,7 +25,7 @@ constexpr double usualDrive_s = 10; ///< a drive with a velocity has an end
 constexpr qint64 frozen_ms = 200;   ///< between two beats: this program stood still
 
 Result<Pose2D> poseOf(Client &client, const Arguments &arguments) {
-    const auto state = ask(client, arguments, QStringLiteral("motor.state"));
+    const auto state = ask(client, arguments, "motor.state");
     if (!state)
         return state.error();
     ReadReport report;
@@ -65,7 +65,7 @@ Result<void> driveOn(Driver &driver, double seconds) {
 }
 
 Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
-    note(QLatin1String(DriveKeys::help));
+    note(DriveKeys::help);
     Result<void> result;
     QElapsedTimer last;
     const auto stoodStill = [&last] { return last.restart() > frozen_ms; };
@@ -120,13 +120,11 @@ Result<void> checkDrive(const Arguments &arguments) {
         return velocity.error();
     if (!*velocity && !isTerminal(StandardStream::Input))
         return Error(ErrorCode::InvalidParams,
-                     "drive needs a velocity (vx=, vy= in m/s, omega= in rad/s), or a "
-                     "terminal for keys");
+                     "drive needs a velocity (vx=, vy= in m/s, omega= in rad/s), or a terminal for keys");
     if (*velocity && arguments.for_s <= 0 && !qEnvironmentVariableIsEmpty("SSH_CONNECTION"))
-        return Error(
-            ErrorCode::InvalidParams,
-            "over ssh a drive with a velocity needs --for S: if the network fails, the robot drives on "
-            "until then; by keys it stops at once");
+        return Error(ErrorCode::InvalidParams,
+                     "over ssh a drive with a velocity needs --for S: if the network fails, the robot drives "
+                     "on until then; by keys it stops at once");
     return {};
 }
 
@@ -135,7 +133,7 @@ Result<void> drive(Client &client, const Arguments &arguments) {
         return ready;
     const std::optional<Twist2D> velocity = *velocityOf(arguments);
     DriveKeys keys;
-    Driver driver(client, arguments, QStringLiteral("motor.drive"), [&] {
+    Driver driver(client, arguments, "motor.drive", [&] {
         const Twist2D request = velocity ? *velocity : keys.request(monotonicNow());
         if (!velocity)
             show(request);

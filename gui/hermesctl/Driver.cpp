@@ -28,7 +28,7 @@ Result<void> Driver::run() {
         return acquired;
     QObject::connect(&client_, &Client::disconnected, &loop_,
                      [this](const QString &reason) { fail(Error(ErrorCode::Disconnected, reason)); });
-    const int odometry = client_.subscribe(QStringLiteral("odometry"), {{"queue", 1}},
+    const int odometry = client_.subscribe("odometry", {{"queue", 1}},
                                            [this](const TopicUpdate &update) { onOdometry(update); });
     QTimer timer;
     timer.setTimerType(Qt::PreciseTimer);
@@ -51,18 +51,17 @@ void Driver::end() {
 
 void Driver::brake() {
     client_.call(
-        QStringLiteral("motor.stop"), QJsonObject(), [](const auto &) {}, arguments_.timeout,
-        Client::Repeats::AtOnce);
+        "motor.stop", QJsonObject(), [](const auto &) {}, arguments_.timeout, Client::Repeats::AtOnce);
 }
 
 Result<void> Driver::acquire() {
     const double asked = monotonicNow();
-    const auto state = ask(client_, arguments_, QStringLiteral("motor.state"));
+    const auto state = ask(client_, arguments_, "motor.state");
     latency_s_ = monotonicNow() - asked;
     if (!state)
         return state.error();
     const auto acquired =
-        ask(client_, arguments_, QStringLiteral("control.acquire"),
+        ask(client_, arguments_, "control.acquire",
             QJsonObject{{"client", "hermesctl on " + QHostInfo::localHostName()}, {"timeout_s", lease_s}});
     return acquired ? Result<void>() : acquired.error();
 }
@@ -125,15 +124,15 @@ Result<void> Driver::stop() {
     if (!client_.isConnected())
         return failure_;
     if (!failure_ && failure_.error().is(ErrorCode::ControlHeld) && !client_.isLossy())
-        client_.call(QStringLiteral("motor.state"), QJsonObject(),
+        client_.call("motor.state", QJsonObject(),
                      [this, guard = QPointer<QEventLoop>(&loop_)](const Result<QJsonValue> &state) {
                          if (guard && state)
                              halted_ = (*state)["halted"].toString();
                      });
-    const auto stopped = client_.callAndWait(
-        QStringLiteral("motor.stop"), QJsonObject{{"wait_s", standing_s}},
-        arguments_.timeout + std::chrono::seconds(int(standing_s)), Client::Repeats::AtOnce);
-    (void)ask(client_, arguments_, QStringLiteral("control.release"));
+    const auto stopped = client_.callAndWait("motor.stop", QJsonObject{{"wait_s", standing_s}},
+                                             arguments_.timeout + std::chrono::seconds(int(standing_s)),
+                                             Client::Repeats::AtOnce);
+    (void)ask(client_, arguments_, "control.release");
     if (!failure_) {
         Error error = failure_.error();
         if (!halted_.isEmpty())
@@ -160,7 +159,7 @@ Result<void> waitUntilReady(Client &client, const Arguments &arguments) {
     QElapsedTimer waiting;
     waiting.start();
     while (true) {
-        const auto state = ask(client, arguments, QStringLiteral("motor.state"));
+        const auto state = ask(client, arguments, "motor.state");
         if (!state)
             return state.error();
         if ((*state)["ready"].toBool() || waiting.hasExpired(arguments.timeout.count()))

@@ -18,25 +18,21 @@ constexpr int maxHosts = 20;
 constexpr qint64 maxBytes = 10000;
 
 QString fileName() {
-    return QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation) +
-           QStringLiteral("/hermes/hosts");
+    return QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation) + "/hermes/hosts";
 }
 
 QStringList reached() {
     QFile file(fileName());
     if (!file.open(QIODevice::ReadOnly))
         return {};
-    return QString::fromUtf8(file.read(maxBytes))
-        .split(QLatin1Char('\n'), Qt::SkipEmptyParts)
-        .mid(0, maxHosts);
+    return QString::fromUtf8(file.read(maxBytes)).split('\n', Qt::SkipEmptyParts).mid(0, maxHosts);
 }
 
 /// Empty: one of this computer, or none.
 QString hostOf(const QString &address) {
     const auto url = InterfaceUrl::parse(address);
-    const bool isFar = url &&
-                       (url->scheme == QStringLiteral("tcp") || url->scheme == QStringLiteral("tls")) &&
-                       url->host != QStringLiteral("localhost") && !QHostAddress(url->host).isLoopback();
+    const bool isFar = url && (url->scheme == "tcp" || url->scheme == "tls") && url->host != "localhost" &&
+                       !QHostAddress(url->host).isLoopback();
     return isFar ? url->host : QString();
 }
 
@@ -51,7 +47,7 @@ void rememberHost(const QString &address) {
     hosts.prepend(host);
     // It only helps to complete: where it cannot be written, nothing is lost.
     QDir().mkpath(QFileInfo(fileName()).path());
-    (void)saveFile(fileName(), hosts.mid(0, maxHosts).join(QLatin1Char('\n')).toUtf8());
+    (void)saveFile(fileName(), hosts.mid(0, maxHosts).join('\n').toUtf8());
 }
 
 QStringList knownHosts(std::chrono::milliseconds timeout) {
@@ -62,7 +58,7 @@ QStringList knownHosts(std::chrono::milliseconds timeout) {
                 hosts.append(one.subject.name);
     if (const auto announced = NetworkBrowser().look(timeout))
         for (const QJsonObject &daemon : *announced)
-            hosts.append(daemon[QStringLiteral("host")].toString());
+            hosts.append(daemon["host"].toString());
     hosts.removeDuplicates();
     return hosts;
 }

@@ -23,7 +23,7 @@ Result<sockets::Socket> connectTo(const PairingAddress &address, std::chrono::mi
     if (own != sockets::none)
         return own;
     return Error(ErrorCode::Disconnected,
-                 QStringLiteral("cannot connect to port %1 of %2: %3; is hermesctl keys pair waiting there?")
+                 QString("cannot connect to port %1 of %2: %3; is hermesctl keys pair waiting there?")
                      .arg(address.port)
                      .arg(address.host, socket.errorString()));
 }
@@ -41,11 +41,10 @@ Result<Stream> secureStreamTo(const PairingAddress &address, const PairingCode &
     if (done)
         return stream;
     if (stream->isWrongSecret())
-        return Error(
-            ErrorCode::NotAuthorised,
-            QStringLiteral("the code is wrong: it must be the one that %1 shows now").arg(address.host));
+        return Error(ErrorCode::NotAuthorised,
+                     QString("the code is wrong: it must be the one that %1 shows now").arg(address.host));
     return Error(done.error().is(ErrorCode::TimedOut) ? ErrorCode::TimedOut : ErrorCode::Disconnected,
-                 QStringLiteral("no agreement with port %1 of %2: %3; is hermesctl keys pair waiting there?")
+                 QString("no agreement with port %1 of %2: %3; is hermesctl keys pair waiting there?")
                      .arg(address.port)
                      .arg(address.host, done.error().message));
 }
@@ -57,9 +56,8 @@ Result<void> agree(PairingStream &stream, const QDeadlineTimer &deadline) {
     const auto answer = stream.receive(pairingAccepted.size(), deadline);
     if (!answer)
         return answer.error();
-    return *answer == pairingAccepted
-               ? Result<void>()
-               : Error(ErrorCode::InvalidRequest, QStringLiteral("the other side does not accept"));
+    return *answer == pairingAccepted ? Result<void>()
+                                      : Error(ErrorCode::InvalidRequest, "the other side does not accept");
 }
 
 Result<KeyBundle> take(PairingStream &stream, NewKeyFolder &folder) {
@@ -75,8 +73,8 @@ Result<KeyBundle> take(PairingStream &stream, NewKeyFolder &folder) {
         return staged.error();
     if (const auto agreed = agree(stream, deadline); !agreed)
         return Error(ErrorCode(agreed.error().code),
-                     QStringLiteral("%1; nothing was kept here: see with hermesctl keys list there whether "
-                                    "the certificate is revoked")
+                     QString("%1; nothing was kept here: see with hermesctl keys list there whether the "
+                             "certificate is revoked")
                          .arg(agreed.error().message));
     if (const auto kept = folder.keep(); !kept)
         return kept.error();
@@ -103,12 +101,10 @@ Result<void> keysJoin(const Arguments &arguments) {
         return keys.error();
     const PeerCertificate own = toPeer(QSslCertificate(keys->certificate));
     if (arguments.json)
-        printJson(QJsonObject{{QStringLiteral("folder"), KeyFolder::usual()},
-                              {QStringLiteral("name"), own.name},
-                              {QStringLiteral("role"), own.role},
-                              {QStringLiteral("serial"), own.serial}});
+        printJson(QJsonObject{
+            {"folder", KeyFolder::usual()}, {"name", own.name}, {"role", own.role}, {"serial", own.serial}});
     else
-        printLine(QStringLiteral("%1: the keys of %2 (%3); serial number %4.")
+        printLine(QString("%1: the keys of %2 (%3); serial number %4.")
                       .arg(KeyFolder::usual(), own.name, own.role, own.serial));
     return {};
 }

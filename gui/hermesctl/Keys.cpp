@@ -16,9 +16,7 @@ constexpr int usualDays = 2 * 365;
 constexpr int daysOfAuthority = 20 * 365;
 
 QString stateOf(const Authority::Issued &one) {
-    return one.isRevoked                                 ? QStringLiteral("revoked")
-           : one.until < QDateTime::currentDateTimeUtc() ? QStringLiteral("expired")
-                                                         : QStringLiteral("valid");
+    return one.isRevoked ? "revoked" : one.until < QDateTime::currentDateTimeUtc() ? "expired" : "valid";
 }
 
 } // namespace
@@ -26,11 +24,10 @@ QString stateOf(const Authority::Issued &one) {
 Result<void> checkKeyRole(const Arguments &arguments) {
     if (roleFrom(arguments.role) || arguments.role == PeerCertificate::daemonRole())
         return {};
-    const QString found =
-        arguments.role.isEmpty() ? QStringLiteral("missing") : QStringLiteral("\"%1\"").arg(arguments.role);
+    const QString found = arguments.role.isEmpty() ? "missing" : QString("\"%1\"").arg(arguments.role);
     return Error(ErrorCode::InvalidParams,
-                 QStringLiteral("option --role is %1, expected one of %2 (for people), daemon (for robots)")
-                     .arg(found, roleNames().join(QStringLiteral(", "))));
+                 QString("option --role is %1, expected one of %2 (for people), daemon (for robots)")
+                     .arg(found, roleNames().join(", ")));
 }
 
 int daysOfKeys(const Arguments &arguments) {
@@ -38,20 +35,19 @@ int daysOfKeys(const Arguments &arguments) {
 }
 
 Result<void> keysInit(const Arguments &arguments) {
-    const QString owner = QStringLiteral("%1@%2").arg(qEnvironmentVariable("USER", QStringLiteral("user")),
-                                                      QHostInfo::localHostName());
+    const QString owner =
+        QString("%1@%2").arg(qEnvironmentVariable("USER", "user"), QHostInfo::localHostName());
     const auto done = Authority(KeyFolder::usual()).init(owner, daysOfAuthority, usualDays);
     if (!done)
         return done;
     if (arguments.json)
-        printJson(
-            QJsonObject{{QStringLiteral("folder"), KeyFolder::usual()}, {QStringLiteral("name"), owner}});
+        printJson(QJsonObject{{"folder", KeyFolder::usual()}, {"name", owner}});
     else
-        printLine(QStringLiteral(
-                      "%1: the authority, and the keys of %2, an engineer.\n"
-                      "Keep authority.key secret: who has it can make keys for all robots of this "
-                      "authority.\nNext, for a robot:  hermesctl keys pair NAME --role daemon, or keys issue")
-                      .arg(KeyFolder::usual(), owner));
+        printLine(
+            QString("%1: the authority, and the keys of %2, an engineer.\n"
+                    "Keep authority.key secret: who has it can make keys for all robots of this "
+                    "authority.\nNext, for a robot:  hermesctl keys pair NAME --role daemon, or keys issue")
+                .arg(KeyFolder::usual(), owner));
     return {};
 }
 
@@ -63,17 +59,13 @@ Result<void> keysIssue(const Arguments &arguments) {
     if (!folder)
         return folder.error();
     if (arguments.json)
-        printJson(QJsonObject{{QStringLiteral("folder"), *folder},
-                              {QStringLiteral("name"), name},
-                              {QStringLiteral("role"), arguments.role}});
+        printJson(QJsonObject{{"folder", *folder}, {"name", name}, {"role", arguments.role}});
     else
-        printLine(
-            QStringLiteral("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to "
-                           "where its programs look for keys (usually ~/.config/hermes/keys), and delete it "
-                           "here. For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
-                           ".config/hermes/keys\n  scp -p %1/* "
-                           "%2:.config/hermes/keys/")
-                .arg(*folder, name));
+        printLine(QString("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to where "
+                          "its programs look for keys (usually ~/.config/hermes/keys), and delete it here. "
+                          "For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
+                          ".config/hermes/keys\n  scp -p %1/* %2:.config/hermes/keys/")
+                      .arg(*folder, name));
     return {};
 }
 
@@ -81,12 +73,12 @@ Result<void> keysRevoke(const Arguments &arguments) {
     const auto count = Authority(KeyFolder::usual()).revoke(arguments.words.first());
     if (!count)
         return count.error();
-    const QString file = KeyFolder::usual() + QLatin1Char('/') + KeyFolder::revokedFile();
+    const QString file = KeyFolder::usual() + '/' + KeyFolder::revokedFile();
     if (arguments.json)
-        printJson(QJsonObject{{QStringLiteral("revoked"), *count}, {QStringLiteral("file"), file}});
+        printJson(QJsonObject{{"revoked", *count}, {"file", file}});
     else
-        printLine(QStringLiteral("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect "
-                                 "within a second, also on those who are connected.")
+        printLine(QString("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect within a "
+                          "second, also on those who are connected.")
                       .arg(*count)
                       .arg(file));
     return {};
@@ -97,17 +89,15 @@ Result<void> keysList(const Arguments &arguments) {
     if (!all)
         return all.error();
     QJsonArray json;
-    std::vector<QStringList> rows{{QStringLiteral("name"), QStringLiteral("role"),
-                                   QStringLiteral("serial number"), QStringLiteral("valid until"),
-                                   QStringLiteral("state")}};
+    std::vector<QStringList> rows{{"name", "role", "serial number", "valid until", "state"}};
     for (const Authority::Issued &one : *all) {
         const QString until = one.until.toString(Qt::ISODate);
         rows.push_back({one.subject.name, one.subject.role, one.serial, until, stateOf(one)});
-        json.append(QJsonObject{{QStringLiteral("name"), one.subject.name},
-                                {QStringLiteral("role"), one.subject.role},
-                                {QStringLiteral("serial"), one.serial},
-                                {QStringLiteral("until"), until},
-                                {QStringLiteral("state"), stateOf(one)}});
+        json.append(QJsonObject{{"name", one.subject.name},
+                                {"role", one.subject.role},
+                                {"serial", one.serial},
+                                {"until", until},
+                                {"state", stateOf(one)}});
     }
     arguments.json ? printJson(json) : printTable(rows);
     return {};

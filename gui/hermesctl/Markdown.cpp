@@ -10,44 +10,43 @@
 namespace hermes::ctl {
 namespace {
 
-const QString nameKey = QStringLiteral("name");
-const QString schemaKey = QStringLiteral("schema");
-const QString defaultKey = QStringLiteral("default");
+const QString nameKey = "name";
+const QString schemaKey = "schema";
+const QString defaultKey = "default";
 
 QString text(const QJsonValue &object, const char *key) {
-    return object[QLatin1String(key)].toString();
+    return object[key].toString();
 }
 
 QString parameterList(const QJsonObject &method) {
     QStringList names;
-    for (const QJsonValue &param : method[QStringLiteral("params")].toArray()) {
-        const bool required = param[QStringLiteral("required")].toBool();
-        names.append(text(param, "name") + (required ? QString() : QStringLiteral("?")));
+    for (const QJsonValue &param : method["params"].toArray()) {
+        const bool required = param["required"].toBool();
+        names.append(text(param, "name") + (required ? QString() : "?"));
     }
-    return names.join(QStringLiteral(", "));
+    return names.join(", ");
 }
 
 QString cell(QString content) {
-    return content.replace(QLatin1Char('|'), QStringLiteral("\\|"));
+    return content.replace('|', "\\|");
 }
 
 /// "`x-urgent`, `x-role`: "operator"": whatever keywords of our own there are, but for one that has a column.
 QString keywords(const QJsonObject &object) {
     QStringList texts;
     for (auto member = object.begin(); member != object.end(); ++member) {
-        if (!member.key().startsWith(QStringLiteral("x-")) || member.key() == QStringLiteral("x-applies"))
+        if (!member.key().startsWith("x-") || member.key() == "x-applies")
             continue;
-        const QString name = QStringLiteral("`%1`").arg(member.key());
-        texts.append(member.value() == true ? name
-                                            : QStringLiteral("%1: %2").arg(name, shown(member.value())));
+        const QString name = QString("`%1`").arg(member.key());
+        texts.append(member.value() == true ? name : QString("%1: %2").arg(name, shown(member.value())));
     }
-    return texts.join(QStringLiteral(", "));
+    return texts.join(", ");
 }
 
 /// What is expected, and the keywords.
 QString expected(const QJsonObject &schema) {
     const QString more = keywords(schema);
-    return expectation(schema) + (more.isEmpty() ? more : QStringLiteral("; ") + more);
+    return expectation(schema) + (more.isEmpty() ? more : "; " + more);
 }
 
 /// A line for each field, those of inner objects by their path; nothing where the schema has none. What lies
@@ -56,20 +55,19 @@ QString fieldLines(const QJsonObject &schema, const QString &path, int depth = 0
     constexpr int deepest = 12;
     if (depth > deepest)
         return {};
-    if (schema.contains(QStringLiteral("items")))
-        return fieldLines(schema[QStringLiteral("items")].toObject(), path + QStringLiteral("[]"), depth + 1);
-    const QString prefix = path.isEmpty() ? path : path + QLatin1Char('.');
-    const QJsonObject others = schema[QStringLiteral("additionalProperties")].toObject();
-    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + QLatin1Char('*'), depth + 1);
-    const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
-    const QJsonArray required = schema[QStringLiteral("required")].toArray();
+    if (schema.contains("items"))
+        return fieldLines(schema["items"].toObject(), path + "[]", depth + 1);
+    const QString prefix = path.isEmpty() ? path : path + '.';
+    const QJsonObject others = schema["additionalProperties"].toObject();
+    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + '*', depth + 1);
+    const QJsonObject properties = schema["properties"].toObject();
+    const QJsonArray required = schema["required"].toArray();
     for (auto property = properties.begin(); property != properties.end(); ++property) {
         const QJsonObject below = property.value().toObject();
         const QString name = prefix + property.key();
         const bool mayBeMissing = !required.contains(property.key());
-        lines += QStringLiteral("| `%1` | %2%3 | %4 |\n")
-                     .arg(name, cell(expected(below)),
-                          mayBeMissing ? QStringLiteral("; may be missing") : QString(),
+        lines += QString("| `%1` | %2%3 | %4 |\n")
+                     .arg(name, cell(expected(below)), mayBeMissing ? "; may be missing" : QString(),
                           cell(text(below, "description")));
         lines += fieldLines(below, name, depth + 1);
     }
@@ -79,22 +77,21 @@ QString fieldLines(const QJsonObject &schema, const QString &path, int depth = 0
 /// Of a value that is called path; nothing for one without fields.
 QString fieldTable(const QJsonObject &schema, const QString &path = {}) {
     const QString lines = fieldLines(schema, path);
-    return lines.isEmpty() ? lines
-                           : QStringLiteral("| field | what | meaning |\n|---|---|---|\n%1\n").arg(lines);
+    return lines.isEmpty() ? lines : QString("| field | what | meaning |\n|---|---|---|\n%1\n").arg(lines);
 }
 
 QString parameterTable(const QJsonArray &params) {
-    QString table = QStringLiteral("| parameter | expected | default | meaning |\n|---|---|---|---|\n");
+    QString table = "| parameter | expected | default | meaning |\n|---|---|---|---|\n";
     for (const QJsonValue &param : params) {
         const QJsonObject schema = param[schemaKey].toObject();
-        const QString fallback = schema.contains(defaultKey)                  ? shown(schema[defaultKey])
-                                 : param[QStringLiteral("required")].toBool() ? QStringLiteral("required")
-                                                                              : QStringLiteral("optional");
-        table += QStringLiteral("| `%1` | %2 | %3 | %4 |\n")
+        const QString fallback = schema.contains(defaultKey)  ? shown(schema[defaultKey])
+                                 : param["required"].toBool() ? "required"
+                                                              : "optional";
+        table += QString("| `%1` | %2 | %3 | %4 |\n")
                      .arg(text(param, "name"), cell(expected(schema)), cell(fallback),
                           cell(text(schema, "description")));
     }
-    table += QLatin1Char('\n');
+    table += '\n';
     for (const QJsonValue &param : params)
         table += fieldTable(param[schemaKey].toObject(), text(param, "name"));
     return table;
@@ -102,49 +99,44 @@ QString parameterTable(const QJsonArray &params) {
 
 QString example(const QString &method, const QJsonObject &pairing) {
     QJsonObject params;
-    for (const QJsonValue &param : pairing[QStringLiteral("params")].toArray())
-        params.insert(text(param, "name"), param[QStringLiteral("value")]);
-    const QJsonObject request{{QStringLiteral("jsonrpc"), QStringLiteral("2.0")},
-                              {QStringLiteral("id"), 1},
-                              {QStringLiteral("method"), method},
-                              {QStringLiteral("params"), params}};
-    return QStringLiteral("```json\n%1\n%2\n```\n\n")
+    for (const QJsonValue &param : pairing["params"].toArray())
+        params.insert(text(param, "name"), param["value"]);
+    const QJsonObject request{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}};
+    return QString("```json\n%1\n%2\n```\n\n")
         .arg(QString::fromUtf8(compactJson(request)),
-             QString::fromUtf8(
-                 compactJson(pairing[QStringLiteral("result")].toObject()[QStringLiteral("value")])));
+             QString::fromUtf8(compactJson(pairing["result"].toObject()["value"])));
 }
 
 /// {x, y, theta}: of an object, or of the objects of a list.
 QString fieldList(const QJsonObject &schema) {
-    if (schema.contains(QStringLiteral("items")))
-        return fieldList(schema[QStringLiteral("items")].toObject());
-    const QStringList names = schema[QStringLiteral("properties")].toObject().keys();
-    return names.isEmpty() ? QString() : QStringLiteral(" {%1}").arg(names.join(QStringLiteral(", ")));
+    if (schema.contains("items"))
+        return fieldList(schema["items"].toObject());
+    const QStringList names = schema["properties"].toObject().keys();
+    return names.isEmpty() ? QString() : QString(" {%1}").arg(names.join(", "));
 }
 
 /// "-32002 another client holds the control; ..."
 QString errorList(const QJsonArray &errors) {
     QStringList texts;
     for (const QJsonValue &error : errors)
-        texts.append(
-            QStringLiteral("%1 %2").arg(error[QStringLiteral("code")].toInt()).arg(text(error, "message")));
-    return texts.join(QStringLiteral("; "));
+        texts.append(QString("%1 %2").arg(error["code"].toInt()).arg(text(error, "message")));
+    return texts.join("; ");
 }
 
 } // namespace
 
 QString methodSection(const QString &heading, const QJsonObject &method) {
-    QString section = QStringLiteral("### %1\n\n%2.\n\n").arg(heading, text(method, "summary"));
+    QString section = QString("### %1\n\n%2.\n\n").arg(heading, text(method, "summary"));
     if (const QString more = keywords(method); !more.isEmpty())
-        section += QStringLiteral("Keywords: %1.\n\n").arg(more);
-    const QJsonArray params = method[QStringLiteral("params")].toArray();
+        section += QString("Keywords: %1.\n\n").arg(more);
+    const QJsonArray params = method["params"].toArray();
     if (!params.isEmpty())
         section += parameterTable(params);
-    const QJsonObject result = method[QStringLiteral("result")].toObject()[schemaKey].toObject();
-    section += QStringLiteral("Result: %1.\n\n").arg(expected(result)) + fieldTable(result);
-    if (const QString errors = errorList(method[QStringLiteral("errors")].toArray()); !errors.isEmpty())
-        section += QStringLiteral("Errors: %1.\n\n").arg(errors);
-    for (const QJsonValue &pairing : method[QStringLiteral("examples")].toArray())
+    const QJsonObject result = method["result"].toObject()[schemaKey].toObject();
+    section += QString("Result: %1.\n\n").arg(expected(result)) + fieldTable(result);
+    if (const QString errors = errorList(method["errors"].toArray()); !errors.isEmpty())
+        section += QString("Errors: %1.\n\n").arg(errors);
+    for (const QJsonValue &pairing : method["examples"].toArray())
         section += example(text(method, "name"), pairing.toObject());
     return section;
 }
@@ -152,11 +144,10 @@ QString methodSection(const QString &heading, const QJsonObject &method) {
 QString topicSection(const QString &heading, const QJsonObject &topic) {
     const QJsonObject schema = topic[schemaKey].toObject();
     const QString more = keywords(topic);
-    return QStringLiteral("### %1\n\n%2.%3\n\n%4Data: %5.\n\n%6")
+    return QString("### %1\n\n%2.%3\n\n%4Data: %5.\n\n%6")
         .arg(heading, text(topic, "summary"),
-             topic[QStringLiteral("snapshot")].toBool() ? QStringLiteral(" Begins with the full state.")
-                                                        : QString(),
-             more.isEmpty() ? more : QStringLiteral("Keywords: %1.\n\n").arg(more), expected(schema),
+             topic["snapshot"].toBool() ? " Begins with the full state." : QString(),
+             more.isEmpty() ? more : QString("Keywords: %1.\n\n").arg(more), expected(schema),
              fieldTable(schema));
 }
 
@@ -168,9 +159,9 @@ QString settingLines(const QJsonObject &schema, const QJsonObject &butFor, const
         const QJsonObject below = property.value().toObject();
         const QString path = prefix + property.key();
         if (below.contains(propertiesKey))
-            lines += settingLines(below, others[property.key()].toObject(), path + QLatin1Char('.'));
+            lines += settingLines(below, others[property.key()].toObject(), path + '.');
         else if (below != others[property.key()].toObject())
-            lines += QStringLiteral("| `%1` | %2 | %3 | %4 | %5 |\n")
+            lines += QString("| `%1` | %2 | %3 | %4 | %5 |\n")
                          .arg(path, cell(expected(below)), cell(shown(below[defaultKey])),
                               text(below, "x-applies"), cell(text(below, "description")));
     }
@@ -178,31 +169,30 @@ QString settingLines(const QJsonObject &schema, const QJsonObject &butFor, const
 }
 
 QString settingTable(const QString &lines) {
-    return QStringLiteral("| path | expected | default | applies | meaning |\n|---|---|---|---|---|\n") +
-           lines;
+    return "| path | expected | default | applies | meaning |\n|---|---|---|---|---|\n" + lines;
 }
 
 QString descriptionAsMarkdown(const QJsonObject &description, const QJsonObject &settingsSchema) {
-    const QJsonObject info = description[QStringLiteral("info")].toObject();
-    QString page = QStringLiteral("# %1\n\n%2. Version %3.\n\n## Commands\n\n")
+    const QJsonObject info = description["info"].toObject();
+    QString page = QString("# %1\n\n%2. Version %3.\n\n## Commands\n\n")
                        .arg(text(info, "title"), text(info, "description"), text(info, "version"));
-    for (const QJsonValue &method : description[QStringLiteral("methods")].toArray())
+    for (const QJsonValue &method : description["methods"].toArray())
         page += methodSection(text(method, "name"), method.toObject());
-    page += QStringLiteral("## Topics\n\n");
-    for (const QJsonValue &topic : description[QStringLiteral("x-topics")].toArray())
+    page += "## Topics\n\n";
+    for (const QJsonValue &topic : description["x-topics"].toArray())
         page += topicSection(text(topic, "name"), topic.toObject());
-    return page + QStringLiteral("## Settings\n\n") + settingTable(settingLines(settingsSchema));
+    return page + "## Settings\n\n" + settingTable(settingLines(settingsSchema));
 }
 
 QString descriptionAsText(const QJsonObject &description) {
-    QString page = QStringLiteral("commands:\n");
-    for (const QJsonValue &method : description[QStringLiteral("methods")].toArray()) {
-        page += QStringLiteral("  %1 {%2}\n      %3\n")
+    QString page = "commands:\n";
+    for (const QJsonValue &method : description["methods"].toArray()) {
+        page += QString("  %1 {%2}\n      %3\n")
                     .arg(text(method, "name"), parameterList(method.toObject()), text(method, "summary"));
     }
-    page += QStringLiteral("topics:\n");
-    for (const QJsonValue &topic : description[QStringLiteral("x-topics")].toArray())
-        page += QStringLiteral("  %1%2\n      %3\n")
+    page += "topics:\n";
+    for (const QJsonValue &topic : description["x-topics"].toArray())
+        page += QString("  %1%2\n      %3\n")
                     .arg(text(topic, "name"), fieldList(topic[schemaKey].toObject()), text(topic, "summary"));
     return page.trimmed();
 }

@@ -28,7 +28,7 @@ int distance(const QString &a, const QString &b) {
 
 /// "pose" of "map.pose", "start" of "record.start".
 QString lastPart(const QString &name) {
-    return name.section(QLatin1Char('.'), -1);
+    return name.section('.', -1);
 }
 
 } // namespace
@@ -61,8 +61,7 @@ QStringList nearest(const QString &word, const QStringList &names) {
 
 QString didYouMean(const QString &word, const QStringList &names) {
     const QStringList near = nearest(word, names);
-    return near.isEmpty() ? QString()
-                          : QStringLiteral("; did you mean %1?").arg(near.join(QStringLiteral(" or ")));
+    return near.isEmpty() ? QString() : QString("; did you mean %1?").arg(near.join(" or "));
 }
 
 } // namespace hermes::ctl

@@ -33,11 +33,9 @@ QJsonObject textsOf(const QVariant &records) {
 }
 
 Error absent(const QString &what) {
-    return {ErrorCode::Disconnected,
-            QStringLiteral(
-                "the network cannot be asked: %1; start avahi-daemon here, or ask one computer: hermesctl "
-                "list --host HOST")
-                .arg(what)};
+    return {ErrorCode::Disconnected, QString("the network cannot be asked: %1; start avahi-daemon here, or "
+                                             "ask one computer: hermesctl list --host HOST")
+                                         .arg(what)};
 }
 
 } // namespace
@@ -49,12 +47,11 @@ NetworkBrowser::NetworkBrowser()
 
 Result<QList<QJsonObject>> NetworkBrowser::look(std::chrono::milliseconds howLong) {
     if (!bus_.isConnected())
-        return absent(QStringLiteral("there is no system bus (D-Bus)"));
+        return absent("there is no system bus (D-Bus)");
     // Before the browser is made, whose path is not known: the first items come at once.
-    bus_.connect(avahi::service, QString(), avahi::browserInterface, QStringLiteral("ItemNew"), this,
+    bus_.connect(avahi::service, QString(), avahi::browserInterface, "ItemNew", this,
                  SLOT(onItem(int, int, QString, QString, QString, uint)));
-    const QDBusMessage begun = bus_.call(avahi::message(QStringLiteral("/"), avahi::serverInterface,
-                                                        QStringLiteral("ServiceBrowserNew"),
+    const QDBusMessage begun = bus_.call(avahi::message("/", avahi::serverInterface, "ServiceBrowserNew",
                                                         {avahi::anyInterface, avahi::anyProtocol,
                                                          avahi::serviceType, QString(), avahi::noFlags}),
                                          QDBus::Block, int(howLong.count()) + 1000);
@@ -69,8 +66,7 @@ Result<QList<QJsonObject>> NetworkBrowser::look(std::chrono::milliseconds howLon
 void NetworkBrowser::onItem(int interface, int protocol, const QString &name, const QString &type,
                             const QString &domain, uint) {
     auto *pending = new QDBusPendingCallWatcher(
-        bus_.asyncCall(avahi::message(QStringLiteral("/"), avahi::serverInterface,
-                                      QStringLiteral("ResolveService"),
+        bus_.asyncCall(avahi::message("/", avahi::serverInterface, "ResolveService",
                                       {interface, protocol, name, type, domain, protocol, avahi::noFlags})),
         this);
     connect(pending, &QDBusPendingCallWatcher::finished, this, [this, pending] {
@@ -86,11 +82,11 @@ void NetworkBrowser::onResolved(const QDBusMessage &reply) {
     if (values.size() < 11)
         return;
     QJsonObject daemon = textsOf(values[9]);
-    daemon.insert(QStringLiteral("host"), values[5].toString());
-    daemon.insert(QStringLiteral("address"), values[7].toString());
-    daemon.insert(QStringLiteral("port"), values[8].toInt());
+    daemon.insert("host", values[5].toString());
+    daemon.insert("address", values[7].toString());
+    daemon.insert("port", values[8].toInt());
     QJsonObject &known = found_[values[2].toString()];
-    if (known.isEmpty() || worth(values[7].toString()) > worth(known[QStringLiteral("address")].toString()))
+    if (known.isEmpty() || worth(values[7].toString()) > worth(known["address"].toString()))
         known = daemon;
 }
 

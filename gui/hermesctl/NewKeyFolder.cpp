@@ -17,8 +17,7 @@ QString placeOf(const QString &path) {
 }
 
 Error failed(const QString &path, const QString &why) {
-    return {ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, why),
-            QJsonObject{{QStringLiteral("path"), path}}};
+    return {ErrorCode::InputOutput, QString("%1: %2").arg(path, why), QJsonObject{{"path", path}}};
 }
 
 } // namespace
@@ -31,19 +30,19 @@ Result<void> NewKeyFolder::check() const {
     if (!info.exists() && !info.isSymLink())
         return {};
     if (!info.isDir())
-        return failed(place_, QStringLiteral("is no folder"));
+        return failed(place_, "is no folder");
     if (QDir(place_).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::System | QDir::NoDotAndDotDot))
         return {};
     const bool hasKeys = QFile::exists(QDir(place_).filePath(KeyFolder::keyFile()));
-    return failed(place_, hasKeys ? QStringLiteral("there are keys already; they are not replaced")
-                                  : QStringLiteral("the folder is not empty; nothing in it is replaced"));
+    return failed(place_, hasKeys ? "there are keys already; they are not replaced"
+                                  : "the folder is not empty; nothing in it is replaced");
 }
 
 Result<void> NewKeyFolder::stage(const KeyBundle &keys) {
     QDir().mkpath(QFileInfo(place_).path());
     // Only its owner may enter. Nobody knows its name before: there is no other one, nor a link, in its
     // place.
-    staged_ = std::make_unique<QTemporaryDir>(place_ + QStringLiteral("-XXXXXX"));
+    staged_ = std::make_unique<QTemporaryDir>(place_ + "-XXXXXX");
     if (!staged_->isValid())
         return failed(place_, staged_->errorString());
     if (const auto written = keys.write(staged_->path()); !written)
@@ -57,8 +56,7 @@ Result<void> NewKeyFolder::stage(const KeyBundle &keys) {
 Result<void> NewKeyFolder::keep() {
     if (!takePlace(staged_->path(), place_))
         return failed(place_,
-                      qt_error_string() +
-                          QStringLiteral("; nothing was kept here: revoke the keys where they were made"));
+                      qt_error_string() + "; nothing was kept here: revoke the keys where they were made");
     staged_->setAutoRemove(false);
     return {};
 }

@@ -17,7 +17,7 @@ namespace {
 
 struct Destination {
     FILE *file = stdout; // nullptr: not made yet
-    QString name = QStringLiteral("stdout");
+    QString name = "stdout";
     bool overwrites = false;
     bool isGone = false;
     bool jsonNotes = false;
@@ -27,13 +27,11 @@ Destination destination;
 /// why: otherwise what the system says.
 [[noreturn]] void failToWrite(const QString &why = {}) {
     const QString text =
-        QStringLiteral("%1 cannot be written: %2")
+        QString("%1 cannot be written: %2")
             .arg(destination.name, why.isEmpty() ? QString::fromUtf8(std::strerror(errno)) : why);
-    const QJsonObject object{{QStringLiteral("code"), int(ErrorCode::InputOutput)},
-                             {QStringLiteral("message"), text}};
-    printError((destination.jsonNotes ? QString::fromUtf8(compactJson(object))
-                                      : QStringLiteral("hermesctl: ") + text) +
-               QLatin1Char('\n'));
+    const QJsonObject object{{"code", int(ErrorCode::InputOutput)}, {"message", text}};
+    printError((destination.jsonNotes ? QString::fromUtf8(compactJson(object)) : "hermesctl: " + text) +
+               '\n');
     std::_Exit(1);
 }
 
@@ -54,10 +52,10 @@ FILE *opened() {
 
 Result<void> setOutput(const QString &file, bool force) {
     if (!force && QFile::exists(file))
-        return Error(ErrorCode::InputOutput,
-                     QStringLiteral("--out %1: the file exists; --force overwrites it, or take another name")
-                         .arg(file),
-                     QJsonObject{{QStringLiteral("path"), file}});
+        return Error(
+            ErrorCode::InputOutput,
+            QString("--out %1: the file exists; --force overwrites it, or take another name").arg(file),
+            QJsonObject{{"path", file}});
     destination.file = nullptr;
     destination.name = file;
     destination.overwrites = force;
@@ -76,7 +74,7 @@ void checkOutput() {
 void printLine(const QString &text) {
     if (destination.isGone)
         return;
-    std::fputs((printable(text, false) + QLatin1Char('\n')).toUtf8().constData(), opened());
+    std::fputs((printable(text, false) + '\n').toUtf8().constData(), opened());
     checkOutput();
 }
 
@@ -100,11 +98,11 @@ QString printable(const QString &text, bool isOneLine) {
     QString result;
     result.reserve(text.size());
     for (const QChar c : text) {
-        const bool isLayout = !isOneLine && (c == QLatin1Char('\n') || c == QLatin1Char('\t'));
+        const bool isLayout = !isOneLine && (c == '\n' || c == '\t');
         const bool isCommand = c.category() == QChar::Other_Control || c.category() == QChar::Other_Format ||
                                c == QChar::LineSeparator || c == QChar::ParagraphSeparator;
         if (isCommand && !isLayout)
-            result += QStringLiteral("\\u%1").arg(c.unicode(), 4, 16, QLatin1Char('0'));
+            result += QString("\\u%1").arg(c.unicode(), 4, 16, QChar('0'));
         else
             result += c;
     }
@@ -116,10 +114,9 @@ void printError(const QString &text) {
 }
 
 void note(const QString &text) {
-    printError((destination.jsonNotes
-                    ? QString::fromUtf8(compactJson(QJsonObject{{QStringLiteral("note"), text}}))
-                    : QStringLiteral("hermesctl: ") + text) +
-               QLatin1Char('\n'));
+    printError((destination.jsonNotes ? QString::fromUtf8(compactJson(QJsonObject{{"note", text}}))
+                                      : "hermesctl: " + text) +
+               '\n');
 }
 
 void runStream(QEventLoop &loop) {

@@ -25,28 +25,26 @@ std::chrono::milliseconds howLong(const Arguments &arguments) {
 }
 
 QString joinCommand(const QString &address, quint16 port, const PairingCode &code) {
-    return QStringLiteral("hermesctl keys join %1 %2").arg(PairingAddress{address, port}.text(), code.text());
+    return QString("hermesctl keys join %1 %2").arg(PairingAddress{address, port}.text(), code.text());
 }
 
 void tellHow(const PairingCode &code, quint16 port, const Arguments &arguments) {
     const QStringList addresses = ownAddresses();
     const double seconds = double(howLong(arguments).count()) / 1000;
     if (arguments.json)
-        return printJson(
-            QJsonObject{{QStringLiteral("code"), code.text()},
-                        {QStringLiteral("addresses"), QJsonArray::fromStringList(addresses)},
-                        {QStringLiteral("port"), port},
-                        {QStringLiteral("seconds"), seconds},
-                        {QStringLiteral("command"), joinCommand(addresses.first(), port, code)}});
-    printLine(QStringLiteral("The code for %1 is  %2  , valid for one computer and %3 s.\n"
-                             "Waiting on port %4. On the other computer type:\n  %5")
+        return printJson(QJsonObject{{"code", code.text()},
+                                     {"addresses", QJsonArray::fromStringList(addresses)},
+                                     {"port", port},
+                                     {"seconds", seconds},
+                                     {"command", joinCommand(addresses.first(), port, code)}});
+    printLine(QString("The code for %1 is  %2  , valid for one computer and %3 s.\n"
+                      "Waiting on port %4. On the other computer type:\n  %5")
                   .arg(arguments.words.first(), code.text())
                   .arg(seconds)
                   .arg(port)
                   .arg(joinCommand(addresses.first(), port, code)));
     if (addresses.size() > 1)
-        printLine(QStringLiteral("or with another address of this one: %1")
-                      .arg(addresses.mid(1).join(QStringLiteral(", "))));
+        printLine(QString("or with another address of this one: %1").arg(addresses.mid(1).join(", ")));
 }
 
 /// What is left of the time, on one line of a terminal.
@@ -74,13 +72,12 @@ private:
 
 Result<PairingServer::Joined> waitForOther(PairingServer &server, const Arguments &arguments) {
     const CountDown countDown(arguments.json);
-    return server.wait(
-        howLong(arguments),
-        {[&countDown](auto left) { countDown.show(left); },
-         [&countDown](const QString &address, int left) {
-             countDown.clear();
-             note(QStringLiteral("a wrong code from %1; attempts left: %2").arg(address).arg(left));
-         }});
+    return server.wait(howLong(arguments),
+                       {[&countDown](auto left) { countDown.show(left); },
+                        [&countDown](const QString &address, int left) {
+                            countDown.clear();
+                            note(QString("a wrong code from %1; attempts left: %2").arg(address).arg(left));
+                        }});
 }
 
 Result<void> handOver(PairingStream &stream, const QString &folder) {
@@ -89,7 +86,7 @@ Result<void> handOver(PairingStream &stream, const QString &folder) {
         return keys.error();
     const QByteArray json = keys->toJson();
     if (json.size() > KeyBundle::maxJsonBytes)
-        return Error(ErrorCode::OverLimit, QStringLiteral("the list of revoked certificates is too long"));
+        return Error(ErrorCode::OverLimit, "the list of revoked certificates is too long");
     const QDeadlineTimer deadline(longestTransfer);
     if (const auto sent = stream.send(json, deadline); !sent)
         return sent;
@@ -97,29 +94,26 @@ Result<void> handOver(PairingStream &stream, const QString &folder) {
     if (!answer)
         return answer.error();
     if (*answer != pairingStored)
-        return Error(ErrorCode::InvalidRequest, QStringLiteral("the other side answers with something else"));
+        return Error(ErrorCode::InvalidRequest, "the other side answers with something else");
     return stream.send(pairingAccepted, deadline);
 }
 
 Error notTaken(const Authority &authority, const QString &name, const QString &folder, const Error &why) {
     const auto back = authority.takeBack(folder);
-    const QString what = QStringLiteral("the keys of %1 were not taken over (%2); ").arg(name, why.message);
+    const QString what = QString("the keys of %1 were not taken over (%2); ").arg(name, why.message);
     return {ErrorCode(why.code),
-            what +
-                (back ? QStringLiteral("their certificate is revoked, and their folder removed: begin anew")
-                      : QStringLiteral("their certificate cannot be taken back: %1; hermesctl keys revoke %2")
-                            .arg(back.error().message, name))};
+            what + (back ? "their certificate is revoked, and their folder removed: begin anew"
+                         : QString("their certificate cannot be taken back: %1; hermesctl keys revoke %2")
+                               .arg(back.error().message, name))};
 }
 
 void tellSuccess(const Arguments &arguments, const QString &address, const QString &serial) {
     const QString &name = arguments.words.first();
     if (arguments.json)
-        printJson(QJsonObject{{QStringLiteral("name"), name},
-                              {QStringLiteral("role"), arguments.role},
-                              {QStringLiteral("serial"), serial},
-                              {QStringLiteral("address"), address}});
+        printJson(
+            QJsonObject{{"name", name}, {"role", arguments.role}, {"serial", serial}, {"address", address}});
     else
-        printLine(QStringLiteral("%1 (%2) at %3 has its keys; serial number %4.")
+        printLine(QString("%1 (%2) at %3 has its keys; serial number %4.")
                       .arg(name, arguments.role, address, serial));
 }
 
@@ -136,8 +130,7 @@ Result<void> give(const Authority &authority, const PairingServer::Joined &joine
     if (!keys || !given)
         return notTaken(authority, name, *folder, keys ? given.error() : keys.error());
     if (!QDir(*folder).removeRecursively()) // the only copy of the key is there now
-        note(QStringLiteral("%1 cannot be removed: delete it, the key in it is in use elsewhere")
-                 .arg(*folder));
+        note(QString("%1 cannot be removed: delete it, the key in it is in use elsewhere").arg(*folder));
     tellSuccess(arguments, joined.address, toPeer(QSslCertificate(keys->certificate)).serial);
     return {};
 }

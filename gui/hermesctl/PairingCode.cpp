@@ -18,8 +18,7 @@ constexpr uint64_t scryptMemory = 64 << 20;
 Result<PairingCode> PairingCode::make() {
     unsigned char random[length];
     if (RAND_priv_bytes(random, sizeof random) != 1)
-        return Error(ErrorCode::InternalError,
-                     QStringLiteral("the system gives no random numbers for a code"));
+        return Error(ErrorCode::InternalError, "the system gives no random numbers for a code");
     QByteArray characters;
     for (const unsigned char byte : random)
         characters.append(alphabet.at(byte % alphabet.size())); // 256 is a multiple: all equally often
@@ -29,16 +28,16 @@ Result<PairingCode> PairingCode::make() {
 Result<PairingCode> PairingCode::read(const QString &typed) {
     QByteArray characters;
     for (const QChar c : typed.toUpper()) {
-        if (c == QLatin1Char('-') || c.isSpace())
+        if (c == '-' || c.isSpace())
             continue;
         if (c.unicode() > 127 || !alphabet.contains(c.toLatin1()))
             return Error(ErrorCode::InvalidParams,
-                         QStringLiteral("a code has letters and digits, but neither 0, O, 1 nor I: \"%1\"")
+                         QString("a code has letters and digits, but neither 0, O, 1 nor I: \"%1\"")
                              .arg(typed.left(80)));
         characters.append(c.toLatin1());
     }
     if (characters.size() != length)
-        return Error(ErrorCode::InvalidParams, QStringLiteral("a code has %1 characters, \"%2\" has %3")
+        return Error(ErrorCode::InvalidParams, QString("a code has %1 characters, \"%2\" has %3")
                                                    .arg(length)
                                                    .arg(typed.left(80))
                                                    .arg(characters.size()));
@@ -47,7 +46,7 @@ Result<PairingCode> PairingCode::read(const QString &typed) {
 
 QString PairingCode::text() const {
     const QString all = QString::fromLatin1(characters_);
-    return all.left(length / 2) + QLatin1Char('-') + all.mid(length / 2);
+    return all.left(length / 2) + '-' + all.mid(length / 2);
 }
 
 Result<PairingSecret> PairingCode::secret() const {
@@ -57,8 +56,7 @@ Result<PairingSecret> PairingCode::secret() const {
                        reinterpret_cast<const unsigned char *>(salt.constData()), std::size_t(salt.size()),
                        scryptN, scryptR, scryptP, scryptMemory, made.bytes.data(), made.bytes.size()) == 1;
     if (!done)
-        return Error(ErrorCode::InternalError,
-                     QStringLiteral("no key can be made of the code: are 32 MB of memory free?"));
+        return Error(ErrorCode::InternalError, "no key can be made of the code: are 32 MB of memory free?");
     return made;
 }
 

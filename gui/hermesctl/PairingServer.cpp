@@ -35,11 +35,10 @@ Result<void> PairingServer::listen(quint16 port) {
     if (listening_ != sockets::none)
         return {};
     const QString why = qt_error_string(made.error);
-    return Error(
-        ErrorCode::InputOutput,
-        made.isMade
-            ? QStringLiteral("cannot wait on port %1: %2; take another one with --port").arg(port).arg(why)
-            : QStringLiteral("no socket can be made: ") + why);
+    return Error(ErrorCode::InputOutput,
+                 made.isMade
+                     ? QString("cannot wait on port %1: %2; take another one with --port").arg(port).arg(why)
+                     : "no socket can be made: " + why);
 }
 
 Result<PairingServer::Joined> PairingServer::wait(std::chrono::milliseconds howLong,
@@ -63,7 +62,7 @@ Result<PairingServer::Joined> PairingServer::wait(std::chrono::milliseconds howL
     }
     close();
     return Error(ErrorCode::TimedOut,
-                 QStringLiteral("nobody joined with the code within %1 s; it is no longer valid")
+                 QString("nobody joined with the code within %1 s; it is no longer valid")
                      .arg(double(howLong.count()) / 1000));
 }
 
@@ -107,10 +106,10 @@ Result<void> PairingServer::advance(const Listener &listener) {
         if (state == PairingStream::Handshake::Failed && guest->stream->isWrongSecret()) {
             listener.wrong(guest->address, maxWrong - ++wrong_);
             if (wrong_ == maxWrong)
-                return Error(ErrorCode::NotAuthorised,
-                             QStringLiteral(
-                                 "the code was wrong %1 times; it is no longer valid, and no keys were made")
-                                 .arg(maxWrong));
+                return Error(
+                    ErrorCode::NotAuthorised,
+                    QString("the code was wrong %1 times; it is no longer valid, and no keys were made")
+                        .arg(maxWrong));
         }
         const bool ends = state == PairingStream::Handshake::Failed || guest->deadline.hasExpired();
         guest = ends ? guests_.erase(guest) : std::next(guest);
@@ -127,7 +126,7 @@ QStringList ownAddresses() {
         (isFour ? four : six).append(address.toString());
     }
     const QStringList all = four + six;
-    return all.isEmpty() ? QStringList(QStringLiteral("127.0.0.1")) : all;
+    return all.isEmpty() ? QStringList("127.0.0.1") : all;
 }
 
 } // namespace hermes::ctl

@@ -17,7 +17,7 @@ constexpr int maxAtOnce = 1 << 16;
 
 QString reasonOf(unsigned long error) {
     const char *const text = ERR_reason_error_string(error);
-    return text ? QString::fromLatin1(text) : QStringLiteral("the connection was closed");
+    return text ? QString::fromLatin1(text) : "the connection was closed";
 }
 
 unsigned copySecret(const PairingSecret &secret, unsigned char *to, unsigned most) {
@@ -88,7 +88,7 @@ PairingStream::~PairingStream() {
 
 PairingStream::Handshake PairingStream::handshake() {
     if (!ssl_) {
-        failure_ = QStringLiteral("OpenSSL here has no ") + QLatin1String(suite);
+        failure_ = QString("OpenSSL here has no ") + suite;
         return Handshake::Failed;
     }
     ERR_clear_error();
@@ -120,8 +120,7 @@ sockets::Awaited PairingStream::awaited() const {
 
 Result<void> PairingStream::waitAfter(int error, const QDeadlineTimer &deadline) const {
     if (error != SSL_ERROR_WANT_READ && error != SSL_ERROR_WANT_WRITE) {
-        const Error ended(ErrorCode::Disconnected,
-                          QStringLiteral("the other side: ") + reasonOf(ERR_peek_error()));
+        const Error ended(ErrorCode::Disconnected, "the other side: " + reasonOf(ERR_peek_error()));
         ERR_clear_error();
         return ended;
     }
@@ -131,8 +130,7 @@ Result<void> PairingStream::waitAfter(int error, const QDeadlineTimer &deadline)
 Result<void> PairingStream::waitFor(bool toWrite, const QDeadlineTimer &deadline) const {
     std::vector<sockets::Awaited> one{{socket_, toWrite}};
     const bool isExpired = deadline.hasExpired() || !sockets::waitFor(one, int(deadline.remainingTime()));
-    return isExpired ? Error(ErrorCode::TimedOut, QStringLiteral("the other side says nothing"))
-                     : Result<void>();
+    return isExpired ? Error(ErrorCode::TimedOut, "the other side says nothing") : Result<void>();
 }
 
 Result<void> PairingStream::handshakeUntil(const QDeadlineTimer &deadline) {
@@ -156,7 +154,7 @@ Result<void> PairingStream::send(const QByteArray &frame, const QDeadlineTimer &
         if (result > 0) {
             sent += result;
             if (deadline.hasExpired())
-                return Error(ErrorCode::TimedOut, QStringLiteral("the other side reads too slowly"));
+                return Error(ErrorCode::TimedOut, "the other side reads too slowly");
         } else if (const auto ready = waitAfter(SSL_get_error(ssl_.get(), result), deadline); !ready) {
             return ready;
         }
@@ -173,7 +171,7 @@ Result<QByteArray> PairingStream::receiveBytes(int count, const QDeadlineTimer &
         if (result > 0) {
             bytes.append(part, result);
             if (deadline.hasExpired())
-                return Error(ErrorCode::TimedOut, QStringLiteral("the other side sends too slowly"));
+                return Error(ErrorCode::TimedOut, "the other side sends too slowly");
         } else if (const auto ready = waitAfter(SSL_get_error(ssl_.get(), result), deadline); !ready) {
             return ready.error();
         }
@@ -187,10 +185,9 @@ Result<QByteArray> PairingStream::receive(int maxBytes, const QDeadlineTimer &de
         return length.error();
     const auto count = qFromBigEndian<quint32>(length->constData());
     if (count > quint32(maxBytes))
-        return Error(ErrorCode::OverLimit,
-                     QStringLiteral("the other side wants to send %1 bytes, %2 at most are taken")
-                         .arg(count)
-                         .arg(maxBytes));
+        return Error(
+            ErrorCode::OverLimit,
+            QString("the other side wants to send %1 bytes, %2 at most are taken").arg(count).arg(maxBytes));
     return receiveBytes(int(count), deadline);
 }
 

@@ -38,13 +38,13 @@ Result<QJsonValue> PatientCall::run(const QString &method, const QJsonValue &par
 
 void PatientCall::ask() {
     client_.call(
-        QStringLiteral("daemon.info"), QJsonObject(),
+        "daemon.info", QJsonObject(),
         [this, guard = QPointer<QEventLoop>(&loop_)](const Result<QJsonValue> &info) {
             if (!guard || result_)
                 return;
             if (info || !info.error().is(ErrorCode::TimedOut)) // whatever it answers
                 return QTimer::singleShot(pause, &loop_, [this] { ask(); });
-            end(Error(ErrorCode::TimedOut, QStringLiteral("%1: no reply within %2 s")
+            end(Error(ErrorCode::TimedOut, QString("%1: no reply within %2 s")
                                                .arg(method_)
                                                .arg(double(begun_.elapsed()) / 1000, 0, 'f', 0)));
         },

@@ -13,10 +13,10 @@ bool canAsk() {
 }
 
 QString answerTo(const QString &question) {
-    printError(question + QLatin1Char(' '));
+    printError(question + ' ');
     std::string line;
     if (!std::getline(std::cin, line))
-        return QStringLiteral("q");
+        return "q";
     return QString::fromStdString(line).trimmed().toLower();
 }
 

@@ -12,8 +12,8 @@
 namespace hermes::ctl {
 namespace {
 
-const QString methodsKey = QStringLiteral("methods");
-const QString topicsKey = QStringLiteral("x-topics");
+const QString methodsKey = "methods";
+const QString topicsKey = "x-topics";
 
 const char *const introduction = R"(# Protocol reference
 
@@ -38,16 +38,16 @@ A parameter without a default is marked `required` or `optional`. A setting appl
 QString anchor(const QString &heading) {
     QString result;
     for (const QChar c : heading.toLower()) {
-        if (c.isLetterOrNumber() || c == QLatin1Char('_') || c == QLatin1Char('-'))
+        if (c.isLetterOrNumber() || c == '_' || c == '-')
             result += c;
-        else if (c == QLatin1Char(' '))
-            result += QLatin1Char('-');
+        else if (c == ' ')
+            result += '-';
     }
     return result;
 }
 
 QString link(const QString &shown, const QString &heading) {
-    return QStringLiteral("[%1](#%2)").arg(shown, anchor(heading));
+    return QString("[%1](#%2)").arg(shown, anchor(heading));
 }
 
 /// What is in a list of all daemons, and the same in each.
@@ -92,49 +92,48 @@ struct Chapter {
                      QString (*section)(const QString &, const QJsonObject &)) {
         QStringList links;
         for (const QJsonValue &one : list) {
-            const QString name = one[QStringLiteral("name")].toString();
+            const QString name = one["name"].toString();
             links.append(link(name, prefix + name));
             page += section(prefix + name, one.toObject());
         }
         if (!links.isEmpty())
-            contents += QStringLiteral("  * %1: %2\n").arg(title, links.join(QStringLiteral(", ")));
+            contents += QString("  * %1: %2\n").arg(title, links.join(", "));
     }
 };
 
 Chapter chapterOf(const QString &name, const QString &title, const QString &text, const QJsonArray &methods,
                   const QJsonArray &topics, const QString &settings) {
     Chapter chapter;
-    chapter.contents = QStringLiteral("* %1\n").arg(link(title, title));
-    chapter.page = QStringLiteral("## %1\n\n%2.\n\n").arg(title, text);
-    chapter.addSections(QStringLiteral("commands"), name + QLatin1Char(' '), methods, methodSection);
-    chapter.addSections(QStringLiteral("topics"), name + QStringLiteral(" topic "), topics, topicSection);
+    chapter.contents = QString("* %1\n").arg(link(title, title));
+    chapter.page = QString("## %1\n\n%2.\n\n").arg(title, text);
+    chapter.addSections("commands", name + ' ', methods, methodSection);
+    chapter.addSections("topics", name + " topic ", topics, topicSection);
     if (settings.isEmpty())
         return chapter;
-    const QString heading = name + QStringLiteral(" settings");
-    chapter.contents += QStringLiteral("  * %1\n").arg(link(QStringLiteral("settings"), heading));
-    chapter.page += QStringLiteral("### %1\n\n%2\n").arg(heading, settingTable(settings));
+    const QString heading = name + " settings";
+    chapter.contents += QString("  * %1\n").arg(link("settings", heading));
+    chapter.page += QString("### %1\n\n%2\n").arg(heading, settingTable(settings));
     return chapter;
 }
 
 Result<DaemonDescription> describe(Client &client, const Arguments &arguments) {
-    const auto info = ask(client, arguments, QStringLiteral("daemon.info"));
+    const auto info = ask(client, arguments, "daemon.info");
     if (!info)
         return info.error();
-    const auto description = ask(client, arguments, QStringLiteral("rpc.discover"));
+    const auto description = ask(client, arguments, "rpc.discover");
     if (!description)
         return description.error();
-    const auto settings = ask(client, arguments, QStringLiteral("settings.schema"));
+    const auto settings = ask(client, arguments, "settings.schema");
     if (!settings)
         return settings.error();
-    return DaemonDescription{(*info)[QStringLiteral("name")].toString(), description->toObject(),
-                             settings->toObject()};
+    return DaemonDescription{(*info)["name"].toString(), description->toObject(), settings->toObject()};
 }
 
 QJsonObject asJson(const std::vector<DaemonDescription> &daemons) {
     QJsonObject all;
     for (const DaemonDescription &daemon : daemons)
-        all.insert(daemon.name, QJsonObject{{QStringLiteral("description"), daemon.description},
-                                            {QStringLiteral("settings"), daemon.settings}});
+        all.insert(daemon.name,
+                   QJsonObject{{"description", daemon.description}, {"settings", daemon.settings}});
     return all;
 }
 
@@ -149,22 +148,21 @@ QString referenceAsMarkdown(const std::vector<DaemonDescription> &daemons) {
         settings = alike(settings, daemon.settings);
     std::vector<Chapter> chapters;
     if (!isOne)
-        chapters.push_back(chapterOf(QStringLiteral("all"), QStringLiteral("Every daemon"),
-                                     QStringLiteral("What all have alike"), methods, topics,
-                                     settingLines(settings)));
+        chapters.push_back(
+            chapterOf("all", "Every daemon", "What all have alike", methods, topics, settingLines(settings)));
     for (const DaemonDescription &daemon : daemons) {
-        const QJsonObject info = daemon.description[QStringLiteral("info")].toObject();
-        chapters.push_back(chapterOf(daemon.name, daemon.name, info[QStringLiteral("description")].toString(),
+        const QJsonObject info = daemon.description["info"].toObject();
+        chapters.push_back(chapterOf(daemon.name, daemon.name, info["description"].toString(),
                                      without(daemon.description[methodsKey].toArray(), methods),
                                      without(daemon.description[topicsKey].toArray(), topics),
                                      settingLines(daemon.settings, settings)));
     }
-    QString page = QLatin1String(introduction), rest;
+    QString page = introduction, rest;
     for (const Chapter &chapter : chapters) {
         page += chapter.contents;
         rest += chapter.page;
     }
-    return page + QLatin1Char('\n') + rest;
+    return page + '\n' + rest;
 }
 
 Result<void> documentAll(const Arguments &arguments) {
@@ -182,13 +180,12 @@ Result<void> documentAll(const Arguments &arguments) {
             return connected;
         const auto daemon = describe(client, arguments);
         if (!daemon)
-            return Error(ErrorCode(daemon.error().code),
-                         *address + QStringLiteral(": ") + daemon.error().message);
+            return Error(ErrorCode(daemon.error().code), *address + ": " + daemon.error().message);
         daemons.push_back(*daemon);
     }
     if (daemons.empty())
         return Error(ErrorCode::Disconnected,
-                     QStringLiteral("no daemon answers at its default port on %1").arg(arguments.host));
+                     QString("no daemon answers at its default port on %1").arg(arguments.host));
     if (arguments.json)
         printJson(asJson(daemons));
     else

@@ -16,7 +16,7 @@ namespace {
 
 /// The supervisor, the first of --daemons, else at its default port; the motor control is the second.
 Result<void> connectTo(Client &client, const Arguments &arguments, int place, const char *usual) {
-    const auto address = daemonAddress(arguments.daemons.value(place, QLatin1String(usual)), arguments.host);
+    const auto address = daemonAddress(arguments.daemons.value(place, usual), arguments.host);
     if (!address)
         return address.error();
     return connectOnce(client, *address, arguments.timeout);

@@ -31,7 +31,7 @@ public:
         QObject::connect(client, &Client::connected, &loop_, [this, client] {
             waiting_.insert(client);
             client->call(
-                method_, QJsonObject{{QStringLiteral("wait_s"), wait_s}},
+                method_, QJsonObject{{"wait_s", wait_s}},
                 [this, client](const Result<QJsonValue> &result) { take(client, result); },
                 arguments_.timeout, Client::Repeats::AtOnce);
         });
@@ -51,18 +51,16 @@ public:
 
     Result<void> outcome() {
         for (const Client *client : qAsConst(waiting_))
-            note(client->address(), false, QStringLiteral("does not answer"));
+            note(client->address(), false, "does not answer");
         if (arguments_.json)
             printJson(told_);
         if (told_.isEmpty())
-            return Error(
-                ErrorCode::Disconnected,
-                QStringLiteral("no robot is there: no daemon at %1, or announced on the network, has "
-                               "%2; hermesctl call HOST:PORT %2 calls another one")
-                    .arg(arguments_.host, method_));
-        return unconfirmed_.isEmpty()
-                   ? Result<void>()
-                   : Error(ErrorCode::DeviceFault, unconfirmed_.join(QStringLiteral("; ")));
+            return Error(ErrorCode::Disconnected,
+                         QString("no robot is there: no daemon at %1, or announced on the network, has %2; "
+                                 "hermesctl call HOST:PORT %2 calls another one")
+                             .arg(arguments_.host, method_));
+        return unconfirmed_.isEmpty() ? Result<void>()
+                                      : Error(ErrorCode::DeviceFault, unconfirmed_.join("; "));
     }
 
 private:
@@ -71,11 +69,11 @@ private:
     void take(Client *client, const Result<QJsonValue> &result) {
         if (!result && result.error().is(ErrorCode::MethodNotFound)) // perhaps one who knows others
             return client->call(
-                QStringLiteral("process.list"), QJsonObject(),
+                "process.list", QJsonObject(),
                 [this, client](const Result<QJsonValue> &list) {
                     for (const QJsonValue &process : list ? (*list)["processes"].toArray() : QJsonArray())
                         if (const int port = process["port"].toInt(); port != 0)
-                            stop(QStringLiteral("%1:%2").arg(arguments_.host).arg(port));
+                            stop(QString("%1:%2").arg(arguments_.host).arg(port));
                     finish(client);
                 },
                 arguments_.timeout);
@@ -84,19 +82,17 @@ private:
         note(client->address(), told && told->confirmed,
              !result           ? result.error().message
              : !told           ? report.text()
-             : told->confirmed ? QStringLiteral("stands")
+             : told->confirmed ? "stands"
                                : told->text);
         finish(client);
     }
 
     void note(const QString &address, bool stands, const QString &text) {
-        told_.append(QJsonObject{{QStringLiteral("address"), address},
-                                 {QStringLiteral("confirmed"), stands},
-                                 {QStringLiteral("text"), text}});
+        told_.append(QJsonObject{{"address", address}, {"confirmed", stands}, {"text", text}});
         if (!stands)
-            unconfirmed_.append(address + QStringLiteral(": ") + text);
+            unconfirmed_.append(address + ": " + text);
         else if (!arguments_.json)
-            printLine(printable(address + QStringLiteral(": ") + text));
+            printLine(printable(address + ": " + text));
     }
 
     void finish(Client *client) {
@@ -129,9 +125,7 @@ Result<void> stopAll(const Arguments &arguments, const QString &method) {
     if (arguments.words.isEmpty()) {
         if (const auto found = NetworkBrowser().look(shortly)) // those from before are on their way
             for (const QJsonObject &daemon : *found)
-                stopping.stop(QStringLiteral("%1:%2")
-                                  .arg(daemon[QStringLiteral("address")].toString())
-                                  .arg(daemon[QStringLiteral("port")].toInt()));
+                stopping.stop(QString("%1:%2").arg(daemon["address"].toString()).arg(daemon["port"].toInt()));
     }
     stopping.wait();
     return stopping.outcome();
@@ -140,11 +134,11 @@ Result<void> stopAll(const Arguments &arguments, const QString &method) {
 } // namespace
 
 Result<void> stopRobots(const Arguments &arguments) {
-    return stopAll(arguments, QStringLiteral("motor.stop"));
+    return stopAll(arguments, "motor.stop");
 }
 
 Result<void> emergencyStopRobots(const Arguments &arguments) {
-    return stopAll(arguments, QStringLiteral("motor.estop"));
+    return stopAll(arguments, "motor.estop");
 }
 
 } // namespace hermes::ctl

@@ -2,44 +2,35 @@
 
 #include "gui/hermesctl/Commands.h"
 
-namespace hermes::ctl {
+#include <variant>
 
-/// What a word of a command line stands for.
-enum class Word {
-    Nothing,
-    Daemon,
-    Method,
-    Parameter,
-    SettingPath,
-    SettingValue,
-    Topic,
-    Session,
-    Shell,
-    Velocity,
-    Sample
-};
+namespace hermes::ctl {
 
 /// A command of hermesctl: how it is called, and what runs it.
 struct Subcommand {
-    const char *name; ///< two words for those of `record` and `keys`
-    int leastWords;
-    int maxWords;
+    /// As "get D [PATH]": its name, the words that have to follow, and in brackets those that may; "..."
+    /// after the last one stands for more like it.
     const char *usage;
     const char *summary;
-    std::vector<Word> words; ///< the last one stands for those that follow, too
-    const char *options;     ///< of its own, separated by spaces
-    DaemonCommand ofDaemon;  ///< one of both
-    RobotCommand ofRobot;
+    const char *ownOptions; ///< separated by spaces
+    std::variant<DaemonCommand, RobotCommand> run;
     RobotCommand check = nullptr; ///< of the command line, before anybody is asked
-};
 
-constexpr int anyNumber = 1000000;
+    QString name() const; ///< two words for those of `record` and `keys`
+    QStringList options() const;
+    bool takes(int words) const; ///< whether so many words may follow the name
+    /// What the word at a place after the name stands for: "D", "PATH=VALUE"; empty where there is none.
+    QString meaning(int place) const;
+
+private:
+    QStringList words() const;
+};
 
 /// In the order of the help.
 const std::vector<Subcommand> &subcommands();
 
-/// The first words of all, each once.
-QStringList subcommandNames();
+/// The first words of all, each once; or the second words of those that begin with one, as `record`.
+QStringList subcommandNames(const QString &first = {});
 
 /// nullptr where there is none.
 const Subcommand *findSubcommand(const QString &name);

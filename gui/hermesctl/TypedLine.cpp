@@ -13,9 +13,9 @@ QStringList splitLine(const QString &line) {
         const QChar c = line[i];
         if (!quote.isNull() && c == quote)
             quote = QChar();
-        else if (quote.isNull() && (c == QLatin1Char('"') || c == QLatin1Char('\'')))
+        else if (quote.isNull() && (c == '"' || c == '\''))
             quote = c;
-        else if (c == QLatin1Char('\\') && i + 1 < line.size() && quote != QLatin1Char('\''))
+        else if (c == '\\' && i + 1 < line.size() && quote != '\'')
             words.last() += line[++i];
         else if (quote.isNull() && c.isSpace())
             words.append(QString());
@@ -27,22 +27,6 @@ QStringList splitLine(const QString &line) {
     return words << last;
 }
 
-void take(Arguments &arguments, const QString &option, const QString &value) {
-    if (option == QStringLiteral("--host"))
-        arguments.host = value;
-    else if (option == QStringLiteral("--daemons"))
-        arguments.daemons = value.split(QLatin1Char(','));
-}
-
-void takeWord(Arguments &arguments, const QString &word) {
-    if (arguments.command.isEmpty())
-        arguments.command = word;
-    else if (hasSecondWord(arguments.command))
-        arguments.command += QLatin1Char(' ') + word;
-    else
-        arguments.words.append(word);
-}
-
 } // namespace
 
 TypedLine TypedLine::read(const QString &line) {
@@ -52,21 +36,24 @@ TypedLine TypedLine::read(const QString &line) {
         result.current = words.takeLast();
     for (int i = 0; i < words.size(); ++i) {
         const QString &word = words[i];
-        if (!word.startsWith(QLatin1Char('-')))
-            takeWord(result.arguments, word);
-        else if (!Arguments::optionsWithValue().contains(word))
-            take(result.arguments, word.section(QLatin1Char('='), 0, 0), word.section(QLatin1Char('='), 1));
+        const Option *const option = findOption(word.section('=', 0, 0));
+        if (!word.startsWith('-'))
+            result.arguments.takeWord(word);
+        else if (!option)
+            continue;
+        else if (!option->hasValue() || word.contains('='))
+            option->take(result.arguments, word.section('=', 1));
         else if (i + 1 == words.size())
             result.pendingOption = word;
         else
-            take(result.arguments, word, words[++i]);
+            option->take(result.arguments, words[++i]);
     }
     return result;
 }
 
 bool TypedLine::isGiven(const QString &name) const {
     return std::any_of(arguments.words.begin(), arguments.words.end(),
-                       [&name](const QString &word) { return word.startsWith(name + QLatin1Char('=')); });
+                       [&name](const QString &word) { return word.startsWith(name + '='); });
 }
 
 } // namespace hermes::ctl

@@ -37,18 +37,17 @@ public:
         QObject::connect(&client_, &Client::disconnected, &loop_,
                          [this](const QString &reason) { onDisconnected(reason); });
         QObject::connect(&client_, &Client::connected, &loop_, [this] { isLost_ = false; });
-        QJsonObject options{{QStringLiteral("queue"), 100}};
+        QJsonObject options{{"queue", 100}};
         if (arguments_.rate_hz > 0)
-            options.insert(QStringLiteral("max_rate_hz"), arguments_.rate_hz);
+            options.insert("max_rate_hz", arguments_.rate_hz);
         client_.subscribe(arguments_.words.at(1), options,
                           [this](const TopicUpdate &update) { onMessage(update); });
         silence_.setSingleShot(true);
         QObject::connect(&silence_, &QTimer::timeout, &loop_, [&] {
             if (!arguments_.timeoutIsGiven)
-                return note(
-                    QStringLiteral("no message of %1 yet; hermesctl list shows what is wrong with a daemon")
-                        .arg(arguments_.words.at(1)));
-            result = Error(ErrorCode::TimedOut, QStringLiteral("%1: no message within %2 s")
+                return note(QString("no message of %1 yet; hermesctl list shows what is wrong with a daemon")
+                                .arg(arguments_.words.at(1)));
+            result = Error(ErrorCode::TimedOut, QString("%1: no message within %2 s")
                                                     .arg(arguments_.words.at(1))
                                                     .arg(double(arguments_.timeout.count()) / 1000));
             loop_.quit();
@@ -62,12 +61,12 @@ public:
 
 private:
     Result<void> beginTable() {
-        const auto topics = ask(client_, arguments_, QStringLiteral("topics.list"));
+        const auto topics = ask(client_, arguments_, "topics.list");
         if (!topics)
             return topics.error();
         for (const QJsonValue &topic : topics->toArray()) {
-            if (topic[QStringLiteral("name")].toString() == arguments_.words.at(1))
-                table_ = CsvTable(topic[QStringLiteral("schema")].toObject());
+            if (topic["name"].toString() == arguments_.words.at(1))
+                table_ = CsvTable(topic["schema"].toObject());
         }
         if (const auto header = table_.header())
             printHeader(*header);
@@ -85,7 +84,7 @@ private:
         ++interruptions_;
         droppedBefore_ += dropped_;
         dropped_ = 0;
-        note(QStringLiteral("%1; trying again").arg(reason));
+        note(QString("%1; trying again").arg(reason));
     }
 
     void onMessage(const TopicUpdate &update) {
@@ -109,27 +108,27 @@ private:
     }
 
     static void printMessage(const TopicUpdate &update) {
-        printJson(QJsonObject{{QStringLiteral("stamp"), update.stamp},
-                              {QStringLiteral("seq"), double(update.seq)},
-                              {QStringLiteral("dropped"), double(update.dropped)},
-                              {QStringLiteral("data"), update.json()}});
+        printJson(QJsonObject{{"stamp", update.stamp},
+                              {"seq", double(update.seq)},
+                              {"dropped", double(update.dropped)},
+                              {"data", update.json()}});
     }
 
     void tellWhatIsMissing() const {
         if (const quint64 all = droppedBefore_ + dropped_; all > 0)
-            note(QStringLiteral("%1 messages are missing: they were dropped because they were not read in "
-                                "time (column or member dropped)")
+            note(QString("%1 messages are missing: they were dropped because they were not read in time "
+                         "(column or member dropped)")
                      .arg(all));
         if (interruptions_ > 0)
-            note(QStringLiteral("the connection was lost %1 times: what was published meanwhile is missing")
+            note(QString("the connection was lost %1 times: what was published meanwhile is missing")
                      .arg(interruptions_));
         if (const auto &rejected = client_.rejected(); rejected.unreadable > 0)
-            note(QStringLiteral("%1 messages could not be read; the last: %2")
+            note(QString("%1 messages could not be read; the last: %2")
                      .arg(rejected.unreadable)
                      .arg(rejected.last));
         const auto &missing = table_.withoutColumn();
         for (auto one = missing.begin(); one != missing.end(); ++one)
-            note(QStringLiteral("%1 came in %2 messages after the header: it has no column")
+            note(QString("%1 came in %2 messages after the header: it has no column")
                      .arg(one.key())
                      .arg(one.value()));
     }

@@ -6,18 +6,16 @@ QJsonArray wrongItems(const SessionReply &status) {
     QJsonArray wrong;
     if (!status.result)
         return wrong;
-    for (const QJsonValue &item : (*status.result)[QStringLiteral("health")].toArray())
-        if (item[QStringLiteral("level")] != QStringLiteral("ok"))
-            wrong.append(QJsonObject{{QStringLiteral("name"), item[QStringLiteral("name")]},
-                                     {QStringLiteral("level"), item[QStringLiteral("level")]},
-                                     {QStringLiteral("message"), item[QStringLiteral("message")]}});
+    for (const QJsonValue &item : (*status.result)["health"].toArray())
+        if (item["level"] != "ok")
+            wrong.append(
+                QJsonObject{{"name", item["name"]}, {"level", item["level"]}, {"message", item["message"]}});
     return wrong;
 }
 
 QString wrongText(const QJsonValue &item) {
-    return QStringLiteral("%1: %2: %3")
-        .arg(item[QStringLiteral("level")].toString(), item[QStringLiteral("name")].toString(),
-             item[QStringLiteral("message")].toString());
+    return QString("%1: %2: %3")
+        .arg(item["level"].toString(), item["name"].toString(), item["message"].toString());
 }
 
 } // namespace hermes::ctl

@@ -27,9 +27,9 @@ QStringList linesOf(const Error &error) {
     QStringList lines;
     const QJsonObject data = error.data.toObject();
     for (auto one = data.begin(); one != data.end(); ++one)
-        if (one.key() != QStringLiteral("errors"))
+        if (one.key() != "errors")
             lines.append(
-                one.key() + QStringLiteral(": ") +
+                one.key() + ": " +
                 (one->isString() ? printable(one->toString()) : QString::fromUtf8(compactJson(*one))));
     return lines;
 }
@@ -37,23 +37,23 @@ QStringList linesOf(const Error &error) {
 /// Tells of a failure on stderr, for people or, with --json, for programs.
 void tell(const Error &error, const QStringList &advice, bool json) {
     if (json) {
-        QJsonObject object{{QStringLiteral("code"), error.code}, {QStringLiteral("message"), error.message}};
+        QJsonObject object{{"code", error.code}, {"message", error.message}};
         if (!error.data.isUndefined())
-            object.insert(QStringLiteral("data"), error.data);
+            object.insert("data", error.data);
         if (!advice.isEmpty())
-            object.insert(QStringLiteral("hint"), advice.join(QLatin1Char('\n')));
-        return printError(QString::fromUtf8(compactJson(object)) + QLatin1Char('\n'));
+            object.insert("hint", advice.join('\n'));
+        return printError(QString::fromUtf8(compactJson(object)) + '\n');
     }
-    printError(QStringLiteral("hermesctl: %1 (%2)\n").arg(error.message).arg(error.code));
+    printError(QString("hermesctl: %1 (%2)\n").arg(error.message).arg(error.code));
     for (const QString &line : advice.isEmpty() ? linesOf(error) : advice)
-        printError(QStringLiteral("  ") + line + QLatin1Char('\n'));
+        printError("  " + line + '\n');
 }
 
 int usageError(const QString &text, bool json) {
     if (json)
         tell(Error(ErrorCode::InvalidParams, text), {}, true);
     else
-        printError(QStringLiteral("hermesctl: %1\nhermesctl --help tells what there is\n").arg(text));
+        printError(QString("hermesctl: %1\nhermesctl --help tells what there is\n").arg(text));
     return usageStatus;
 }
 
@@ -64,17 +64,11 @@ int finish(const Result<void> &result, const QStringList &advice, const Argument
     return 1;
 }
 
-/// The words that are to be NAME=VALUE.
-QStringList assignmentsOf(const Subcommand &command, const QStringList &words) {
-    const bool assigns = command.words.back() == Word::Parameter ||
-                         command.words.back() == Word::SettingValue || command.words.back() == Word::Velocity;
-    return assigns ? words.mid(int(command.words.size()) - 1) : QStringList();
-}
-
 int runDaemonCommand(const Subcommand &command, const Arguments &arguments) {
-    for (const QString &word : assignmentsOf(command, arguments.words)) {
-        if (word.indexOf(QLatin1Char('=')) <= 0)
-            return usageError(QStringLiteral("\"%1\": expected NAME=VALUE").arg(word), arguments.json);
+    for (int i = 0; i < arguments.words.size(); ++i) {
+        const QString &word = arguments.words[i];
+        if (command.meaning(i).contains('=') && word.indexOf('=') <= 0)
+            return usageError(QString("\"%1\": expected NAME=VALUE").arg(word), arguments.json);
     }
     if (const auto checked = command.check ? command.check(arguments) : Result<void>(); !checked)
         return usageError(checked.error().message, arguments.json);
@@ -88,50 +82,40 @@ int runDaemonCommand(const Subcommand &command, const Arguments &arguments) {
         return connection.error().is(ErrorCode::InvalidParams)
                    ? usageError(connection.error().message, arguments.json)
                    : finish(connection, adviceFor(connection.error(), arguments), arguments);
-    const Result<void> result = command.ofDaemon(client, arguments);
+    const Result<void> result = std::get<DaemonCommand>(command.run)(client, arguments);
     const QStringList advice = result ? QStringList() : adviceFor(result.error(), client, arguments);
     return finish(result, advice, arguments);
 }
 
 int runRobotCommand(const Subcommand &command, const Arguments &arguments) {
-    const Result<void> result = command.ofRobot(arguments);
+    const Result<void> result = std::get<RobotCommand>(command.run)(arguments);
     return !result && result.error().is(ErrorCode::InvalidParams)
                ? usageError(result.error().message, arguments.json)
                : finish(result, {}, arguments);
 }
 
 QString unknownCommand(const QString &command) {
-    const QString first = command.section(QLatin1Char(' '), 0, 0);
-    if (!hasSecondWord(first))
-        return QStringLiteral("unknown command \"%1\"%2")
-            .arg(command, didYouMean(command, subcommandNames()));
-    QStringList seconds;
-    for (const Subcommand &one : subcommands())
-        if (QString::fromLatin1(one.name).startsWith(first + QLatin1Char(' ')))
-            seconds.append(QString::fromLatin1(one.name).section(QLatin1Char(' '), 1));
-    const QString list = seconds.join(QStringLiteral(", "));
-    return command == first ? QStringLiteral("after \"%1\" one of these is expected: %2").arg(first, list)
-                            : QStringLiteral("unknown command \"%1\", there is %2").arg(command, list);
+    const QString first = command.section(' ', 0, 0), list = subcommandNames(first).join(", ");
+    if (list.isEmpty())
+        return QString("unknown command \"%1\"%2").arg(command, didYouMean(command, subcommandNames()));
+    return command == first ? QString("after \"%1\" one of these is expected: %2").arg(first, list)
+                            : QString("unknown command \"%1\", there is %2").arg(command, list);
 }
 
-int run(Arguments arguments) {
-    if (hasSecondWord(arguments.command) && !arguments.words.isEmpty())
-        arguments.command += QLatin1Char(' ') + arguments.words.takeFirst();
+int run(const Arguments &arguments) {
     std::optional<PrivateFiles> owners;
-    if (arguments.command.startsWith(QStringLiteral("keys ")))
+    if (arguments.command.startsWith("keys "))
         owners.emplace();
     const Subcommand *const command = findSubcommand(arguments.command);
     if (!command)
         return usageError(unknownCommand(arguments.command), arguments.json);
-    const bool ofAll = arguments.all && command->ofDaemon == document;
-    const int least = ofAll ? 0 : command->leastWords, most = ofAll ? 0 : command->maxWords;
-    if (arguments.words.size() < least || arguments.words.size() > most)
-        return usageError(QStringLiteral("usage: hermesctl %1").arg(QLatin1String(command->usage)),
-                          arguments.json);
+    const bool ofAll = arguments.all && command->name() == "doc";
+    if (ofAll ? !arguments.words.isEmpty() : !command->takes(arguments.words.size()))
+        return usageError(QString("usage: hermesctl %1").arg(command->usage), arguments.json);
     if (const QString foreign = foreignOption(*command, arguments.given); !foreign.isEmpty())
         return usageError(foreign, arguments.json);
     if (arguments.csv && arguments.json)
-        return usageError(QStringLiteral("--csv and --json exclude each other"), true);
+        return usageError("--csv and --json exclude each other", true);
     setJsonNotes(arguments.json);
     if (arguments.json)
         Progress::useJson();
@@ -141,15 +125,15 @@ int run(Arguments arguments) {
     }
     if (ofAll)
         return finish(documentAll(arguments), {}, arguments);
-    return command->ofRobot ? runRobotCommand(*command, arguments) : runDaemonCommand(*command, arguments);
+    return std::holds_alternative<RobotCommand>(command->run) ? runRobotCommand(*command, arguments)
+                                                              : runDaemonCommand(*command, arguments);
 }
 
 void printVersion(bool json) {
     if (json)
-        printJson(QJsonObject{{QStringLiteral("name"), QStringLiteral("hermesctl")},
-                              {QStringLiteral("version"), projectVersion()}});
+        printJson(QJsonObject{{"name", "hermesctl"}, {"version", projectVersion()}});
     else
-        printLine(QStringLiteral("hermesctl ") + projectVersion());
+        printLine("hermesctl " + projectVersion());
 }
 
 } // namespace
@@ -159,18 +143,18 @@ int main(int argc, char **argv) {
     prepareConsole();
     outliveClosedPipes(); // who reads stdout may go: that ends a stream in order
     const QStringList list = QCoreApplication::arguments().mid(1);
-    if (list.value(0) == QStringLiteral("complete"))
+    if (list.value(0) == "complete")
         return printCandidates(list.value(1));
     const auto arguments = Arguments::parse(list);
     if (!arguments)
-        return usageError(arguments.error().message, list.contains(QStringLiteral("--json")));
+        return usageError(arguments.error().message, list.contains("--json"));
     int status = 0;
-    if (arguments->help || arguments->command == QStringLiteral("help"))
+    if (arguments->help || arguments->command == "help")
         printLine(QString::fromStdString(fittedHelp(helpText().toStdString())).trimmed());
     else if (arguments->version)
         printVersion(arguments->json);
     else if (arguments->command.isEmpty())
-        status = usageError(QStringLiteral("a command is missing"), arguments->json);
+        status = usageError("a command is missing", arguments->json);
     else
         status = run(*arguments);
     checkOutput();

@@ -33,19 +33,18 @@ std::string listOthers(const SensorChoice &choice) {
 } // namespace
 
 void SensorOptions::addTo(CLI::App &sub) {
-    sub.add_option("--port", port, "Of a capture: the sensor that sends its data packets to this port")
-        ->transform(wholeNumber(1, 65535))
-        ->type_name("PORT");
-    sub.add_option("--sender", sender, "Of a capture: the sensor that has this address")
-        ->check(CLI::Validator(
-            [](const std::string &text) {
-                return addressFrom(text)
-                           ? std::string()
-                           : "found " + vectorlib::quoted(text) +
-                                 ", expected an IPv4 address: four decimal numbers, dots between";
-            },
-            "", "address"))
-        ->type_name("ADDRESS");
+    addOption(sub, "--port PORT", port, wholeNumber(1, 65535),
+              "Of a capture: the sensor that sends its data packets to this port");
+    addOption(sub, "--sender ADDRESS", sender,
+              CLI::Validator(
+                  [](const std::string &text) {
+                      return addressFrom(text)
+                                 ? std::string()
+                                 : "found " + vectorlib::quoted(text) +
+                                       ", expected an IPv4 address: four decimal numbers, dots between";
+                  },
+                  "", "address"),
+              "Of a capture: the sensor that has this address");
 }
 
 LidarCapture::LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model)

@@ -127,18 +127,13 @@ void addMapMergeCommand(CLI::App &app) {
     sub->add_option("A", command->first, "A map (CSV by map --out-map); the result has its frame")
         ->required();
     sub->add_option("B", command->second, "The map that is moved onto it")->required();
-    sub->add_option("--out", command->out,
-                    "The map of both; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
-        ->required()
-        ->check(MapFile::knownName())
-        ->type_name("FILE");
-    sub->add_option("--at", command->at,
-                    "Where B's frame lies in A's, to within 0.5 m and 0.15 rad; not given: it is searched")
-        ->check(poseText())
-        ->type_name("X,Y,THETA");
-    sub->add_option("--summary", command->summary,
-                    "The motion and how sure it is; standard output when not given")
-        ->type_name("FILE");
+    addOption(*sub, "--out FILE", command->out, MapFile::knownName(),
+              "The map of both; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
+        ->required();
+    addOption(*sub, "--at X,Y,THETA", command->at, poseText(),
+              "Where B's frame lies in A's, to within 0.5 m and 0.15 rad; not given: it is searched");
+    addOption(*sub, "--summary FILE", command->summary,
+              "The motion and how sure it is; standard output when not given");
     sub->add_flag("--force", command->force, "Overwrite files that exist");
     sub->footer(example("hermes-vector map-merge monday.csv tuesday.csv --out both.csv"));
     sub->callback([command] { command->run(); });

@@ -195,43 +195,34 @@ void addMatchCommand(CLI::App &app) {
     auto command = std::make_shared<MatchCommand>();
     CLI::App *sub = app.add_subcommand(
         "match",
-        "Find the motion between two scans, or the place of a scan in a map, without known partners "
-        "(JSON). Both must show the same place: scans of different places that look alike match, too");
+        "Find the motion between two scans, or the place of a scan in a map, without known partners (JSON). "
+        "Both must show the same place: scans of different places that look alike match, too");
     const std::string kinds = "points (CSV x,y or ascii PCD), segments (CSV x1,y1,x2,y2)";
     sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
         ->required();
     sub->add_option("DYNAMIC", command->movingPath, "A scan: " + kinds)->required();
-    CLI::Option *expected = sub->add_option(
-        "--expected", command->expected,
-        "Where the dynamic scan is expected in the static one's frame; metres, radians. Without it "
-        "nothing is known of the motion; the finder then looks about 0,0,0");
-    expected->check(poseText())->type_name("X,Y,ALPHA");
-    sub->add_option("--deviation-xy", command->deviationXY,
-                    "How wrong that may be: standard deviation, metres (0.15)")
-        ->check(aboveZero())
-        ->needs(expected)
-        ->type_name("M");
-    sub->add_option("--deviation-alpha", command->deviationAlpha, "The same, radians (0.1)")
-        ->check(aboveZero())
-        ->needs(expected)
-        ->type_name("RAD");
-    sub->add_option(
-           "--method", command->method,
-           "global: any motion, by points or by what a scanner would see of segments; finder: every "
-           "combination of segments over a permitted set of motions; relations: any motion, by relations "
-           "of segments (finder in a map and with options of the search, else global)")
+    CLI::Option *expected =
+        addOption(*sub, "--expected X,Y,ALPHA", command->expected, poseText(),
+                  "Where the dynamic scan is expected in the static one's frame; metres, radians. Without it "
+                  "nothing is known of the motion; the finder then looks about 0,0,0");
+    addOption(*sub, "--deviation-xy M", command->deviationXY, aboveZero(),
+              "How wrong that may be: standard deviation, metres (0.15)")
+        ->needs(expected);
+    addOption(*sub, "--deviation-alpha RAD", command->deviationAlpha, aboveZero(), "The same, radians (0.1)")
+        ->needs(expected);
+    sub->add_option("--method", command->method,
+                    "global: any motion, by points or by what a scanner would see of segments; finder: every "
+                    "combination of segments over a permitted set of motions; relations: any motion, by "
+                    "relations of segments (finder in a map and with options of the search, else global)")
         ->check(CLI::IsMember({"global", "finder", "relations"}));
     sub->add_flag("--map", command->isMap,
                   "The static segments were seen from many places: what they do not show hides nothing");
-    sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
-        ->check(aboveZero())
-        ->type_name("M")
+    addOption(*sub, "--sigma M", command->sigma, aboveZero(),
+              "Largest standard deviation of points from their line, metres")
         ->capture_default_str();
-    sub->add_option("--noise", command->noise,
-                    "For the covariance: standard deviation of points, or of the ends of segments, metres "
-                    "(points: as they scatter; segments: 0.01)")
-        ->check(aboveZero())
-        ->type_name("M");
+    addOption(*sub, "--noise M", command->noise, aboveZero(),
+              "For the covariance: standard deviation of points, or of the ends of segments, metres (points: "
+              "as they scatter; segments: 0.01)");
     command->search.addTo(*sub, "0.2");
     command->segment.addTo(*sub, "defaults by the number of points");
     command->output.addTo(*sub, true);

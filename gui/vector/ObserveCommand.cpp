@@ -99,37 +99,26 @@ void addObserveCommand(CLI::App &app) {
     sub->add_option("WORLD", command->in,
                     "World: JSON with edges, or the name of one that came with the program")
         ->required();
-    sub->add_option("--pose", command->pose, "Where the sensor is: metres, radians")
-        ->required()
-        ->check(poseText())
-        ->type_name("X,Y,THETA");
-    CLI::Option *scan = sub->add_option("--scan", command->rays, "Simulate a scan of so many rays")
-                            ->transform(wholeNumber(1, 1e7))
-                            ->type_name("N");
-    sub->add_option("--fov", command->fieldOfView,
-                    "Field of view, half of it to each side of the heading, degrees")
-        ->check(between(0.001, 360))
-        ->type_name("DEG")
+    addOption(*sub, "--pose X,Y,THETA", command->pose, poseText(), "Where the sensor is: metres, radians")
+        ->required();
+    CLI::Option *scan =
+        addOption(*sub, "--scan N", command->rays, wholeNumber(1, 1e7), "Simulate a scan of so many rays");
+    addOption(*sub, "--fov DEG", command->fieldOfView, between(0.001, 360),
+              "Field of view, half of it to each side of the heading, degrees")
         ->capture_default_str();
-    sub->add_option("--noise", command->noise, "Standard deviation of the range, metres")
-        ->check(between(0, 1e6))
+    addOption(*sub, "--noise M", command->noise, between(0, 1e6), "Standard deviation of the range, metres")
         ->needs(scan)
-        ->type_name("M")
         ->capture_default_str();
-    sub->add_option("--angle-noise", command->angleNoise,
-                    "Standard deviation of the rays' directions, which the points do not tell, degrees")
-        ->check(between(0, 180))
+    addOption(*sub, "--angle-noise DEG", command->angleNoise, between(0, 180),
+              "Standard deviation of the rays' directions, which the points do not tell, degrees")
         ->needs(scan)
-        ->type_name("DEG")
         ->capture_default_str();
-    sub->add_option("--outliers", command->outliers, "Share of rays, 0 to 1, that stop before the wall")
-        ->check(between(0, 1))
+    addOption(*sub, "--outliers F", command->outliers, between(0, 1),
+              "Share of rays, 0 to 1, that stop before the wall")
         ->needs(scan)
-        ->type_name("F")
         ->capture_default_str();
-    sub->add_option("--seed", command->seed, "The same seed gives the same scan")
+    addOption(*sub, "--seed I", command->seed, "The same seed gives the same scan")
         ->needs(scan)
-        ->type_name("I")
         ->capture_default_str();
     command->output.addTo(*sub, true);
     sub->footer(example("hermes-vector observe pillars --pose 1,1,0.5 --scan 720 --noise 0.01"));

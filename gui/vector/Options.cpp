@@ -99,42 +99,31 @@ vectorlib::Pose2D parsePose(const std::string &text) {
 }
 
 void OutputOptions::addTo(CLI::App &command, bool withPictures) {
-    command.add_option("--out", out, "Write the result to this file instead of standard output")
-        ->type_name("FILE");
+    addOption(command, "--out FILE", out, "Write the result to this file instead of standard output");
     if (withPictures) {
-        command.add_option("--svg", svg, "Also draw a picture")->check(pictureName())->type_name("FILE");
-        command.add_option("--latex", latex, "Also write the picture as a LaTeX document")
-            ->check(pictureName(".tex"))
-            ->type_name("FILE");
+        addOption(command, "--svg FILE", svg, pictureName(), "Also draw a picture");
+        addOption(command, "--latex FILE", latex, pictureName(".tex"),
+                  "Also write the picture as a LaTeX document");
     }
     command.add_flag("--force", force, "Overwrite files that exist");
 }
 
 void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
     const std::string group = "Segmentation (" + defaults + ")";
-    command.add_option("--k", neighbours_, "How many earlier points each point is compared with")
-        ->transform(wholeNumber(1, 100000))
-        ->type_name("N")
+    addOption(command, "--k N", neighbours_, wholeNumber(1, 100000),
+              "How many earlier points each point is compared with")
         ->group(group);
-    command.add_option("--min-threshold", minThreshold_, "Lower bound of the distance threshold, metres")
-        ->check(aboveZero())
-        ->type_name("M")
+    addOption(command, "--min-threshold M", minThreshold_, aboveZero(),
+              "Lower bound of the distance threshold, metres")
         ->group(group);
-    command.add_option("--max-threshold", maxThreshold_, "Upper bound of the distance threshold, metres")
-        ->check(aboveZero())
-        ->type_name("M")
+    addOption(command, "--max-threshold M", maxThreshold_, aboveZero(),
+              "Upper bound of the distance threshold, metres")
         ->group(group);
-    command.add_option("--min-points", minPoints_, "Smaller clusters are outliers")
-        ->transform(wholeNumber(1, 1e9))
-        ->type_name("N")
+    addOption(command, "--min-points N", minPoints_, wholeNumber(1, 1e9), "Smaller clusters are outliers")
         ->group(group);
-    command
-        .add_option(
-            "--coordinates", coordinates_,
-            "In which points are compared: cartesian, by their distance (the default), or polar, angle "
-            "and range by themselves")
-        ->check(CLI::IsMember({"cartesian", "polar"}))
-        ->type_name("KIND")
+    addOption(command, "--coordinates KIND", coordinates_, CLI::IsMember({"cartesian", "polar"}),
+              "In which points are compared: cartesian, by their distance (the default), or polar, angle and "
+              "range by themselves")
         ->group(group);
     command.add_flag("--open", open, "The last point is no neighbour of the first: less than a full turn")
         ->group(group);
@@ -157,8 +146,8 @@ vectorlib::EarSettings SegmentOptions::over(vectorlib::EarSettings settings) con
 
 std::string example(const std::string &text) {
     return "Example:\n  " + text +
-           "\n\nIN may be gzip-compressed; - is standard input. Exit status: 0 success, 2 wrong "
-           "usage, 1 any other failure.";
+           "\n\nIN may be gzip-compressed; - is standard input. Exit status: 0 success, 2 wrong usage, 1 any "
+           "other failure.";
 }
 
 } // namespace hermes::vector

@@ -21,9 +21,23 @@ struct OutputOptions {
     PictureFiles openPictures(OutputSet &files) const { return {files, svg, latex}; }
 };
 
+/// Adds an option with a usage as "--k N": its name, and what the help calls its value.
+template <typename Value>
+CLI::Option *addOption(CLI::App &command, const std::string &usage, Value &value,
+                       const std::string &description) {
+    const std::size_t space = usage.find(' ');
+    return command.add_option(usage.substr(0, space), value, description)->type_name(usage.substr(space + 1));
+}
+/// The same for one whose value a validator has to let through.
+template <typename Value>
+CLI::Option *addOption(CLI::App &command, const std::string &usage, Value &value,
+                       const CLI::Validator &validator, const std::string &description) {
+    return addOption(command, usage, value, description)->transform(validator);
+}
+
 /// A finite number from low to high, both included.
 CLI::Validator between(double low, double high);
-/// A whole number from low to high, both included; for transform(), which writes it by its digits alone.
+/// A whole number from low to high, both included; writes it by its digits alone.
 CLI::Validator wholeNumber(double low, double high);
 /// A finite number above 0.
 CLI::Validator aboveZero();

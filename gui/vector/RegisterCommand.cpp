@@ -99,22 +99,17 @@ void addRegisterCommand(CLI::App &app) {
     sub->add_option("IN", command->in,
                     "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
         ->required();
-    sub->add_option("--rotation", command->rotation, "How the rotation is averaged: mitsuta or wahba")
-        ->check(CLI::IsMember({"mitsuta", "wahba"}))
-        ->type_name("HOW")
+    addOption(*sub, "--rotation HOW", command->rotation, CLI::IsMember({"mitsuta", "wahba"}),
+              "How the rotation is averaged: mitsuta or wahba")
         ->capture_default_str();
-    sub->add_option("--weights", command->weights, "none, length (of the shorter segment) or column (weight)")
-        ->check(CLI::IsMember({"none", "length", "column"}))
-        ->type_name("HOW")
+    addOption(*sub, "--weights HOW", command->weights, CLI::IsMember({"none", "length", "column"}),
+              "none, length (of the shorter segment) or column (weight)")
         ->capture_default_str();
-    sub->add_option("--k-alpha", command->stiffness.alpha,
-                    "Weight of the rotation in the ambiguity, m^2/rad^2")
-        ->check(between(0, 1e12))
-        ->type_name("K")
+    addOption(*sub, "--k-alpha K", command->stiffness.alpha, between(0, 1e12),
+              "Weight of the rotation in the ambiguity, m^2/rad^2")
         ->capture_default_str();
-    sub->add_option("--k-xy", command->stiffness.xy, "Weight of the translation in the ambiguity")
-        ->check(between(0, 1e12))
-        ->type_name("K")
+    addOption(*sub, "--k-xy K", command->stiffness.xy, between(0, 1e12),
+              "Weight of the translation in the ambiguity")
         ->capture_default_str();
     command->output.addTo(*sub, true);
     sub->footer(example("hermes-vector register pairs.csv --weights length"));

@@ -196,13 +196,11 @@ void addRelocalizeCommand(CLI::App &app) {
                     "One scan: points (CSV x,y or ascii PCD), or segments (CSV x1,y1,x2,y2); out of a log by "
                     "hermes-vector map LOG --scan N")
         ->required();
-    sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
-        ->check(aboveZero())
-        ->type_name("M")
+    addOption(*sub, "--sigma M", command->sigma, aboveZero(),
+              "Largest standard deviation of points from their line, metres")
         ->capture_default_str();
-    sub->add_option("--seconds", command->seconds, "Longest search; what is left by then is not searched")
-        ->check(between(0.001, 1e6))
-        ->type_name("S")
+    addOption(*sub, "--seconds S", command->seconds, between(0.001, 1e6),
+              "Longest search; what is left by then is not searched")
         ->capture_default_str();
     command->segment.addTo(*sub, "defaults by the number of points");
     command->output.addTo(*sub, true);

@@ -99,24 +99,17 @@ void addRingCommand(CLI::App &app) {
                                                    " (CSV turn,stamp,azimuth,range,intensity,x,y)");
     sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
     command->sensor.addTo(*sub);
-    CLI::Option *laser = sub->add_option("--laser", command->laser,
-                                         "Which laser, else the one that looks nearest to the horizon (" +
-                                             velodyne::horizonLasers() + ")")
-                             ->transform(wholeNumber(0, velodyne::maxLasers() - 1))
-                             ->type_name("ID");
-    sub->add_option("--model", command->model,
-                    "The sensor, or auto: as the packets say (hdl32e where they do not)")
-        ->check(CLI::IsMember(velodyne::modelChoices()))
-        ->type_name("MODEL")
+    CLI::Option *laser = addOption(
+        *sub, "--laser ID", command->laser, wholeNumber(0, velodyne::maxLasers() - 1),
+        "Which laser, else the one that looks nearest to the horizon (" + velodyne::horizonLasers() + ")");
+    addOption(*sub, "--model MODEL", command->model, CLI::IsMember(velodyne::modelChoices()),
+              "The sensor, or auto: as the packets say (hdl32e where they do not)")
         ->capture_default_str();
-    sub->add_option("--returns", command->returns,
-                    "Of a sensor in dual return mode: strongest, last, or both where they differ")
-        ->check(CLI::IsMember({"strongest", "last", "both"}))
-        ->type_name("RETURNS")
+    addOption(*sub, "--returns RETURNS", command->returns, CLI::IsMember({"strongest", "last", "both"}),
+              "Of a sensor in dual return mode: strongest, last, or both where they differ")
         ->capture_default_str();
-    sub->add_option("--turn", command->turn, "This turn only, from 0; the first and the last may be partial")
-        ->transform(wholeNumber(0, 1e9))
-        ->type_name("N");
+    addOption(*sub, "--turn N", command->turn, wholeNumber(0, 1e9),
+              "This turn only, from 0; the first and the last may be partial");
     CLI::Option *all =
         sub->add_flag("--all", command->all, "Every laser; adds the columns laser and z")->excludes(laser);
     sub->add_flag("--no-vertical-offsets", command->noVerticalOffsets,

@@ -5,18 +5,18 @@
 namespace hermes::vector {
 
 void SearchOptions::addTo(CLI::App &command, const std::string &discrepancy) {
-    const auto number = [&command](const char *name, std::optional<double> &value, const std::string &what,
-                                   const char *unit, double low, double high) {
-        command.add_option(name, value, what)->check(between(low, high))->type_name(unit)->group("Search");
+    const auto number = [&command](const char *usage, std::optional<double> &value, const std::string &what,
+                                   double low, double high) {
+        addOption(command, usage, value, between(low, high), what)->group("Search");
     };
-    number("--max-dx", maxDx_, "Permitted motion, metres (1.2)", "M", 0, 1e6);
-    number("--max-dy", maxDy_, "Permitted motion, metres (1.2)", "M", 0, 1e6);
-    number("--max-dalpha", maxDalpha_, "Permitted rotation, radians (1.26)", "RAD", 0, vectorlib::pi);
-    number("--reliability", reliability_, "Least reliability (0.1)", "R", 0, 1);
-    number("--ambiguity", ambiguity_, "Most ambiguity of a pair, m^2 (0.0025)", "A", 0, 1e6);
-    number("--k-alpha", kAlpha_, "Weight of the rotation in the ambiguity, m^2/rad^2 (0.1)", "K", 0, 1e12);
-    number("--k-xy", kXy_, "Weight of the translation in the ambiguity (1)", "K", 0, 1e12);
-    number("--discrepancy", discrepancy_, "Most discrepancy, m^2 (" + discrepancy + ")", "A", 0, 1e12);
+    number("--max-dx M", maxDx_, "Permitted motion, metres (1.2)", 0, 1e6);
+    number("--max-dy M", maxDy_, "Permitted motion, metres (1.2)", 0, 1e6);
+    number("--max-dalpha RAD", maxDalpha_, "Permitted rotation, radians (1.26)", 0, vectorlib::pi);
+    number("--reliability R", reliability_, "Least reliability (0.1)", 0, 1);
+    number("--ambiguity A", ambiguity_, "Most ambiguity of a pair, m^2 (0.0025)", 0, 1e6);
+    number("--k-alpha K", kAlpha_, "Weight of the rotation in the ambiguity, m^2/rad^2 (0.1)", 0, 1e12);
+    number("--k-xy K", kXy_, "Weight of the translation in the ambiguity (1)", 0, 1e12);
+    number("--discrepancy A", discrepancy_, "Most discrepancy, m^2 (" + discrepancy + ")", 0, 1e12);
 }
 
 bool SearchOptions::isGiven() const {

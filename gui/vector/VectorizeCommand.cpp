@@ -126,8 +126,8 @@ struct VectorizeCommand {
 void addVectorizeCommand(CLI::App &app) {
     auto command = std::make_shared<VectorizeCommand>();
     command->settings.polyline = false;
-    CLI::App *sub = app.add_subcommand("vectorize", "Replace points by line segments (CSV "
-                                                    "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
+    CLI::App *sub = app.add_subcommand(
+        "vectorize", "Replace points by line segments (CSV cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
     std::vector<std::string> names;
     std::string help;
@@ -135,24 +135,15 @@ void addVectorizeCommand(CLI::App &app) {
         names.push_back(v.name);
         help += (help.empty() ? "" : "; ") + v.name + ": " + v.help;
     }
-    sub->add_option("--algorithm", command->algorithm, help)
-        ->check(CLI::IsMember(names))
-        ->type_name("A")
+    addOption(*sub, "--algorithm A", command->algorithm, CLI::IsMember(names), help)->capture_default_str();
+    addOption(*sub, "--search KIND", command->search, CLI::IsMember({"descent", "nelder-mead"}),
+              "With --algorithm aftls: how its break points are sought, one after the other downhill (the "
+              "default) or as published, by Nelder and Mead");
+    addOption(*sub, "--sigma M", command->settings.sigma, aboveZero(),
+              "Largest standard deviation of points from their line, metres")
         ->capture_default_str();
-    sub->add_option("--search", command->search,
-                    "With --algorithm aftls: how its break points are sought, one after the other downhill "
-                    "(the default) or as published, by Nelder and Mead")
-        ->check(CLI::IsMember({"descent", "nelder-mead"}))
-        ->type_name("KIND");
-    sub->add_option("--sigma", command->settings.sigma,
-                    "Largest standard deviation of points from their line, metres")
-        ->check(aboveZero())
-        ->type_name("M")
-        ->capture_default_str();
-    sub->add_option("--delta", command->settings.delta,
-                    "With --polyline: farthest a corner may lie from where two lines change, metres")
-        ->check(aboveZero())
-        ->type_name("M")
+    addOption(*sub, "--delta M", command->settings.delta, aboveZero(),
+              "With --polyline: farthest a corner may lie from where two lines change, metres")
         ->capture_default_str();
     sub->add_flag("--no-segment", command->noSegment, "The whole file is one open cluster");
     sub->add_flag("--polyline", command->settings.polyline,

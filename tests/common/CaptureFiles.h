@@ -2,13 +2,7 @@
 
 #include "common/capture/CaptureRecords.h"
 
-#include <QByteArray>
 #include <QtGlobal>
-
-#include <memory>
-#include <random>
-#include <sstream>
-#include <vector>
 
 /// Captures that are made at random, and what CaptureRecords finds in a capture.
 namespace hermes::captures {

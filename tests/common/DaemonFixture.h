@@ -1,16 +1,11 @@
 #pragma once
 
 #include "common/Log.h"
-#include "common/daemon/Daemon.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
-#include "tests/support/Patience.h"
-
-#include <QTcpSocket>
-#include <QtTest>
+#include "tests/support/DaemonClient.h"
 
 #include <stdexcept>
-#include <thread>
 
 namespace hermes {
 
@@ -112,11 +107,7 @@ protected:
 inline void DaemonFixture::start(const QStringList &more) {
     daemon.reset();
     daemon = std::make_unique<TestedDaemon>();
-    QStringList arguments{"tested", "--listen", "tcp://127.0.0.1:0", "--set", "access.plain=engineer"};
-    for (const QString &assignment : more)
-        arguments << "--set" << assignment;
-    QVERIFY(!daemon->prepare(arguments));
-    QVERIFY(daemon->launch());
+    launch(*daemon, QStringList{"access.plain=engineer"} + more);
 }
 
 } // namespace hermes

@@ -2,13 +2,7 @@
 
 #include "common/recording/Recording.h"
 #include "common/recording/Sidecar.h"
-#include "tests/support/Files.h"
-#include "tests/support/Patience.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <atomic>
 #include <mutex>
 
 namespace hermes {

@@ -2,9 +2,6 @@
 #include "common/capture/PcapReader.h"
 #include "common/capture/PcapWriter.h"
 #include "protocol/velodyne/TurnAssembler.h"
-#include "tests/support/RealData.h"
-
-#include <QtEndian>
 
 using namespace hermes;
 
@@ -326,6 +323,3 @@ private Q_SLOTS:
         QCOMPARE(d.destinationPort, velodyne::positionPort);
     }
 };
-
-QTEST_APPLESS_MAIN(TestCapture)
-#include "TestCapture.moc"

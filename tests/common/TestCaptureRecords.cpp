@@ -50,6 +50,3 @@ private Q_SLOTS:
         QVERIFY(records > 2000);
     }
 };
-
-QTEST_APPLESS_MAIN(TestCaptureRecords)
-#include "TestCaptureRecords.moc"

@@ -7,9 +7,7 @@
 #include "tests/support/FaultyInterface.h"
 
 #include <QNetworkDatagram>
-#include <QTcpServer>
 
-#include <malloc.h>
 #include <sys/socket.h>
 
 using namespace hermes;
@@ -42,9 +40,7 @@ private Q_SLOTS:
     void cleanup() { tearDown(); }
 
     void sayTheSame_data() {
-        QTest::addColumn<QString>("protocol");
-        QTest::addColumn<int>("carrier");
-        QTest::addColumn<bool>("faulty");
+        Rows<QString, int, bool>("protocol", "carrier", "faulty");
         for (const QString &protocol : codecNames())
             for (int i = 0; i < int(std::size(carriers)); ++i)
                 for (const bool faulty : {false, true})
@@ -63,10 +59,8 @@ private Q_SLOTS:
             return url + (url.contains('?') ? '&' : '?') + "protocol=" + protocol;
         };
         daemon = std::make_unique<TestedDaemon>();
-        QVERIFY(!daemon->prepare(
-            {"tested", "--listen",
-             with(QString(kind.listen).replace("FOLDER", folder.path()).replace("KEYS", keys_.path()))}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {},
+               with(QString(kind.listen).replace("FOLDER", folder.path()).replace("KEYS", keys_.path())));
         const QString url = with(QString(kind.connect)
                                      .replace("FOLDER", folder.path())
                                      .replace("KEYS", keys_.path())
@@ -146,8 +140,7 @@ private Q_SLOTS:
         daemon.reset(); // and one that begins anew begins with lines
         QTRY_VERIFY(!client.isConnected());
         daemon = std::make_unique<TestedDaemon>();
-        QVERIFY(!daemon->prepare({"tested", "--listen", place}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {}, place);
         QTRY_COMPARE(connected.count(), 2);
         check();
     }
@@ -208,8 +201,7 @@ private Q_SLOTS:
     // What is no connection has no other end to be closed: the next one who speaks may be a friend.
     void aStrangerEndsNoSharedCarrier() {
         daemon = std::make_unique<TestedDaemon>();
-        QVERIFY(!daemon->prepare({"tested", "--listen", "udp://127.0.0.1:0"}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {}, "udp://127.0.0.1:0");
         const auto port = quint16(QUrl(address()).port());
         for (const QByteArray &strange : {QByteArray("GET / HTTP/1.1\r\n"), QByteArray("\x16\x03\x01", 3)}) {
             QUdpSocket stranger;
@@ -230,16 +222,14 @@ private Q_SLOTS:
 
     void emptyFramesTakeNoMemory() {
         daemon = std::make_unique<TestedDaemon>();
-        QVERIFY(!daemon->prepare({"tested", "--listen", "tcp://127.0.0.1:0?protocol=cbor"}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {}, "tcp://127.0.0.1:0?protocol=cbor");
         QTcpSocket client;
         client.connectToHost(QHostAddress(QHostAddress::LocalHost), quint16(QUrl(address()).port()));
         QVERIFY(client.waitForConnected());
         const QByteArray zeros(1 << 16, '\0');
         qint64 sent = 0, most = 0;
         const std::size_t before = mallinfo2().uordblks; // 0 where a sanitizer has a heap of its own
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         while (time.elapsed() < 1500) {
             const ssize_t taken =
                 ::send(int(client.socketDescriptor()), zeros.constData(), size_t(zeros.size()), MSG_DONTWAIT);
@@ -257,6 +247,3 @@ private Q_SLOTS:
 private:
     QTemporaryDir keys_;
 };
-
-QTEST_GUILESS_MAIN(TestChannels)
-#include "TestChannels.moc"

@@ -1,15 +1,10 @@
 #include "common/Log.h"
 #include "common/client/Client.h"
-#include "common/daemon/Daemon.h"
 #include "common/interface/TcpInterface.h"
+#include "tests/support/DaemonClient.h"
 #include "tests/support/FaultyInterface.h"
-#include "tests/support/PatientClient.h"
-
-#include <QTcpServer>
 
 using namespace hermes;
-
-namespace {
 
 class Echo : public Daemon {
 public:
@@ -26,8 +21,6 @@ public:
     using Daemon::publish;
     std::vector<Reply> kept;
 };
-
-} // namespace
 
 class TestClient : public QObject {
     Q_OBJECT
@@ -66,7 +59,7 @@ private Q_SLOTS:
             client.callAndWait("echo", QJsonObject{{"value", QString(5000, 'x')}}, std::chrono::hours(1));
         QVERIFY(!result);
         QCOMPARE(result.error().code, int(ErrorCode::OverLimit));
-        QVERIFY2(result.error().message.contains("1000 bytes"), qPrintable(result.error().message));
+        VERIFY_CONTAINS(result.error().message, "1000 bytes");
         client.setFrameLimit(1 << 20);
         QJsonValue deep;
         for (int i = 0; i < 300; ++i)
@@ -82,7 +75,7 @@ private Q_SLOTS:
                  qPrintable(client.problem()));
         QVERIFY(client.callAndWait("echo").error().is(ErrorCode::Disconnected));
         QVERIFY(!client.waitConnected(std::chrono::milliseconds(50)));
-        QTRY_VERIFY2(client.lastError().contains("refused"), qPrintable(client.lastError()));
+        TRY_CONTAINS(client.lastError(), "refused");
     }
 
     void pendingCallFailsWithTheConnection() {
@@ -131,7 +124,7 @@ private Q_SLOTS:
                 [&](int, const RpcError &error) { message = error.message; });
         client.connectTo(address);
         client.subscribe("absent", {}, {});
-        QTRY_VERIFY2(message.contains("absent"), qPrintable(message));
+        TRY_CONTAINS(message, "absent");
     }
 
     void malformedEnvelopesAreRefused() {
@@ -159,8 +152,7 @@ private Q_SLOTS:
                 "\n");
         QTRY_COMPARE(updates, 1);
         QCOMPARE(client.rejected().unreadable, quint64(wrong.size()));
-        QVERIFY2(client.rejected().last.startsWith("topic a: stamp: found 1"),
-                 qPrintable(client.rejected().last));
+        VERIFY_STARTS(client.rejected().last, "topic a: stamp: found 1");
         QCOMPARE(failures, 1); // a reply without a subscription is no success
     }
 
@@ -215,13 +207,9 @@ private:
     void start(const QString &listen) {
         daemon.reset();
         daemon = std::make_unique<Echo>();
-        QVERIFY(!daemon->prepare({"echo", "--listen", listen}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {}, listen);
     }
 
     std::unique_ptr<Echo> daemon;
     QString address;
 };
-
-QTEST_GUILESS_MAIN(TestClient)
-#include "TestClient.moc"

@@ -102,7 +102,7 @@ private Q_SLOTS:
         QVERIFY(!open.prepare({"tested", "--listen", "tcp://0.0.0.0:0"}));
         const auto refused = open.launch();
         QVERIFY(!refused);
-        QVERIFY2(refused.error().message.contains("insecure"), qPrintable(refused.error().message));
+        VERIFY_CONTAINS(refused.error().message, "insecure");
         TestedDaemon insecure;
         QVERIFY(!insecure.prepare({"tested", "--listen", "tcp://0.0.0.0:0", "--set", "insecure=true"}));
         QVERIFY(insecure.launch());
@@ -176,6 +176,3 @@ private Q_SLOTS:
         }));
     }
 };
-
-QTEST_GUILESS_MAIN(TestDaemon)
-#include "TestDaemon.moc"

@@ -85,7 +85,7 @@ private Q_SLOTS:
         RawClient client(address());
         const QJsonObject error = client.ask(QTest::currentDataTag())["error"].toObject();
         QCOMPARE(error["code"].toInt(), code);
-        QVERIFY2(error["message"].toString().contains(says), qPrintable(error["message"].toString()));
+        VERIFY_CONTAINS(error["message"].toString(), says);
         QCOMPARE(client.ask("subtract", QJsonArray{3, 1})["result"].toInt(), 2);
     }
 
@@ -163,8 +163,7 @@ private Q_SLOTS:
 
     void datagramsCarryRequests() {
         TestedDaemon udp;
-        QVERIFY(!udp.prepare({"tested", "--listen", "udp://127.0.0.1:0", "--set", "limits.idle_s=0.2"}));
-        QVERIFY(udp.launch());
+        launch(udp, {"limits.idle_s=0.2"}, "udp://127.0.0.1:0");
         QUdpSocket client;
         client.writeDatagram(compactJson(makeRequest(1, "subtract", QJsonArray{5, 3})) + '\n',
                              QHostAddress::LocalHost,
@@ -175,6 +174,3 @@ private Q_SLOTS:
         QCOMPARE(udp.server().addresses().size(), 1); // the carrier is gone, the listener is not confused
     }
 };
-
-QTEST_GUILESS_MAIN(TestDaemonRequests)
-#include "TestDaemonRequests.moc"

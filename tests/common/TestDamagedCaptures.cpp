@@ -132,6 +132,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestDamagedCaptures)
-#include "TestDamagedCaptures.moc"

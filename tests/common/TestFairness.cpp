@@ -1,7 +1,7 @@
 // One client may not starve another, nor fill a daemon with work.
-#include "common/daemon/Daemon.h"
 #include "protocol/jsonrpc/JsonRpc.h"
 #include "protocol/wire/JsonText.h"
+#include "tests/support/DaemonClient.h"
 
 using namespace hermes;
 
@@ -33,9 +33,7 @@ class TestFairness : public QObject {
 private Q_SLOTS:
     void init() {
         daemon = std::make_unique<BusyDaemon>();
-        QVERIFY(!daemon->prepare({"busy", "--listen", "tcp://127.0.0.1:0", "--set", "limits.pending=4",
-                                  "--set", "log.level=error"}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {"limits.pending=4", "log.level=error"});
     }
 
     void floodDoesNotHoldUpAnother() {
@@ -52,7 +50,7 @@ private Q_SLOTS:
         });
         other->write(request(1, "daemon.info"));
         QTRY_VERIFY(meanwhile >= 0);
-        QVERIFY2(meanwhile < many / 5, qPrintable(QString("%1 requests went before").arg(meanwhile)));
+        QVERIFY2(meanwhile < many / 5, saying("%1 requests went before", meanwhile));
         QTRY_COMPARE(daemon->counted, many);
     }
 
@@ -89,6 +87,3 @@ private:
     }
     std::unique_ptr<BusyDaemon> daemon;
 };
-
-QTEST_GUILESS_MAIN(TestFairness)
-#include "TestFairness.moc"

@@ -9,11 +9,7 @@
 #include "tests/support/FaultyInterface.h"
 #include "tests/support/LoopbackInterface.h"
 
-#include <QTcpServer>
-
 #include <sched.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 using namespace hermes;
 
@@ -108,9 +104,8 @@ private Q_SLOTS:
         const auto url = *InterfaceUrl::parse(first.address());
         const auto result = TcpServerInterface(url, nullptr).listen();
         QVERIFY(!result);
-        QVERIFY2(
-            result.error().message.contains(QString("port %1 of 127.0.0.1 is already in use").arg(url.port)),
-            qPrintable(result.error().message));
+        VERIFY_CONTAINS(result.error().message,
+                        QString("port %1 of 127.0.0.1 is already in use").arg(url.port));
     }
 
     void closedInterfaceRefusesAndCounts() {
@@ -203,7 +198,7 @@ private Q_SLOTS:
         const auto wrong = interface("somebody");
         QSignalSpy closed(wrong.get(), &Interface::closed);
         wrong->open();
-        QVERIFY2(closed[0][0].toString().contains("somebody"), qPrintable(closed[0][0].toString()));
+        VERIFY_CONTAINS(closed[0][0].toString(), "somebody");
     }
 
     void localSocketsNameTheirPeer() {
@@ -220,8 +215,7 @@ private Q_SLOTS:
         client.open();
         QVERIFY(client.isOpen());
         QTRY_VERIFY(peer);
-        QVERIFY2(peer->name().contains(QString("process %1 of user %2").arg(::getpid()).arg(::getuid())),
-                 qPrintable(peer->name()));
+        VERIFY_CONTAINS(peer->name(), QString("process %1 of user %2").arg(::getpid()).arg(::getuid()));
         QSignalSpy received(peer.get(), &Interface::received), answered(&client, &Interface::received);
         QSignalSpy closed(&client, &Interface::closed);
         QVERIFY(client.write("to the server") && peer->write("and back"));
@@ -345,8 +339,7 @@ private Q_SLOTS:
                 faulty.write("message " + QByteArray::number(i));
             faulty.write("end");
             QTest::qWait(0);
-            QElapsedTimer limit;
-            limit.start();
+            auto limit = runningTimer();
             for (int size = -1; size != got.size() && limit.elapsed() < 5000;) {
                 size = got.size();
                 QTest::qWait(20);
@@ -376,11 +369,7 @@ private Q_SLOTS:
         QTRY_COMPARE(got, sent);
     }
 
-    void aPeerThatVanishedIsFound_data() {
-        const Rows<bool> row("writes");
-        row("only read", false);
-        row("written to", true);
-    }
+    void aPeerThatVanishedIsFound_data() { falseAndTrue("writes", "only read", "written to"); }
 
     /// The last one: this process goes to a network of its own, whose only cable is then pulled.
     void aPeerThatVanishedIsFound() {
@@ -407,6 +396,3 @@ private Q_SLOTS:
         QTRY_VERIFY_WITH_TIMEOUT(closed.count() == 1 && peerClosed.count() == 1, 60000); // hours without
     }
 };
-
-QTEST_GUILESS_MAIN(TestInterfaces)
-#include "TestInterfaces.moc"

@@ -3,7 +3,6 @@
 #include "common/tls/Authority.h"
 #include "common/tls/FolderPlace.h"
 #include "common/tls/KeyFolder.h"
-#include "tests/support/FileSizeLimit.h"
 
 #include <climits>
 
@@ -26,7 +25,7 @@ private Q_SLOTS:
             const FileSizeLimit limit(rlim_t(before.size() + 10));
             const auto revoked = authority.revoke("anna");
             QVERIFY(!revoked);
-            QVERIFY2(revoked.error().message.contains("File too large"), qPrintable(revoked.error().message));
+            VERIFY_CONTAINS(revoked.error().message, "File too large");
         }
         QCOMPARE(contentOf(list), before);
         QVERIFY(authority.revoke("anna"));
@@ -56,7 +55,7 @@ private Q_SLOTS:
         QVERIFY(QDir(name).exists());
         const auto untold = KeyFolder::revoked(name);
         QVERIFY(!untold);
-        QVERIFY2(untold.error().message.contains("File name too long"), qPrintable(untold.error().message));
+        VERIFY_CONTAINS(untold.error().message, "File name too long");
     }
 
     void aFolderTakesThePlaceOfAnEmptyOne() {
@@ -77,6 +76,3 @@ private Q_SLOTS:
         QVERIFY(dir.exists("empty"));
     }
 };
-
-QTEST_GUILESS_MAIN(TestKeyFiles)
-#include "TestKeyFiles.moc"

@@ -3,8 +3,6 @@
 #include "common/interface/Listener.h"
 #include "common/tls/Authority.h"
 
-#include <malloc.h>
-
 using namespace hermes;
 
 class TestLargeWrites : public QObject {
@@ -93,8 +91,8 @@ private Q_SLOTS:
             QCoreApplication::processEvents();
             most = std::max(most, inUse() - before);
         }
-        QVERIFY2(writer_->bytesToWrite() > 5 << 20, qPrintable(QString::number(writer_->bytesToWrite())));
-        QVERIFY2(most < 1 << 20, qPrintable(QString::number(most)));
+        QVERIFY2(writer_->bytesToWrite() > 5 << 20, saying(writer_->bytesToWrite()));
+        QVERIFY2(most < 1 << 20, saying(most));
     }
 
     void areForgottenAtTheEnd_data() { carriers(); }
@@ -121,6 +119,3 @@ private:
     std::unique_ptr<Interface> writer_, reader_;
     QByteArray read_;
 };
-
-QTEST_GUILESS_MAIN(TestLargeWrites)
-#include "TestLargeWrites.moc"

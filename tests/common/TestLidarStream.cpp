@@ -104,6 +104,3 @@ private Q_SLOTS:
         QCOMPARE(stream.sensors().sensors().size(), std::size_t(2));
     }
 };
-
-QTEST_APPLESS_MAIN(TestLidarStream)
-#include "TestLidarStream.moc"

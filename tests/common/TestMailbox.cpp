@@ -63,6 +63,3 @@ private Q_SLOTS:
         QCOMPARE(next, count);
     }
 };
-
-QTEST_APPLESS_MAIN(TestMailbox)
-#include "TestMailbox.moc"

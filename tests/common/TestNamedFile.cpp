@@ -1,8 +1,5 @@
 #include "common/files/NamedFile.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 using namespace hermes;
 
 /// A folder for clients beside one that is not, with all that can stand in the way. Whatever a client names:
@@ -70,8 +67,7 @@ private Q_SLOTS:
     void refusesToRead() {
         FETCH(QString, path, QString, why);
         const QString full = path.startsWith('/') ? path : at(path);
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         const auto read = readNamedFile(full, folders(), 100);
         QVERIFY(!read);
         QVERIFY(time.elapsed() < 1000);
@@ -159,8 +155,7 @@ private Q_SLOTS:
             QString name = "allowed";
             for (auto left = random() % 5; left > 0; --left)
                 name += '/' + steps[random() % steps.size()];
-            QElapsedTimer time;
-            time.start();
+            auto time = runningTimer();
             if (const auto read = readNamedFile(at(name), folders(), 100))
                 QVERIFY2(!read->contains("secret"), qPrintable(name));
             writeNamedFile(at(name), folders(), "written", random() % 2 == 0);
@@ -181,7 +176,7 @@ private Q_SLOTS:
         for (const auto &[error, path] : {std::pair{missing.error(), QString("sub/none")},
                                           std::pair{unwritten.error(), QString("none/map")}}) {
             QCOMPARE(error.data["path"].toString(), here + '/' + path);
-            QVERIFY2(error.message.startsWith(here + '/' + path + ": cannot be "), qPrintable(error.message));
+            VERIFY_STARTS(error.message, here + '/' + path + ": cannot be ");
             QVERIFY2(error.message.endsWith(
                          QString("(\"%1\" was looked for in %2, where this program runs)").arg(path, here)),
                      qPrintable(error.message));
@@ -220,6 +215,3 @@ private:
 
     std::unique_ptr<QTemporaryDir> root_;
 };
-
-QTEST_GUILESS_MAIN(TestNamedFile)
-#include "TestNamedFile.moc"

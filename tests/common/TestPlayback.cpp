@@ -1,18 +1,12 @@
 #include "common/recording/Playback.h"
 
-#include <utility>
-
 using namespace hermes;
 
 /// What a replay without a single record does: there is nothing that it would wait for.
 class TestPlayback : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void beginsWhenItGoesOn_data() {
-        const Rows<bool> row("seek");
-        row("released", false);
-        row("sought", true);
-    }
+    void beginsWhenItGoesOn_data() { falseAndTrue("seek", "released", "sought"); }
 
     void beginsWhenItGoesOn() {
         QFETCH(bool, seek);
@@ -48,8 +42,7 @@ private Q_SLOTS:
         QTRY_COMPARE(played.load(), 2);
         playback.setSpeed(1);
         playback.setPaused(false);
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         QTRY_COMPARE(played.load(), 3);
         QVERIFY(timer.elapsed() >= 50);
         QVERIFY(!QTest::qWaitFor([&] { return played == 4; }, 200)); // two hours away
@@ -82,8 +75,7 @@ private Q_SLOTS:
             QVERIFY(!QTest::qWaitFor([&] { return last_ns != end_ns; }, 50));
             QCOMPARE(playback.status().position_s, time_s);
         }
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         playback.setPaused(false); // goes on as if it had not been shown
         QTRY_VERIFY(last_ns >= 3300000000);
         QVERIFY(timer.elapsed() >= 290);
@@ -104,6 +96,3 @@ private Q_SLOTS:
         QTRY_COMPARE(turn.load(), int(Playback::Turn::Due));
     }
 };
-
-QTEST_GUILESS_MAIN(TestPlayback)
-#include "TestPlayback.moc"

@@ -121,6 +121,3 @@ private Q_SLOTS:
         QCOMPARE(logger.level("disk"), "ok");
     }
 };
-
-QTEST_GUILESS_MAIN(TestRecording)
-#include "TestRecording.moc"

@@ -133,7 +133,7 @@ private Q_SLOTS:
         QVERIFY(QFile::resize(path, 5));
         const Result<QJsonValue> stopped = logger.call("record.stop");
         QVERIFY(!stopped);
-        QVERIFY2(stopped.error().message.contains("was cut"), qPrintable(stopped.error().message));
+        VERIFY_CONTAINS(stopped.error().message, "was cut");
         QCOMPARE(stopped.error().data.toObject().value("path").toString(), path);
         QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
     }
@@ -174,11 +174,7 @@ private Q_SLOTS:
             QVERIFY(sidecarOf(other.filePath("cut")).value("ended").isNull());
     }
 
-    void aStopWhileItBeginsEndsIt_data() {
-        const Rows<bool> row("begins");
-        row("begins", true);
-        row("does not", false);
-    }
+    void aStopWhileItBeginsEndsIt_data() { falseAndTrue("begins", "does not", "begins"); }
 
     void aStopWhileItBeginsEndsIt() {
         QFETCH(bool, begins);
@@ -246,8 +242,7 @@ private Q_SLOTS:
         QCOMPARE(next.call("record.list")->toArray()[0].toObject().value("complete"), QJsonValue(false));
         QTRY_COMPARE(next.level("recording"), "warn");
         for (const QString &word : {QString("\"a\" was cut off"), cut, sidecar.value("end_utc").toString()})
-            QVERIFY2(next.item("recording").message.contains(word),
-                     qPrintable(next.item("recording").message));
+            VERIFY_CONTAINS(next.item("recording").message, word);
         QVERIFY(next.call("record.start", {{"name", "b"}}).ok());
         QCOMPARE(next.level("recording"), "ok");
     }
@@ -290,6 +285,3 @@ private Q_SLOTS:
                  root.path() + "/a/logger.json: member counts.lines: found text \"two\", expected a number");
     }
 };
-
-QTEST_GUILESS_MAIN(TestRecordingEnds)
-#include "TestRecordingEnds.moc"

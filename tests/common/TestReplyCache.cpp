@@ -25,8 +25,7 @@ class TestReplyCache : public QObject {
         }
         /// What has come, when there are so many.
         std::vector<QJsonValue> replies(std::size_t count) {
-            QElapsedTimer limit;
-            limit.start();
+            auto limit = runningTimer();
             while (got.size() < count && limit.elapsed() < 5000 * slowness) {
                 QTest::qWait(1);
                 for (const CodecItem &item : codec.feed(socket.readAll()))
@@ -60,8 +59,7 @@ private Q_SLOTS:
     void init() {
         Log::instance().setStderr(false);
         daemon = std::make_unique<HaltingDaemon>();
-        QVERIFY(!daemon->prepare({"tested", "--listen", "tcp://127.0.0.1:0?protocol=serial"}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {}, "tcp://127.0.0.1:0?protocol=serial");
         client = std::make_unique<FrameClient>(daemon->server().addresses().value(0));
     }
 
@@ -182,8 +180,7 @@ private Q_SLOTS:
 
     void otherFramingsKeepNothing() {
         TestedDaemon plain;
-        QVERIFY(!plain.prepare({"tested", "--listen", "tcp://127.0.0.1:0"}));
-        QVERIFY(plain.launch());
+        launch(plain);
         RawClient raw(plain.server().addresses().value(0));
         raw.ask("subtract", QJsonArray{5, 3});
         raw.ask("subtract", QJsonArray{5, 3});
@@ -256,6 +253,3 @@ private:
     std::unique_ptr<HaltingDaemon> daemon;
     std::unique_ptr<FrameClient> client;
 };
-
-QTEST_GUILESS_MAIN(TestReplyCache)
-#include "TestReplyCache.moc"

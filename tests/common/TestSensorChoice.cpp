@@ -104,6 +104,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestSensorChoice)
-#include "TestSensorChoice.moc"

@@ -3,9 +3,7 @@
 #include "common/interface/PtyInterface.h"
 #include "common/interface/SerialInterface.h"
 
-#include <fcntl.h>
 #include <termios.h>
-#include <unistd.h>
 
 using namespace hermes;
 
@@ -189,8 +187,7 @@ private Q_SLOTS:
         QSignalSpy closed(&host, &Interface::closed);
         host.open();
         QCOMPARE(closed.count(), 1);
-        QVERIFY2(closed[0][0].toString().startsWith("cannot open serial://" + file.fileName() + ": "),
-                 qPrintable(closed[0][0].toString()));
+        VERIFY_STARTS(closed[0][0].toString(), "cannot open serial://" + file.fileName() + ": ");
     }
 
     void pulledLineIsNamedAndFoundAgain() {
@@ -204,8 +201,7 @@ private Q_SLOTS:
             QSignalSpy closed(&host, &Interface::closed);
             device.close();
             QTRY_VERIFY(closed.count() > 0);
-            QVERIFY2(closed[0][0].toString().contains("serial://" + link),
-                     qPrintable(closed[0][0].toString()));
+            VERIFY_CONTAINS(closed[0][0].toString(), "serial://" + link);
             QVERIFY(!host.isOpen());
             QTRY_VERIFY(closed.count() > 1); // a try in vain
             QVERIFY(closed[1][0].toString().contains("no such device"));
@@ -279,6 +275,3 @@ private:
     std::unique_ptr<QTemporaryDir> folder;
     QString link;
 };
-
-QTEST_GUILESS_MAIN(TestSerialInterface)
-#include "TestSerialInterface.moc"

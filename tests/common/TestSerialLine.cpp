@@ -8,8 +8,6 @@
 
 using namespace hermes;
 
-namespace {
-
 constexpr int damageOneIn = 200;
 constexpr double bytesPerSecond = 11520;
 
@@ -43,13 +41,11 @@ struct Figures {
     double median = 0, p99 = 0, worst = 0;
 };
 
-Figures figuresOf(std::vector<double> values) {
+static Figures figuresOf(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const auto at = [&values](double part) { return values[std::size_t(part * double(values.size() - 1))]; };
     return {at(0.5), at(0.99), at(1)};
 }
-
-} // namespace
 
 class TestSerialLine : public QObject {
     Q_OBJECT
@@ -297,7 +293,7 @@ private Q_SLOTS:
         client->call("halt", QJsonObject{{"number", 1}}, halted, std::chrono::seconds(5),
                      Client::Repeats::AtOnce);
         QTRY_VERIFY(countedAtHalt >= 0);
-        QVERIFY2(countedAtHalt < 10, qPrintable(QString::number(countedAtHalt)));
+        QVERIFY2(countedAtHalt < 10, saying(countedAtHalt));
         QTRY_COMPARE_WITH_TIMEOUT(answered, 50, 15000); // repeated
         for (const auto &[number, times] : daemon->times)
             QCOMPARE(times, 1);
@@ -362,9 +358,7 @@ private Q_SLOTS:
 private:
     void startDaemon() {
         daemon = std::make_unique<CountingDaemon>();
-        QVERIFY(!daemon->prepare(
-            {"tested", "--listen", "serial://" + line->device(0) + "?baud=115200&protocol=serial"}));
-        QVERIFY(daemon->launch());
+        launch(*daemon, {}, "serial://" + line->device(0) + "?baud=115200&protocol=serial");
     }
     std::unique_ptr<Client> newClient() {
         auto made = std::make_unique<Client>();
@@ -393,6 +387,3 @@ private:
     std::unique_ptr<CountingDaemon> daemon;
     std::unique_ptr<Client> client;
 };
-
-QTEST_GUILESS_MAIN(TestSerialLine)
-#include "TestSerialLine.moc"

@@ -50,6 +50,3 @@ private Q_SLOTS:
             QSKIP("no service of this system has further members (deploy/test-install makes one)");
     }
 };
-
-QTEST_GUILESS_MAIN(TestServiceAccount)
-#include "TestServiceAccount.moc"

@@ -3,7 +3,6 @@
 #include "common/settings/SettingsTable.h"
 
 #include <cerrno>
-#include <sys/stat.h>
 #include <sys/sysmacros.h>
 
 using namespace hermes;
@@ -66,7 +65,7 @@ private Q_SLOTS:
         const QJsonObject error = result.error().data["errors"][0].toObject();
         QCOMPARE(error["path"].toString(), path);
         QVERIFY(!error["expected"].toString().isEmpty());
-        QVERIFY2(result.error().message.startsWith(path + " is "), qPrintable(result.error().message));
+        VERIFY_STARTS(result.error().message, path + " is ");
         QCOMPARE(settings->values(), before);
         QCOMPARE(changed.count(), 0);
     }
@@ -216,8 +215,8 @@ private Q_SLOTS:
         put(file, text);
         const auto result = settings->load(file);
         QVERIFY(!result);
-        QVERIFY2(result.error().message.contains(file), qPrintable(result.error().message));
-        QVERIFY2(result.error().message.contains(says), qPrintable(result.error().message));
+        VERIFY_CONTAINS(result.error().message, file);
+        VERIFY_CONTAINS(result.error().message, says);
         QVERIFY2(!result.error().message.endsWith('.'), "more may follow in the sentence");
         QCOMPARE(settings->values(), settings->defaults());
     }
@@ -250,8 +249,7 @@ private Q_SLOTS:
     }
 
     void replacesNoDevice_data() {
-        QTest::addColumn<mode_t>("kind");
-        QTest::addColumn<bool>("linked");
+        Rows<mode_t, bool>("kind", "linked");
         for (const bool linked : {false, true}) {
             QTest::addRow("pipe%s", linked ? ", linked" : "") << mode_t(S_IFIFO) << linked;
             QTest::addRow("device%s", linked ? ", linked" : "") << mode_t(S_IFCHR) << linked;
@@ -294,6 +292,3 @@ private:
     std::unique_ptr<Settings> settings;
     QTemporaryDir folder;
 };
-
-QTEST_GUILESS_MAIN(TestSettings)
-#include "TestSettings.moc"

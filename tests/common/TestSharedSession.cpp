@@ -43,7 +43,7 @@ private Q_SLOTS:
             auto other = std::async(std::launch::async, [&] { return begin(givesUp, "other"); });
             const Result<void> begun = begin(records, "logger");
             QCOMPARE(other.get().error().message, QString("refused"));
-            QVERIFY2(begun.ok(), qPrintable(QString("%1: %2").arg(i).arg(begun.error().message)));
+            QVERIFY2(begun.ok(), saying("%1: %2", i, begun.error().message));
             QVERIFY(records.finish(RecordingEnd::Stopped, {}).ok());
             QCOMPARE(QDir(root.path() + '/' + name.name).entryList(QDir::Files | QDir::Hidden),
                      QStringList({"logger-0001.txt", "logger.json"}));
@@ -58,7 +58,7 @@ private Q_SLOTS:
         Logger two(root.path());
         const Result<QJsonValue> refused = two.call("record.start", {{"name", "two"}});
         QCOMPARE(refused.error().code, int(ErrorCode::NotReady));
-        QVERIFY2(refused.error().message.contains("record.folder"), qPrintable(refused.error().message));
+        VERIFY_CONTAINS(refused.error().message, "record.folder");
         QCOMPARE(two.level("recording"), "warn");
         QVERIFY(
             sidecarOf(folderOf(started)).value("ended").isNull()); // it is not taken for one that was cut off
@@ -66,6 +66,3 @@ private Q_SLOTS:
         QVERIFY(two.call("record.start", {{"name", "two"}}).ok());
     }
 };
-
-QTEST_GUILESS_MAIN(TestSharedSession)
-#include "TestSharedSession.moc"

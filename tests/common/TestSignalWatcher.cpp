@@ -1,9 +1,6 @@
 #include "common/daemon/SignalWatcher.h"
 
-#include <QSignalSpy>
-#include <csignal>
 #include <sys/wait.h>
-#include <unistd.h>
 
 using namespace hermes;
 
@@ -48,6 +45,3 @@ private Q_SLOTS:
         QTRY_COMPARE(received.size(), 1);
     }
 };
-
-QTEST_GUILESS_MAIN(TestSignalWatcher)
-#include "TestSignalWatcher.moc"

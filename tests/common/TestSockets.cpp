@@ -1,10 +1,8 @@
 // Waiting for sockets while signals come.
 #include "common/platform/Sockets.h"
 
-#include <csignal>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <unistd.h>
 
 using namespace hermes;
 
@@ -53,10 +51,9 @@ private Q_SLOTS:
 
     void signalsDoNotShortenWaiting() {
         const Signals signals;
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         QVERIFY(!sockets::waitFor(all_, 200));
-        QVERIFY2(timer.elapsed() >= 200, qPrintable(QString::number(timer.elapsed())));
+        QVERIFY2(timer.elapsed() >= 200, saying(timer.elapsed()));
         QVERIFY(!all_[0].isReady);
     }
 
@@ -76,6 +73,3 @@ private Q_SLOTS:
 private:
     std::vector<sockets::Awaited> all_;
 };
-
-QTEST_APPLESS_MAIN(TestSockets)
-#include "TestSockets.moc"

@@ -2,8 +2,6 @@
 #include "common/recording/Sidecar.h"
 #include "common/recording/StoredRecording.h"
 
-#include <sys/stat.h>
-
 using namespace hermes;
 
 static QJsonObject usual() {
@@ -67,9 +65,7 @@ private Q_SLOTS:
     }
 
     void refusals_data() {
-        QTest::addColumn<QJsonObject>("sidecar");
-        QTest::addColumn<QString>("name");
-        QTest::addColumn<int>("code");
+        Rows<QJsonObject, QString, int>("sidecar", "name", "code");
         const auto row = [](const char *title, const QJsonObject &sidecar, ErrorCode code,
                             const char *name = "run") {
             QTest::newRow(title) << sidecar << name << int(code);
@@ -94,7 +90,7 @@ private Q_SLOTS:
         const Result<StoredRecording> found = find(sidecar, name);
         const Error error = !found ? found.error() : found->files() ? Error() : found->files().error();
         QTEST(error.code, "code");
-        QVERIFY2(error.message.contains(name.section('/', -1)), qPrintable(error.message));
+        VERIFY_CONTAINS(error.message, name.section('/', -1));
     }
 
 private:
@@ -106,6 +102,3 @@ private:
 
     QTemporaryDir folder_;
 };
-
-QTEST_GUILESS_MAIN(TestStoredRecording)
-#include "TestStoredRecording.moc"

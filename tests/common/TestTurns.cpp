@@ -2,10 +2,10 @@
 #include "common/Turns.h"
 
 #include <QEventLoop>
-#include <QTest>
 #include <list>
 
-namespace hermes {
+using namespace hermes;
+
 static void spend(double duration_s) {
     const double end = monotonicNow() + duration_s;
     while (monotonicNow() < end) {
@@ -15,11 +15,7 @@ static void spend(double duration_s) {
 class TestTurns : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void stepsOfAnOwnerKeepTheirOrder_data() {
-        QTest::addColumn<unsigned>("seed");
-        for (unsigned seed = 1; seed <= 10; ++seed)
-            QTest::addRow("%u", seed) << seed;
-    }
+    void stepsOfAnOwnerKeepTheirOrder_data() { rowsOfSeeds<unsigned>(1, 10); }
 
     // Steps come while others wait and run, before and after the time in which an owner counts as rested.
     void stepsOfAnOwnerKeepTheirOrder() {
@@ -92,7 +88,7 @@ private Q_SLOTS:
             return false;
         });
         QTRY_VERIFY(before >= 0);
-        QVERIFY2(before <= 1, qPrintable(QString::number(before)));
+        QVERIFY2(before <= 1, saying(before));
     }
 
     void aStepMayWaitForALaterOne() {
@@ -124,8 +120,3 @@ private Q_SLOTS:
         QCOMPARE(ofGone, 0);
     }
 };
-
-} // namespace hermes
-
-QTEST_GUILESS_MAIN(hermes::TestTurns)
-#include "TestTurns.moc"

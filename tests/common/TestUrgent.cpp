@@ -53,7 +53,7 @@ private Q_SLOTS:
         QTRY_VERIFY(daemon->worked > 0);
         const int before = daemon->worked;
         const int then = other.ask("halt")["result"].toInt();
-        QVERIFY2(then < before + 50, qPrintable(QString::number(then - before)));
+        QVERIFY2(then < before + 50, saying(then - before));
         const QJsonArray replies = QJsonDocument::fromJson(busy.line()).array();
         QCOMPARE(replies.size(), 1000);
         for (int i = 0; i < replies.size(); ++i)
@@ -91,8 +91,7 @@ private Q_SLOTS:
     }
 
     void isNeverRefusedForItsForm_data() {
-        QTest::addColumn<QByteArray>("request");
-        QTest::addColumn<QByteArray>("taken");
+        Rows<QByteArray, QByteArray>("request", "taken");
         const auto row = [](const char *name, const QByteArray &params, const char *taken) {
             QTest::newRow(name) << R"({"jsonrpc":"2.0","id":1,"method":"freeze","params":)" + params + '}'
                                 << QByteArray(taken);
@@ -253,11 +252,7 @@ private:
     void start(const QStringList &more = {}) {
         daemon.reset();
         daemon = std::make_unique<StoppableDaemon>();
-        QStringList arguments{"tested", "--listen", "tcp://127.0.0.1:0"};
-        for (const QString &assignment : more)
-            arguments << "--set" << assignment;
-        QVERIFY(!daemon->prepare(arguments));
-        QVERIFY(daemon->launch());
+        launch(*daemon, more);
     }
     QString address() const { return daemon->server().addresses().value(0); }
     int count(const char *what) const { return daemon->server().counters()[QLatin1String(what)].toInt(); }
@@ -265,6 +260,3 @@ private:
 
     std::unique_ptr<StoppableDaemon> daemon;
 };
-
-QTEST_GUILESS_MAIN(TestUrgent)
-#include "TestUrgent.moc"

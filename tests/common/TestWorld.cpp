@@ -26,8 +26,7 @@ class TestWorld : public QObject {
 
 private Q_SLOTS:
     void refusesBadFiles_data() {
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("message"); ///< what it begins with
+        Rows<QByteArray, QByteArray>("text", "message"); // message: what it begins with
         const QByteArray good = square;
         const auto with = [&](const char *from, const QByteArray &to) {
             return QByteArray(good).replace(from, to);
@@ -196,6 +195,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestWorld)
-#include "TestWorld.moc"

@@ -3,12 +3,6 @@
 #include "daemons/motorcontrol/LineMaster.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 
-#include <algorithm>
-#include <deque>
-#include <functional>
-#include <memory>
-#include <optional>
-
 /// Controllers of the motor control on one line with emulated RoboClaws, on a clock of its own. What is sent
 /// and answered passes through hooks that may lose or change it.
 class ControllerBench {

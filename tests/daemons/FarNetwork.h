@@ -1,9 +1,6 @@
 #pragma once
 
-#include <QFile>
-#include <QProcess>
 #include <QStringList>
-#include <QtTest>
 
 #include <cerrno>
 #include <cstring>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "daemons/scanmatcher/DriveJournal.h"
+#include "daemons/scanmatcher/JournalBlock.h"
 
-#include <vector>
+#include <QCborStreamWriter>
 
 namespace hermes::scanmatcher {
 
@@ -29,24 +29,24 @@ struct Tables {
         QByteArray bytes;
         QCborStreamWriter out(&bytes);
         out.startMap();
-        put(out, journal::scans, scans);
-        put(out, journal::edges, edges);
-        put(out, journal::keys, keys);
-        put(out, journal::points, points);
-        put(out, journal::motions, motions);
-        put(out, journal::poses, poses);
-        put(out, journal::weights, weights);
-        put(out, journal::since, since);
-        put(out, journal::progress, progress);
+        put(out, "scans", scans);
+        put(out, "edges", edges);
+        put(out, "keys", keys);
+        put(out, "points", points);
+        put(out, "motions", motions);
+        put(out, "poses", poses);
+        put(out, "weights", weights);
+        put(out, "since", since);
+        put(out, "progress", progress);
         out.endMap();
         return bytes;
     }
 
 private:
     template <typename T>
-    static void put(QCborStreamWriter &out, const journal::Table &table, const std::vector<T> &numbers) {
-        out.append(QLatin1String(table.name));
-        out.append(QCborTag(sizeof(T) == 4 ? journal::floats : journal::doubles));
+    static void put(QCborStreamWriter &out, const char *table, const std::vector<T> &numbers) {
+        out.append(QLatin1String(table));
+        out.append(QCborTag(sizeof(T) == 4 ? 85 : 86));
         out.appendByteString(reinterpret_cast<const char *>(numbers.data()),
                              qsizetype(numbers.size() * sizeof(T)));
     }

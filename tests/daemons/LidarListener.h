@@ -1,10 +1,7 @@
 #pragma once
 
 #include "daemons/velodynelogger/LidarFeed.h"
-#include "tests/support/Patience.h"
 #include "tests/support/Sensor.h"
-
-#include <QTemporaryDir>
 
 namespace hermes {
 

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <pthread.h>
-#include <thread>
-#include <unistd.h>
-#include <vector>
 
 /// Notices when a processor stands still for everybody, as those of a virtual machine do at times: a
 /// real-time thread on each wakes every few milliseconds. What is measured meanwhile tells nothing of the

@@ -3,11 +3,6 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "tests/support/DaemonClient.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <cmath>
-
 namespace hermes {
 
 using namespace scanmatcher;
@@ -76,10 +71,7 @@ protected:
 
 inline void MatcherFixture::startSource(quint16 port) {
     source = std::make_unique<ScanSource>();
-    QVERIFY(!source->prepare({"scansource", "--listen", QString("tcp://127.0.0.1:%1").arg(port), "--set",
-                              "limits.topic_bytes=100000000"}));
-    const auto launched = source->launch();
-    QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+    launch(*source, {"limits.topic_bytes=100000000"}, QString("tcp://127.0.0.1:%1").arg(port));
     sourcePort = quint16(QUrl(source->server().addresses().value(0)).port());
 }
 
@@ -87,10 +79,8 @@ inline void MatcherFixture::setUp() {
     folder = std::make_unique<QTemporaryDir>();
     startSource(0);
     matcher = std::make_unique<ScanMatcher>();
-    QVERIFY(!matcher->prepare({"scanmatcher", "--listen", "tcp://127.0.0.1:0", "--set",
-                               QString("source.address=127.0.0.1:%1").arg(sourcePort), "--set",
-                               "map.folder=" + folder->path(), "--set", "map.journal=drive.journal"}));
-    QVERIFY(matcher->launch().ok());
+    launch(*matcher, {QString("source.address=127.0.0.1:%1").arg(sourcePort), "map.folder=" + folder->path(),
+                      "map.journal=drive.journal"});
     connectTo(*matcher);
     QTRY_VERIFY(source->hasSubscribers("scan2d"));
 }

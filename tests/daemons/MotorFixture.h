@@ -4,9 +4,6 @@
 #include "daemons/motorcontrol/MotorControl.h"
 #include "tests/support/DaemonClient.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 /// A motor control in this process, two emulated controllers on one line, and a client.
 class MotorFixture : protected DaemonClient {
 protected:
@@ -49,20 +46,9 @@ protected:
     /// The client may be silent for 1 s, as it is when the machine stalls.
     void launch(const QStringList &settings = {}) {
         daemon_ = std::make_unique<hermes::motorcontrol::MotorControl>();
-        QStringList arguments{"motorcontrol",
-                              "--listen",
-                              "tcp://127.0.0.1:0",
-                              "--set",
-                              "controllers.1.url=" + url(),
-                              "--set",
-                              "controllers.2.url=" + url(),
-                              "--set",
-                              "safety.command_timeout_s=1"};
-        for (const QString &setting : settings)
-            arguments += {"--set", setting};
-        QVERIFY(!daemon_->prepare(arguments));
-        const auto launched = daemon_->launch();
-        QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+        ::launch(*daemon_, QStringList{"controllers.1.url=" + url(), "controllers.2.url=" + url(),
+                                       "safety.command_timeout_s=1"} +
+                               settings);
         connectTo(*daemon_);
     }
 

@@ -4,8 +4,6 @@
 #include "daemons/seriallogger/SerialMessages.h"
 #include "protocol/wire/Fields.h"
 
-#include <QJsonArray>
-
 /// A sentence with its checksum.
 inline QByteArray sentence(const QByteArray &body) {
     const auto sum = hermes::nmea::checksum({body.constData(), std::size_t(body.size())});

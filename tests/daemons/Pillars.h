@@ -3,10 +3,6 @@
 #include "common/world/World.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 
-#include <QtTest>
-
-#include <algorithm>
-
 /// The room with eight pillars that the demo drives through.
 inline hermes::World pillars() {
     const auto world = hermes::readWorld(qEnvironmentVariable("HERMES_SOURCE").toStdString() +

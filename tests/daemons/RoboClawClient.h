@@ -2,10 +2,6 @@
 
 #include "daemons/simulator/Drivetrain.h"
 
-#include <QtTest>
-
-#include <cmath>
-
 /// Big-endian.
 inline QByteArray number(std::int64_t value, int bytes) {
     QByteArray text;
@@ -26,7 +22,7 @@ inline std::int64_t integer(const QByteArray &data, int at, int size, bool isSig
 class RoboClawClient {
 public:
     explicit RoboClawClient(hermes::simulator::Drivetrain &drivetrain, int line = 0)
-        : drivetrain_(drivetrain)
+        : drivetrain_(&drivetrain)
         , line_(line) {}
 
     static std::uint16_t crcOf(const QByteArray &bytes) {
@@ -43,8 +39,8 @@ public:
         now_ += gap;
         QByteArray answer;
         for (const auto &part :
-             drivetrain_.receive(line_, reinterpret_cast<const std::uint8_t *>(bytes.constData()),
-                                 std::size_t(bytes.size()), now_)) {
+             drivetrain_->receive(line_, reinterpret_cast<const std::uint8_t *>(bytes.constData()),
+                                  std::size_t(bytes.size()), now_)) {
             answer += QByteArray(reinterpret_cast<const char *>(part.bytes.data()), int(part.bytes.size()));
             delay = part.delay;
         }
@@ -72,7 +68,7 @@ public:
     double delay = 0; ///< of the last answer; seconds
 
 private:
-    hermes::simulator::Drivetrain &drivetrain_;
+    hermes::simulator::Drivetrain *drivetrain_;
     int line_;
     double now_ = 0;
 };
@@ -93,9 +89,15 @@ inline void setQpps(RoboClawClient &client) {
     }
 }
 
-/// A client of a drive train whose motors have that control.
-inline RoboClawClient readyClient(hermes::simulator::Drivetrain &drivetrain) {
-    RoboClawClient client(drivetrain);
-    setQpps(client);
-    return client;
-}
+/// For tests: a drive train, and a client at its first line.
+class DrivetrainFixture {
+protected:
+    /// Makes both anew.
+    void make(const hermes::simulator::Drivetrain::Options &options = {}) {
+        drivetrain = hermes::simulator::Drivetrain(options);
+        client = RoboClawClient(drivetrain);
+    }
+
+    hermes::simulator::Drivetrain drivetrain;
+    RoboClawClient client{drivetrain};
+};

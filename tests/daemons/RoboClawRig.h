@@ -7,28 +7,16 @@
 
 #include <QString>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
 #include <deque>
-#include <fcntl.h>
-#include <limits>
 #include <mutex>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
 #include <pty.h>
-#include <random>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <termios.h>
-#include <thread>
-#include <unistd.h>
-#include <vector>
 
 /// A robot for tests of the motor control: emulated controllers on a pseudo-terminal or behind a serial
 /// server, in a thread of their own that runs in real time, and an ear on the wire. The bytes of a

@@ -3,11 +3,6 @@
 #include "daemons/seriallogger/SerialExport.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialRecorder.h"
-#include "tests/support/FileSizeLimit.h"
-#include "tests/support/Files.h"
-#include "tests/support/Patience.h"
-
-#include <QTemporaryDir>
 
 namespace hermes {
 

@@ -5,9 +5,6 @@
 #include "daemons/seriallogger/SerialLogger.h"
 #include "tests/support/DaemonClient.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 namespace hermes {
 
 using namespace seriallogger;
@@ -54,10 +51,8 @@ inline void SerialLoggerFixture::tearDown() {
 inline void SerialLoggerFixture::launch(const QJsonArray &ports) {
     daemon_ = std::make_unique<SerialLogger>();
     const QString text = QString::fromUtf8(QJsonDocument(ports).toJson(QJsonDocument::Compact));
-    QVERIFY(!daemon_->prepare({"seriallogger", "--listen", "tcp://127.0.0.1:0", "--set", "ports=" + text,
-                               "--set", "record.folder=" + folder_->filePath("recordings"), "--set",
-                               "record.free_floor_bytes=0", "--set", "record.free_warn_bytes=0"}));
-    QVERIFY(daemon_->launch().ok());
+    ::launch(*daemon_, {"ports=" + text, "record.folder=" + folder_->filePath("recordings"),
+                        "record.free_floor_bytes=0", "record.free_warn_bytes=0"});
     connectTo(*daemon_);
 }
 

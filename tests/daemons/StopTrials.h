@@ -2,12 +2,6 @@
 
 #include "MachineStalls.h"
 #include "RoboClawRig.h"
-#include "tests/support/Patience.h"
-
-#include <QProcess>
-#include <QRegularExpression>
-
-#include <sys/resource.h>
 
 /// Trials of how fast hermes-motorcontrol stops: the daemon and a driving client as processes, emulated
 /// controllers with wheels and body in this one. Times are taken at the far end of the line, that of a serial

@@ -140,7 +140,7 @@ private Q_SLOTS:
         pass(10, 24.4, 0); // 70 %: 10 Ah above the reserve
         pass(600, 24, 8);  // 10 A
         const double charge = 0.7 - 10 / 6. / 20;
-        QVERIFY2(std::abs(*state().charge - charge) < 0.005, qPrintable(QString::number(*state().charge)));
+        QVERIFY2(std::abs(*state().charge - charge) < 0.005, saying(*state().charge));
         QVERIFY(std::abs(*state().current_a - 10) < 0.01);
         QVERIFY(std::abs(*state().left_s - (charge - 0.2) * 20 / 10 * 3600) < 60);
         const double least_s = *state().leftLeast_s;
@@ -157,7 +157,7 @@ private Q_SLOTS:
         pass(600, 24, 8);
         gauge_->configure({20, 25, 23, 12, 0.2});
         pass(0.1, 24, 8);
-        QVERIFY2(std::abs(*state().current_a - 20) < 0.01, qPrintable(QString::number(*state().current_a)));
+        QVERIFY2(std::abs(*state().current_a - 20) < 0.01, saying(*state().current_a));
         QVERIFY(std::abs(*state().left_s - (*state().charge - 0.2) * 20 / 20 * 3600) < 5);
         pass(6, 24, 0); // a tenth of the minute
         QVERIFY(*state().current_a > 18 && *state().current_a < 20);
@@ -176,7 +176,7 @@ private Q_SLOTS:
         pass(10, 23.5, 0);
         QVERIFY(*state().charge < 0.1);
         pass(10, 25.4, 0);
-        QVERIFY2(*state().charge > 0.95, qPrintable(QString::number(*state().charge)));
+        QVERIFY2(*state().charge > 0.95, saying(*state().charge));
     }
 
     void aGapMakesUnsure() {
@@ -197,11 +197,7 @@ private Q_SLOTS:
         QVERIFY(std::abs(*state().charge - 0.5) < 0.01);
     }
 
-    void isRightWithinWhatItTells_data() {
-        QTest::addColumn<int>("seed");
-        for (int seed = 1; seed <= 20; ++seed)
-            QTest::addRow("seed %d", seed) << seed;
-    }
+    void isRightWithinWhatItTells_data() { rowsOfSeeds(1, 20); }
 
     // A day of a robot on a battery with a resistance, whose gauge knows its capacity and idle current by 10
     // % only.
@@ -228,7 +224,7 @@ private Q_SLOTS:
             ++told;
             within += std::abs(*state().charge - battery.charge()) < 2 * *state().chargeDeviation;
         }
-        QVERIFY2(told > 10 && within > 0.95 * told, qPrintable(QString("%1 of %2").arg(within).arg(told)));
+        QVERIFY2(told > 10 && within > 0.95 * told, saying("%1 of %2", within, told));
     }
 
     void anyInputGivesSenseOrNothing() {
@@ -284,6 +280,3 @@ private Q_SLOTS:
         now_ = 1000;
     }
 };
-
-QTEST_GUILESS_MAIN(TestBatteryGauge)
-#include "TestBatteryGauge.moc"

@@ -64,7 +64,7 @@ private Q_SLOTS:
             if (watch.isMoving() && noticed == 0)
                 noticed = time;
         }
-        QVERIFY2(noticed > 1.9 && noticed < 2.2, qPrintable(QString::number(noticed)));
+        QVERIFY2(noticed > 1.9 && noticed < 2.2, saying(noticed));
         for (int i = 0; i < 60; ++i)
             watch.read({0, 0}, 4 + i * 0.02);
         QVERIFY(watch.stands());
@@ -104,7 +104,7 @@ private Q_SLOTS:
             QVERIFY(stop != bench.sent.end());
             before = std::max(before, int(stop - bench.sent.begin()));
         }
-        QVERIFY2(before <= 3, qPrintable(QString::number(before))); // in 20 ms two others fit
+        QVERIFY2(before <= 3, saying(before)); // in 20 ms two others fit
     }
 
     void whoIsNotHeardIsStoppedInSilence_data() {
@@ -150,7 +150,7 @@ private Q_SLOTS:
             last = packet.time;
         }
         if (latency == 0)
-            QVERIFY2(shortest > timeout_s + 0.05, qPrintable(QString::number(shortest)));
+            QVERIFY2(shortest > timeout_s + 0.05, saying(shortest));
         bench.speed = 0;
         bench.passes = ControllerBench().passes;
         bench.latency = 0;
@@ -185,7 +185,7 @@ private Q_SLOTS:
         QVERIFY(bench.runUntil([&] { return bench.fastest() == 0; }, 2));
         const double took = bench.now() - told;
         // Braking from 0.5 m/s and half of it more, 0.2 s and three readings, the time-out and 0.1 s.
-        QVERIFY2(took < 0.19 + 0.26 + 0.3 + 0.05, qPrintable(QString::number(took)));
+        QVERIFY2(took < 0.19 + 0.26 + 0.3 + 0.05, saying(took));
         QVERIFY(!bench.controller(0).takeDisobedience().isEmpty());
         QVERIFY(bench.controller(0).takeDisobedience().isEmpty());
         bench.run(3);
@@ -208,8 +208,7 @@ private Q_SLOTS:
     }
 
     void whoIsStoppedOnASlowLineHasItsTurns_data() {
-        QTest::addColumn<double>("latency");
-        QTest::addColumn<double>("loss");
+        Rows<double, double>("latency", "loss");
         for (const double latency : {0.0, 0.010, 0.016}) {
             for (const double loss : {0.5, 0.9, 1.0})
                 QTest::addRow("%g ms, %g lost", 1000 * latency, loss) << latency << loss;
@@ -301,8 +300,7 @@ private Q_SLOTS:
             ++counts[packet.controller][packet.command()];
         for (int i = 0; i < controllers; ++i) {
             QVERIFY(!bench.controller(i).isTooSlow());
-            QVERIFY2(*bench.controller(i).rate_Hz() >= least,
-                     qPrintable(QString::number(*bench.controller(i).rate_Hz())));
+            QVERIFY2(*bench.controller(i).rate_Hz() >= least, saying(*bench.controller(i).rate_Hz()));
             for (const Command command : {Command::SpeedAccel, Command::ReadEncoders})
                 QVERIFY(counts[i][command] >= int(10 * least) - 2);
             QVERIFY(counts[i][Command::ReadStatus] >= 5);
@@ -349,8 +347,7 @@ private Q_SLOTS:
         QVERIFY2(bench.runUntil([&] { return bench.controller(1).error().contains(says); }, 2),
                  qPrintable(bench.controller(1).error()));
         if (missing == Command::SetSerialTimeout)
-            QVERIFY2(bench.controller(1).error().contains("would not stop by itself"),
-                     qPrintable(bench.controller(1).error()));
+            VERIFY_CONTAINS(bench.controller(1).error(), "would not stop by itself");
     }
 
     // Only the gauge of the battery needs them. They are asked for seldom: what waits for an answer waits
@@ -368,7 +365,7 @@ private Q_SLOTS:
         QVERIFY(bench.controller(0).readings().complete && !bench.controller(0).readings().duty);
         const auto asked = std::count_if(bench.sent.begin(), bench.sent.end(),
                                          [](const auto &p) { return p.command() == Command::ReadPwm; });
-        QVERIFY2(asked >= 4 && asked <= 8, qPrintable(QString::number(asked)));
+        QVERIFY2(asked >= 4 && asked <= 8, saying(asked));
         deaf = false;
         QVERIFY(bench.runUntil([&] { return bench.controller(0).readings().duty.has_value(); }, 11));
         QVERIFY(bench.controller(0).readings().duty->at(0) > 0.1);
@@ -391,7 +388,7 @@ private Q_SLOTS:
         QVERIFY(bench.fastest() > 0.95 * fast);
         const auto asked = std::count_if(bench.sent.begin(), bench.sent.end(),
                                          [](const auto &p) { return p.command() == Command::ReadPwm; });
-        QVERIFY2(asked <= 8, qPrintable(QString::number(asked)));
+        QVERIFY2(asked <= 8, saying(asked));
         bench.passes = ControllerBench().passes;
         QVERIFY(bench.runUntil([&] { return bench.controller(0).readings().duty.has_value(); }, 11));
     }
@@ -415,7 +412,7 @@ private Q_SLOTS:
         };
         QVERIFY(bench.runUntil([&] { return !bench.controller(1).isReady(); }, after_s));
         const QString says = QString("answers, but not command %1 (").arg(int(missing));
-        QVERIFY2(bench.controller(1).error().contains(says), qPrintable(bench.controller(1).error()));
+        VERIFY_CONTAINS(bench.controller(1).error(), says);
         bench.speed = 0; // as the drive does when one is not ready
         QVERIFY(bench.runUntil([&] { return bench.fastest() == 0; }, 0.3));
     }
@@ -445,9 +442,8 @@ private Q_SLOTS:
         for (std::size_t i = 0; i < forget.size(); ++i)
             bench.emulator(1).receive(forget[i], bench.now());
         QVERIFY(bench.runUntil([&] { return !bench.controller(1).isReady(); }, 0.5));
-        QVERIFY2(bench.controller(1).error().startsWith(
-                     "has a time-out of 0 s, expected the 0.2 s that were written"),
-                 qPrintable(bench.controller(1).error()));
+        VERIFY_STARTS(bench.controller(1).error(),
+                      "has a time-out of 0 s, expected the 0.2 s that were written");
         bench.speed = 0;
         QVERIFY(bench.runUntil([&] { return bench.areReady(); }, 3));
         QCOMPARE(bench.emulator(1).serialTimeout(), 0.2);
@@ -466,6 +462,3 @@ private:
 
     static QString rowOf(Command command) { return QString("command %1").arg(int(command)); }
 };
-
-QTEST_GUILESS_MAIN(TestControllerStops)
-#include "TestControllerStops.moc"

@@ -88,7 +88,7 @@ private Q_SLOTS:
         QCOMPARE(drive_->step(0.1), (WheelValues{0, 0.3, 0, 0}));
         const Error error = refusal(drive_->driveWheels(anna, {0, 0, 0, 21}, 0, 0.1));
         QVERIFY(error.is(ErrorCode::OverLimit));
-        QVERIFY2(error.message.contains("rear_right is 21"), qPrintable(error.message));
+        VERIFY_CONTAINS(error.message, "rear_right is 21");
     }
 
     void needsTheLease() {
@@ -131,7 +131,7 @@ private Q_SLOTS:
         QVERIFY(drive_->driveTwist(anna, {0.5, 0, 0}, 0, 0).ok());
         QVERIFY(drive_->step(0.09) != still);
         QCOMPARE(drive_->step(0.1), still);
-        QVERIFY2(drive_->haltReason().contains("anna"), qPrintable(drive_->haltReason()));
+        VERIFY_CONTAINS(drive_->haltReason(), "anna");
         QVERIFY(drive_->acquire(bert, "bert", 1, 0.1).ok());
     }
 
@@ -380,7 +380,7 @@ private Q_SLOTS:
         const auto after = faultAfter(
             monitor, [&](double t) { return std::pair(told(t), measured(t, told(t))); }, 20);
         QCOMPARE(after.has_value(), latest > 0);
-        QVERIFY2(!after || *after < latest, qPrintable(QString::number(after.value_or(0))));
+        QVERIFY2(!after || *after < latest, saying(after.value_or(0)));
     }
 
 private:
@@ -399,6 +399,3 @@ private:
 
     std::unique_ptr<Drive> drive_;
 };
-
-QTEST_GUILESS_MAIN(TestDrive)
-#include "TestDrive.moc"

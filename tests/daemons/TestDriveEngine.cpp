@@ -20,7 +20,7 @@ private Q_SLOTS:
         QCOMPARE(drive.foreign, 0);
         QCOMPARE(drive.refused, 0);
         QCOMPARE(drive.halts, 0);
-        QVERIFY2(drive.longestPause < 0.25, qPrintable(QString::number(drive.longestPause)));
+        QVERIFY2(drive.longestPause < 0.25, saying(drive.longestPause));
         drive.rest(2);
         const Telemetry &told = drive.engine.report();
         qInfo("%llu of %llu bytes flipped, %llu failures counted, longest pause %.3f s, odometry off by %.1f "
@@ -46,9 +46,9 @@ private Q_SLOTS:
         drive.run(60, 0.001);
         QCOMPARE(failures(drive), 0ULL);
         QCOMPARE(drive.halts, 0);
-        QVERIFY2(drive.longestPause < 0.03, qPrintable(QString::number(drive.longestPause)));
+        QVERIFY2(drive.longestPause < 0.03, saying(drive.longestPause));
         drive.rest(2);
-        QVERIFY2(away(drive) < 0.005, qPrintable(QString::number(away(drive))));
+        QVERIFY2(away(drive) < 0.005, saying(away(drive)));
     }
 
     // The machine, or a debugger, holds it for half a second: the controllers were asked nothing.
@@ -61,7 +61,7 @@ private Q_SLOTS:
             QVERIFY2(drive.engine.controller(i).isReady(), qPrintable(drive.engine.controller(i).error()));
         drive.rest(1);
         QCOMPARE(drive.engine.report().counterJumps, 0ULL);
-        QVERIFY2(away(drive) < 0.01, qPrintable(QString::number(away(drive))));
+        QVERIFY2(away(drive) < 0.01, saying(away(drive)));
     }
 
     void drivingNeedsNoMoreMemory() {
@@ -87,6 +87,3 @@ private:
         return std::hypot(pose.x - drive.truth.x, pose.y - drive.truth.y);
     }
 };
-
-QTEST_GUILESS_MAIN(TestDriveEngine)
-#include "TestDriveEngine.moc"

@@ -6,8 +6,6 @@
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
-#include <fstream>
-
 using namespace hermes;
 using namespace hermes::simulator;
 using namespace vectorlib;
@@ -45,7 +43,7 @@ private Q_SLOTS:
         const Pose2D at = tracker.builder.report().pose, truth = simulation.truth().pose;
         const double off = std::hypot(at.x - truth.x, at.y - truth.y);
         QVERIFY(turns > 200);
-        QVERIFY2(off < 0.15, qPrintable(QString::number(off))); // of the last turn's middle
+        QVERIFY2(off < 0.15, saying(off)); // of the last turn's middle
 
         const std::string name =
             qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/tests/data/driven-map.csv";
@@ -67,9 +65,6 @@ private Q_SLOTS:
         }
         qInfo("%d turns, %zu walls, %.1f um from the stored ones, the pose %.1f mm off", turns, map.size(),
               worst * 1e6, off * 1e3);
-        QVERIFY2(worst < most, qPrintable(QString("%1 m").arg(worst)));
+        QVERIFY2(worst < most, saying("%1 m", worst));
     }
 };
-
-QTEST_APPLESS_MAIN(TestDrivenMap)
-#include "TestDrivenMap.moc"

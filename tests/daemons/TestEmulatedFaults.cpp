@@ -159,6 +159,3 @@ private:
     std::unique_ptr<Drivetrain> robot_;
     std::unique_ptr<RoboClawClient> client_;
 };
-
-QTEST_GUILESS_MAIN(TestEmulatedFaults)
-#include "TestEmulatedFaults.moc"

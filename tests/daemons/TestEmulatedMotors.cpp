@@ -4,16 +4,17 @@
 using namespace hermes;
 using namespace hermes::simulator;
 
-class TestEmulatedMotors : public QObject {
+class TestEmulatedMotors : public QObject, DrivetrainFixture {
     Q_OBJECT
 private Q_SLOTS:
+    void init() { make(); }
+
     void speedFollowsTheRamp() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         QVERIFY(client.speeds(0x80, 40000, -20000, 40000));
         pass(drivetrain, 0.5);
         const double half = drivetrain.controller(0).channel(0).speed();
-        QVERIFY2(std::abs(half - 20000) < 1500, qPrintable(QString::number(half)));
+        QVERIFY2(std::abs(half - 20000) < 1500, saying(half));
         pass(drivetrain, 1.5);
         QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - 40000) < 400);
         QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + 20000) < 200);
@@ -28,8 +29,7 @@ private Q_SLOTS:
     }
 
     void emergencyDecelerationStopsInTime() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         const int fast = 60479, slowing = 241916; // 1 m/s and 4 m/s^2 with wheels of 0.1 m
         QVERIFY(client.speeds(0x80, fast, fast, slowing));
         QVERIFY(client.speeds(0x81, fast, fast, slowing));
@@ -39,12 +39,10 @@ private Q_SLOTS:
         double standing = 0;
         for (; drivetrain.isMoving() && standing < 1; standing += 0.001)
             drivetrain.advance(0.001);
-        QVERIFY2(standing > 0.24 && standing < 0.25 + 0.05, qPrintable(QString::number(standing)));
+        QVERIFY2(standing > 0.24 && standing < 0.25 + 0.05, saying(standing));
     }
 
     void dutyTurnsTheMotor() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         QVERIFY(client.write(0x80, 34, number(16384, 2) + number(-16384, 2)));
         pass(drivetrain, 0.5);
         const double expected = 80000 * drivetrain.battery().voltage() / 24;
@@ -58,8 +56,6 @@ private Q_SLOTS:
     }
 
     void mixedDriveNeedsBothValues() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         const auto duties = [&] {
             pass(drivetrain, 0.01);
             const QByteArray pwm = client.read(0x80, 48);
@@ -90,8 +86,7 @@ private Q_SLOTS:
     }
 
     void positionsAreReached() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         QVERIFY(client.write(0x80, 22, number(5000, 4)));
         const auto way = [](int acceleration, int speed, int deceleration, int position) {
             return number(acceleration, 4) + number(speed, 4) + number(deceleration, 4) + number(position, 4);
@@ -114,8 +109,8 @@ private Q_SLOTS:
         }
         // 0.5 s to speed up over 5000 counts, 1 s to slow down over 10000, 25000 between: 2.75 s and the
         // approach.
-        QVERIFY2(seconds > 2.7 && seconds < 3.7, qPrintable(QString::number(seconds)));
-        QVERIFY2(std::abs(slowsSince - 1.75) < 0.15, qPrintable(QString::number(slowsSince)));
+        QVERIFY2(seconds > 2.7 && seconds < 3.7, saying(seconds));
+        QVERIFY2(std::abs(slowsSince - 1.75) < 0.15, saying(slowsSince));
         pass(drivetrain, 1);
         QVERIFY(!drivetrain.isMoving());
         QVERIFY(std::abs(client.count(0x80, 0) - 45000) <= 30 && farthest < 45030);
@@ -123,8 +118,7 @@ private Q_SLOTS:
     }
 
     void positionsWaitInTheQueue() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         const auto go = [&](int command, int position, int buffer) {
             return client.write(0x80, command,
                                 number(100000, 4) + number(20000, 4) + number(100000, 4) +
@@ -149,8 +143,7 @@ private Q_SLOTS:
     }
 
     void distancesAreDriven() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         const auto move = [&](int speed, int distance, int buffer) {
             return client.write(0x80, 41, number(speed, 4) + number(distance, 4) + number(buffer, 1));
         };
@@ -172,8 +165,7 @@ private Q_SLOTS:
     }
 
     void silenceStopsTheMotors() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         QVERIFY(client.write(0x80, 14, number(2, 1)));
         QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
         for (int i = 0; i < 10; ++i) {
@@ -193,8 +185,6 @@ private Q_SLOTS:
     }
 
     void encodersWrap() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         QVERIFY(client.write(0x80, 22, number(-5, 4)));
         QCOMPARE(client.read(0x80, 16).left(4).toHex(), QByteArray("fffffffb"));
         setQpps(client);
@@ -208,21 +198,20 @@ private Q_SLOTS:
     void batteryDrains() {
         Drivetrain::Options options;
         options.battery.capacity_Ah = 0.01;
-        Drivetrain drivetrain(options);
-        RoboClawClient client(drivetrain);
+        make(options);
         pass(drivetrain, 1);
         const auto before = integer(client.read(0x80, 24), 0, 2);
         QVERIFY(client.write(0x80, 34, number(20000, 2) + number(20000, 2)));
         pass(drivetrain, 20);
         const auto after = integer(client.read(0x80, 24), 0, 2);
-        QVERIFY2(after < before - 10, qPrintable(QString("%1 %2").arg(before).arg(after)));
+        QVERIFY2(after < before - 10, saying("%1 %2", before, after));
         QVERIFY(drivetrain.battery().charge() < 0.7);
     }
 
     void drivingBackwardDrainsItToo() {
-        const auto used = [](int speed) {
-            Drivetrain drivetrain;
-            RoboClawClient client = readyClient(drivetrain);
+        const auto used = [this](int speed) {
+            make();
+            setQpps(client);
             for (int i = 0; i < 60; ++i) { // their time-out is not to stop them
                 client.speeds(0x80, speed, speed, 100000);
                 client.speeds(0x81, speed, speed, 100000);
@@ -231,14 +220,12 @@ private Q_SLOTS:
             return 1 - drivetrain.battery().charge();
         };
         const double standing = used(0), forward = used(60000), backward = used(-60000);
-        QVERIFY2(forward > 2 * standing, qPrintable(QString("%1 %2").arg(forward).arg(standing)));
-        QVERIFY2(std::abs(backward - forward) < 0.05 * forward,
-                 qPrintable(QString("%1 %2").arg(backward).arg(forward)));
+        QVERIFY2(forward > 2 * standing, saying("%1 %2", forward, standing));
+        QVERIFY2(std::abs(backward - forward) < 0.05 * forward, saying("%1 %2", backward, forward));
     }
 
     void lowBatteryCutsTheMotors() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         QVERIFY(client.write(0x80, 57, number(210, 2) + number(340, 2)));
         QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
         pass(drivetrain, 0.5);
@@ -250,8 +237,7 @@ private Q_SLOTS:
     }
 
     void blockedWheelDrawsCurrent() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         QVERIFY(client.speeds(0x80, 60000, 60000, 300000));
         pass(drivetrain, 1);
         const double free = drivetrain.controller(0).channel(0).current();
@@ -270,8 +256,7 @@ private Q_SLOTS:
     }
 
     void brokenEncoderStandsStill() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         drivetrain.wheel(0).setEncoderBroken(true);
         QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
         pass(drivetrain, 1);
@@ -281,8 +266,7 @@ private Q_SLOTS:
     }
 
     void emergencyStopHolds() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
         pass(drivetrain, 0.5);
         drivetrain.controller(0).faults().status = roboclaw::EmergencyStop;
@@ -296,8 +280,8 @@ private Q_SLOTS:
     void slipShortensTheWay() {
         Drivetrain::Options options;
         options.slip = 0.2;
-        Drivetrain drivetrain(options);
-        RoboClawClient client = readyClient(drivetrain);
+        make(options);
+        setQpps(client);
         QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
         QVERIFY(client.speeds(0x81, 30000, 30000, 300000));
         pass(drivetrain, 2);
@@ -306,13 +290,13 @@ private Q_SLOTS:
     }
 
     void wheelsSlipEachByItself() {
-        const auto drive = [](std::uint64_t seed) { // for 20 s; where it comes to
+        const auto drive = [this](std::uint64_t seed) { // for 20 s; where it comes to
             Drivetrain::Options options;
             options.slip = 0.1;
             options.slipSpread = 0.03;
             options.seed = seed;
-            Drivetrain drivetrain(options);
-            RoboClawClient client = readyClient(drivetrain);
+            make(options);
+            setQpps(client);
             client.speeds(0x80, 76000, 76000, 3000000);
             client.speeds(0x81, 76000, 76000, 3000000);
             pass(drivetrain, 1);
@@ -324,12 +308,9 @@ private Q_SLOTS:
         const double way = 20 * 2 * 2 * M_PI * 0.1; // of the rims
         const Pose2D pose = drive(1);
         const double share = std::hypot(pose.x, pose.y) / way;
-        QVERIFY2(share > 0.8 && share < 0.93, qPrintable(QString::number(share)));
+        QVERIFY2(share > 0.8 && share < 0.93, saying(share));
         QVERIFY(std::abs(pose.theta) > 0.01);
         QCOMPARE(drive(1).theta, pose.theta); // the same seed, the same ground
         QVERIFY(drive(2).theta != pose.theta);
     }
 };
-
-QTEST_GUILESS_MAIN(TestEmulatedMotors)
-#include "TestEmulatedMotors.moc"

@@ -82,7 +82,7 @@ private Q_SLOTS:
         options.gps.rate_hz = rate;
         Simulation simulation(field(), options, start_ns);
         const QList<Told> told = listen(simulation, 10);
-        QVERIFY2(std::abs(told.size() - 20 * rate) <= 2, qPrintable(QString::number(told.size())));
+        QVERIFY2(std::abs(told.size() - 20 * rate) <= 2, saying(told.size()));
         double expected = std::floor(0.3 * rate + 1) / rate + 20; // seconds of the minute
         for (int i = 0; i < told.size(); i += 2) {
             const QList<QByteArray> rmc = told[i].fields, gga = told[i + 1].fields;
@@ -93,7 +93,7 @@ private Q_SLOTS:
             const double second = rmc[1].mid(4).toDouble();
             QVERIFY2(std::abs(second - expected) < 0.006, rmc[1].constData());
             const double late = told[i].after_s + 20.3 - expected; // a Velodyne wants 50 to 500 ms
-            QVERIFY2(late > 0.05 && late < 0.1, qPrintable(QString::number(late)));
+            QVERIFY2(late > 0.05 && late < 0.1, saying(late));
             QCOMPARE(rmc[9], QByteArray("141123"));
             expected += 1.0 / rate;
         }
@@ -298,6 +298,3 @@ private Q_SLOTS:
         QCOMPARE(quint64(counts.positions), received);
     }
 };
-
-QTEST_GUILESS_MAIN(TestGpsModel)
-#include "TestGpsModel.moc"

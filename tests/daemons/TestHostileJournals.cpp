@@ -11,8 +11,7 @@ class TestHostileJournals : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void hostileTablesAreRefused_data() {
-        QTest::addColumn<QByteArray>("bytes");
-        QTest::addColumn<bool>("isRead");
+        Rows<QByteArray, bool>("bytes", "isRead");
         const QByteArray first = firstItem();
         QTest::newRow("one scan") << first + item(Tables().content()) << true;
         const QByteArray two = Tables().addKey().addMotion().content();
@@ -21,6 +20,10 @@ private Q_SLOTS:
         QTest::newRow("another version") << firstItem(journal::mark, 2) + item(two) << false;
         QTest::newRow("no mark") << item(two, true) << false;
         QTest::newRow("the beginning twice") << first + first + item(two) << false;
+        QTest::newRow("no scan after the beginning") << first << false;
+        QTest::newRow("empty") << QByteArray() << false;
+        QTest::newRow("a map") << QByteArray("id,x1,y1,x2,y2\n") << false;
+        QTest::newRow("a length of 2^63") << QByteArray::fromHex("d9d9f782005b7fffffffffffffff00") << false;
         QTest::newRow("not tagged") << item(two) + item(two) << false;
         const auto row = [&](const QByteArray &name, const std::function<void(Tables &)> &spoil) {
             Tables tables = Tables().addKey().addMotion();
@@ -72,8 +75,7 @@ private Q_SLOTS:
         const auto read = readDriveJournal(bytes, "hostile.journal");
         QCOMPARE(read.ok(), isRead);
         if (!isRead) {
-            QVERIFY2(read.error().message.startsWith("hostile.journal: byte "),
-                     qPrintable(read.error().message));
+            VERIFY_STARTS(read.error().message, "hostile.journal: byte ");
             return;
         }
         QCOMPARE(read->leftOut, qint64(0));
@@ -122,6 +124,3 @@ private Q_SLOTS:
         QVERIFY(std::hypot(p.x - 2, p.y - 2) < 2);
     }
 };
-
-QTEST_GUILESS_MAIN(TestHostileJournals)
-#include "TestHostileJournals.moc"

@@ -1,10 +1,8 @@
 // Packets as they come from the network, and what becomes of those that are not the sensor's.
 #include "LidarListener.h"
 #include "protocol/nmea/Sentence.h"
-#include "tests/support/RealData.h"
 
 using namespace hermes;
-using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
 /// A position packet of a sensor that is locked to a GPS; the sentence without checksum.
@@ -51,8 +49,7 @@ static void sendCapture(const QString &path, quint16 port) {
     Datagram datagram;
     if (!reader.open(path.toStdString()))
         qFatal("%s", reader.error().c_str());
-    QElapsedTimer timer;
-    timer.start();
+    auto timer = runningTimer();
     std::int64_t first_ns = 0;
     while (reader.next(datagram) == PcapReader::Next::Datagram) {
         first_ns = first_ns ? first_ns : datagram.stamp_ns;
@@ -129,7 +126,7 @@ private Q_SLOTS:
             QVERIFY(cloud->replayed);
             ++clouds;
         }
-        QVERIFY2(turns >= 8 && clouds >= 8, qPrintable(QString("%1, %2").arg(turns).arg(clouds)));
+        QVERIFY2(turns >= 8 && clouds >= 8, saying("%1, %2", turns, clouds));
 
         QUdpSocket socket;
         for (int i = 0; i < 1000; ++i) {
@@ -258,6 +255,3 @@ private Q_SLOTS:
         QCOMPARE(toText(*listener.feed.counts().decoded), sensorText);
     }
 };
-
-QTEST_GUILESS_MAIN(TestLidarFeed)
-#include "TestLidarFeed.moc"

@@ -71,7 +71,7 @@ private Q_SLOTS:
             assembler.feed(simulation.nextPacket().data(), velodyne::packetSize, simulation.now_ns());
         QCOMPARE(assembler.counts().lost + assembler.counts().outOfOrder, std::uint64_t(0));
         QVERIFY(points > 80000);
-        QVERIFY2(far <= points * 2e-4, qPrintable(QString::number(far)));
+        QVERIFY2(far <= points * 2e-4, saying(far));
         QVERIFY(std::sqrt(squares / double(points)) < sigma + 0.001);
         QVERIFY(sigma == 0 || std::sqrt(squares / double(points)) > sigma / 3);
         QVERIFY(std::abs(assembler.rpm() - 600) < 0.5);
@@ -218,6 +218,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestLidarModel)
-#include "TestLidarModel.moc"

@@ -1,8 +1,6 @@
 #include "LidarListener.h"
-#include "tests/support/RealData.h"
 
 using namespace hermes;
-using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
 class TestLidarReplay : public QObject {
@@ -41,8 +39,7 @@ private Q_SLOTS:
 
     void replayKeepsItsPace() {
         MadeReplay listener(1000); // 0.553 s
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         QVERIFY(listener.play(1));
         QVERIFY(listener.waitForEnd());
         QVERIFY(timer.elapsed() > 540);
@@ -160,8 +157,7 @@ private Q_SLOTS:
         listener.feed.player().playback().setPaused(true);
         std::uint64_t packets = 0; // one may be on its way
         QTRY_VERIFY(packets == std::exchange(packets, listener.feed.counts().packets.packets));
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         while (timer.elapsed() < 700) // in which 1200 packets would have been played
             QTest::qWait(10);
         QCOMPARE(listener.feed.counts().packets.packets, packets);
@@ -180,6 +176,3 @@ private Q_SLOTS:
         QVERIFY(!listener.ended);
     }
 };
-
-QTEST_GUILESS_MAIN(TestLidarReplay)
-#include "TestLidarReplay.moc"

@@ -3,7 +3,6 @@
 #include "daemons/velodynelogger/TurnText.h"
 
 using namespace hermes;
-using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
 class TestLidarTurns : public QObject {
@@ -118,6 +117,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestLidarTurns)
-#include "TestLidarTurns.moc"

@@ -3,7 +3,6 @@
 #include "RingDrive.h"
 
 using namespace hermes;
-using namespace hermes::scanmatcher;
 
 class TestLiveCommands : public QObject, RingDrive {
     Q_OBJECT
@@ -67,7 +66,7 @@ private Q_SLOTS:
         drive(first, way.size());
         const double end = distance(poseOf(poses.rbegin()->second), way.back());
         qInfo("end %.3f m off", end);
-        QVERIFY2(end < 0.30, qPrintable(QString::number(end)));
+        QVERIFY2(end < 0.30, saying(end));
         waitForCorrector();
         const QJsonObject after = call("matcher.state");
         QCOMPARE(call("map.get")["size"].toInt(), after["map_segments"].toInt());
@@ -176,6 +175,3 @@ private:
     std::map<qint64, QJsonValue> edges; // of the topic map
     qint64 revision = 0;
 };
-
-QTEST_GUILESS_MAIN(TestLiveCommands)
-#include "TestLiveCommands.moc"

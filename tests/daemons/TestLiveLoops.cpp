@@ -2,7 +2,6 @@
 #include "RingDrive.h"
 
 using namespace hermes;
-using namespace hermes::scanmatcher;
 
 class TestLiveLoops : public QObject, RingDrive {
     Q_OBJECT
@@ -43,8 +42,8 @@ private Q_SLOTS:
         QVERIFY(state["closures"].toInt() > 50);
         QCOMPARE(state["loops_dropped"].toInt(), 0);
         QVERIFY(state["by_odometry"].toInt() > int(way.size()) / 2);
-        QVERIFY2(leap < 1e-6, qPrintable(QString::number(leap)));
-        QVERIFY2(end < 0.10, qPrintable(QString::number(end)));
+        QVERIFY2(leap < 1e-6, saying(leap));
+        QVERIFY2(end < 0.10, saying(end));
         QVERIFY(farthestFromTheWay() < 0.20); // 30 cm lie between two poses of the way
         QVERIFY(graphs >= state["corrections"].toInt());
         QCOMPARE(graphPoses.size(), state["key_scans"].toInt());
@@ -59,7 +58,7 @@ private Q_SLOTS:
         QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0);
         const double end = distance(poseOf(poses.rbegin()->second), way.back());
         qInfo("end %.3f m off", end);
-        QVERIFY2(end > 0.05, qPrintable(QString::number(end)));
+        QVERIFY2(end > 0.05, saying(end));
         for (const auto &[number, pose] : poses)
             QVERIFY(!pose["corrected"].toBool());
     }
@@ -95,7 +94,7 @@ private Q_SLOTS:
         QTRY_COMPARE(call("matcher.state")["place"].toString(), QString("known"));
         waitForCorrector();
         const double end = distance(poseOf(poses.rbegin()->second), way.back());
-        QVERIFY2(end < 0.2, qPrintable(QString::number(end)));
+        QVERIFY2(end < 0.2, saying(end));
         QVERIFY(call("matcher.state")["closures"].toInt() >= before["closures"].toInt());
         client_.reset();
         matcher->shutDown();
@@ -136,7 +135,7 @@ private Q_SLOTS:
         QVERIFY(full["remembered_mb"].toDouble() >= most && full["remembered_mb"].toDouble() < most + 0.02);
         QCOMPARE(full["corrections"].toInt() > 0, corrects);
         QCOMPARE(full["scans"].toInt(), int(way.size()));
-        QVERIFY2(end < 0.30, qPrintable(QString::number(end)));
+        QVERIFY2(end < 0.30, saying(end));
         QTRY_COMPARE(graphPoses.size(), full["key_scans"].toInt());
         QCOMPARE(call("map.get")["size"].toInt(), full["map_segments"].toInt());
         QCOMPARE(healthItem("memory")["level"].toString(), QString("warn"));
@@ -197,6 +196,3 @@ private:
         return inTime;
     }
 };
-
-QTEST_GUILESS_MAIN(TestLiveLoops)
-#include "TestLiveLoops.moc"

@@ -5,12 +5,9 @@
 #include "tests/support/LoopWatch.h"
 #include "vectorlib/io/MapCsv.h"
 
-#include <fstream>
 #include <sys/syscall.h>
-#include <unistd.h>
 
 using namespace hermes;
-using namespace hermes::scanmatcher;
 
 static std::atomic<bool> diskHolds{false}; // what is in slow.csv
 
@@ -132,7 +129,7 @@ private Q_SLOTS:
             QVERIFY(process.waitForFinished());
             const QByteArray found = contentOf(path);
             QVERIFY2(found == after || (found == before && !saved),
-                     qPrintable(QString("%1: %2 bytes").arg(trial).arg(found.size())));
+                     saying("%1: %2 bytes", trial, found.size()));
         }
     }
 
@@ -146,6 +143,3 @@ private:
         return (*got)->toObject();
     }
 };
-
-QTEST_GUILESS_MAIN(TestMapFiles)
-#include "TestMapFiles.moc"

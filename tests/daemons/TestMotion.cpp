@@ -53,11 +53,7 @@ private Q_SLOTS:
         }
     }
 
-    void forwardIsThePseudoInverse_data() {
-        const Rows<bool> row("mecanum");
-        row("mecanum", true);
-        row("differential", false);
-    }
+    void forwardIsThePseudoInverse_data() { falseAndTrue("mecanum", "differential", "mecanum"); }
 
     // The two conditions that define it for a matrix A of full column rank: F A = 1, and A F is symmetric.
     void forwardIsThePseudoInverse() {
@@ -269,11 +265,7 @@ private Q_SLOTS:
         for (int i = 0; i < 9; ++i) {
             const double scale =
                 std::sqrt(odometry.covariance()[4 * (i / 3)] * odometry.covariance()[4 * (i % 3)]);
-            QVERIFY2(std::abs(sample[i] - odometry.covariance()[i]) < 0.1 * scale,
-                     qPrintable(QString::number(i)));
+            QVERIFY2(std::abs(sample[i] - odometry.covariance()[i]) < 0.1 * scale, saying(i));
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotion)
-#include "TestMotion.moc"

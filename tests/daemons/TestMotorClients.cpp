@@ -53,7 +53,7 @@ private Q_SLOTS:
             return replies.size() == 5;
         }());
         for (int before : {1, 2, 3})
-            QVERIFY2(replies[before].contains("error"), qPrintable(QString::number(before)));
+            QVERIFY2(replies[before].contains("error"), saying(before));
         QVERIFY(replies[4].contains("result"));
         QVERIFY(replies[5].value("error")["data"]["retry_after_s"].toDouble() >
                 1); // it counts, but comes too early
@@ -111,7 +111,7 @@ private Q_SLOTS:
         while (RoboClawRig::now() < commanded + 2) {
         } // the daemon's main thread is this one
         const double stopped = rig_->zeroSince() - commanded, most = 0.5 + stalls.takeLongest();
-        QVERIFY2(stopped < most, qPrintable(QString("%1 of %2").arg(stopped).arg(most)));
+        QVERIFY2(stopped < most, saying("%1 of %2", stopped, most));
         QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::NotReady));
         QTRY_VERIFY(state()["cycle"].toObject()["unread"].toInt() > 10);
         QVERIFY(state()["ready"].toBool());
@@ -134,7 +134,7 @@ private Q_SLOTS:
                           });
         QTRY_COMPARE(names.size(), count);
         for (int i = 0; i < count; ++i)
-            QVERIFY2(names[i] == QString::number(i), qPrintable(QString("%1: %2").arg(i).arg(names[i])));
+            QVERIFY2(names[i] == QString::number(i), saying("%1: %2", i, names[i]));
     }
 
     void clientThatGoesIsStopped() {
@@ -150,6 +150,3 @@ private Q_SLOTS:
         call("control.acquire");
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorClients)
-#include "TestMotorClients.moc"

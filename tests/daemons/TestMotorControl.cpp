@@ -4,7 +4,6 @@
 #include "tests/support/ReleaseStop.h"
 
 #include <QUrl>
-#include <ctime>
 
 using namespace hermes;
 using namespace hermes::motorcontrol;
@@ -89,7 +88,7 @@ private Q_SLOTS:
         QTRY_VERIFY_WITH_TIMEOUT(battery().contains("charge"), 20000);
         QVERIFY(std::abs(battery()["charge"].toDouble() - 0.8) < 0.02); // 25 V
         const double left_s = battery()["left_s"].toDouble();
-        QVERIFY2(std::abs(left_s - 0.6 * 900) < 30, qPrintable(QString::number(left_s)));
+        QVERIFY2(std::abs(left_s - 0.6 * 900) < 30, saying(left_s));
         QTRY_VERIFY(battery()["left_s"].toDouble() < left_s - 0.5);
         QTRY_COMPARE(healthItem("battery")["level"].toString(), QString("warn")); // under ten minutes
         QVERIFY(healthItem("battery")["message"].toString().startsWith("25 V, charge "));
@@ -156,7 +155,7 @@ private Q_SLOTS:
             periods.push_back(times[i] - times[i - 1]);
         std::sort(periods.begin(), periods.end());
         const double rate = 1 / periods[periods.size() / 2];
-        QVERIFY2(rate > 40 && rate < 51, qPrintable(QString::number(rate)));
+        QVERIFY2(rate > 40 && rate < 51, saying(rate));
         QCOMPARE(first["covariance"].toArray().size(), 9);
         QVERIFY(first["pose"].toObject().contains("theta") && first["twist"].toObject().contains("omega"));
         QVERIFY(wheels["rear_right"].toObject().contains("speed") && wheels.contains("slip"));
@@ -187,7 +186,7 @@ private Q_SLOTS:
         const Error error = failure(method, params);
         QTEST(error.code, "code");
         const QString all = error.message + QJsonDocument(error.data.toObject()).toJson();
-        QVERIFY2(all.contains(names), qPrintable(all));
+        VERIFY_CONTAINS(all, names);
         passCycles(5);
         for (const RoboClawRig::SetPoint &setPoint : rig_->heard())
             QVERIFY(setPoint.isZero());
@@ -275,7 +274,7 @@ private Q_SLOTS:
                  quint32(std::llround(2 / radius * countsPerTurn / (2 * pi))));
         QTRY_VERIFY(RoboClawRig::now() - rig_->lastMoved() > 0.1);
         const double took = rig_->lastMoved() - rig_->zeroSince();
-        QVERIFY2(took > 0.2 && took < 0.6, qPrintable(QString::number(took))); // 0.3 s, and the lag
+        QVERIFY2(took > 0.2 && took < 0.6, saying(took)); // 0.3 s, and the lag
     }
 
     void newPidIsWrittenAndReadBack() {
@@ -355,11 +354,8 @@ private Q_SLOTS:
             return daemon.settings().set({{"battery", battery}}).ok();
         };
         for (int tenths = 10; tenths < 599; ++tenths)
-            QVERIFY2(set(tenths / 10.0, (tenths + 1) / 10.0), qPrintable(QString::number(tenths)));
+            QVERIFY2(set(tenths / 10.0, (tenths + 1) / 10.0), saying(tenths));
         QVERIFY(!set(24.8, 24.89));
         QVERIFY(!set(24.8, 24.8));
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorControl)
-#include "TestMotorControl.moc"

@@ -45,6 +45,3 @@ private Q_SLOTS:
 private:
     FarNetwork network_;
 };
-
-QTEST_GUILESS_MAIN(TestMotorCutOff)
-#include "TestMotorCutOff.moc"

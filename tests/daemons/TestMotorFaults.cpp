@@ -30,11 +30,10 @@ private Q_SLOTS:
         QTRY_VERIFY(state()["ready"].toBool());
         QTRY_VERIFY(rig_->heard().size() > heard);
         const double found = rig_->heard().at(heard).time - back, most = 0.6 + stalls.takeLongest();
-        QVERIFY2(found < most, qPrintable(QString("%1 of %2").arg(found).arg(most)));
+        QVERIFY2(found < most, saying("%1 of %2", found, most));
         passCycles(5); // with readings
         const double rolled = state()["pose"].toObject()["x"].toDouble() - before;
-        QVERIFY2(rolled >= 0 && rolled < 0.2,
-                 qPrintable(QString::number(rolled))); // what the wheels really did
+        QVERIFY2(rolled >= 0 && rolled < 0.2, saying(rolled)); // what the wheels really did
         QCOMPARE(state()["counter_jumps"].toInt(), 0);
         const double counts = rig_->with([](auto &all) { return double(all[0].channel(0).count()); });
         QVERIFY(std::abs(state()["pose"].toObject()["x"].toDouble() - atRim(counts)) < 0.005);
@@ -160,8 +159,7 @@ private Q_SLOTS:
             std::make_unique<RoboClawRig>(folder_->filePath("line"), std::vector{controllerAt(0x80), other});
         launch();
         const QString says = "tells its version as \"Sabertooth 2x60\", expected that of a RoboClaw";
-        QTRY_VERIFY2(healthItem("controller_2")["message"].toString().contains(says),
-                     qPrintable(healthItem("controller_2")["message"].toString()));
+        TRY_CONTAINS(healthItem("controller_2")["message"].toString(), says);
         QVERIFY(failure("control.acquire").message.contains(says));
         QCOMPARE(call("daemon.status")["state"].toString(), QString("degraded"));
     }
@@ -181,6 +179,3 @@ private Q_SLOTS:
         QVERIFY(values["crc_errors"].toInt() + values["unexpected"].toInt() > 0);
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorFaults)
-#include "TestMotorFaults.moc"

@@ -3,8 +3,6 @@
 // where it is not set.
 #include "StopTrials.h"
 
-#include <csignal>
-
 using namespace hermes;
 using namespace hermes::simulator;
 
@@ -130,6 +128,3 @@ private:
         return asks.readAllStandardOutput() + asks.readAllStandardError();
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorGaps)
-#include "TestMotorGaps.moc"

@@ -5,15 +5,10 @@
 #include "protocol/roboclaw/Bus.h"
 
 #include <cerrno>
-#include <fcntl.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::simulator;
 using namespace hermes::roboclaw;
-
-namespace {
 
 /// The host's and the device's end of a serial line, with true bytes between them.
 struct Robot {
@@ -66,14 +61,14 @@ struct Robot {
     }
 };
 
-World room() {
+static World room() {
     return {
         "room", {{-5, -5, 5, -5}, {5, -5, 5, 5}, {5, 5, -5, 5}, {-5, 5, -5, -5}}, {{0, 0, 0}, {2, 0, 0}}, {}};
 }
 
 /// Drives all wheels of a simulation with this speed, counts/s, as a host does.
-void driveWheels(Simulation &simulation, const std::array<std::int64_t, 4> &speeds,
-                 std::int64_t acceleration) {
+static void driveWheels(Simulation &simulation, const std::array<std::int64_t, 4> &speeds,
+                        std::int64_t acceleration) {
     static double now = 0;
     const auto send = [&](std::uint8_t address, Command command, const Values &values) {
         const auto request = Request::make(address, command, values);
@@ -89,13 +84,11 @@ void driveWheels(Simulation &simulation, const std::array<std::int64_t, 4> &spee
     send(0x81, Command::SpeedAccel, {acceleration, speeds[2], speeds[3]});
 }
 
-void pass(Simulation &simulation, double seconds) {
+static void pass(Simulation &simulation, double seconds) {
     const auto end = simulation.now_ns() + std::int64_t(seconds * 1e9);
     while (simulation.now_ns() < end)
         simulation.nextPacket();
 }
-
-} // namespace
 
 class TestMotorLines : public QObject {
     Q_OBJECT
@@ -115,7 +108,7 @@ private Q_SLOTS:
             waits.push_back(done.received - done.sent);
         }
         std::sort(waits.begin(), waits.end());
-        QVERIFY2(waits[100] < 0.01, qPrintable(QString::number(waits[100])));
+        QVERIFY2(waits[100] < 0.01, saying(waits[100]));
         QCOMPARE(robot.ask(0x82, Command::ReadEncoders).result, Bus::Result::TimedOut);
     }
 
@@ -158,7 +151,7 @@ private Q_SLOTS:
         Robot robot;
         const auto opened = robot.lines.open({"/proc/none/motors"});
         QVERIFY(!opened);
-        QVERIFY2(opened.error().message.contains("/proc/none"), qPrintable(opened.error().message));
+        VERIFY_CONTAINS(opened.error().message, "/proc/none");
         QCOMPARE(robot.lines.count(), 0);
     }
 
@@ -209,7 +202,7 @@ private Q_SLOTS:
         driveWheels(simulation, {-speed, speed, speed, -speed}, 120000);
         pass(simulation, 2);
         const auto truth = simulation.truth();
-        QVERIFY2(std::abs(truth.pose.y - 0.9375) < 0.03, qPrintable(QString::number(truth.pose.y)));
+        QVERIFY2(std::abs(truth.pose.y - 0.9375) < 0.03, saying(truth.pose.y));
         QVERIFY(std::abs(truth.pose.x) < 0.01 && std::abs(truth.pose.theta) < 0.01);
         QVERIFY(std::abs(truth.twist.vy - 0.5) < 0.01 && simulation.isPlaced());
         driveWheels(simulation, {0, 0, 0, 0}, 240000);
@@ -219,8 +212,7 @@ private Q_SLOTS:
         QCOMPARE(simulation.truth().pose.y, standing.pose.y);
         // What the wheels' encoders counted is the way that the robot made.
         const double way = double(simulation.drivetrain().wheel(1).count()) / 38000 * 2 * M_PI * 0.1;
-        QVERIFY2(std::abs(standing.pose.y - way) < 0.001,
-                 qPrintable(QString("%1 %2").arg(standing.pose.y).arg(way)));
+        QVERIFY2(std::abs(standing.pose.y - way) < 0.001, saying("%1 %2", standing.pose.y, way));
     }
 
     void followingIgnoresTheWheels() {
@@ -249,6 +241,3 @@ private Q_SLOTS:
         QVERIFY(simulation.drivetrain().wheel(0).count() > 40000); // the wheels slip
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorLines)
-#include "TestMotorLines.moc"

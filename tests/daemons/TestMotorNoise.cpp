@@ -40,7 +40,7 @@ private Q_SLOTS:
         const QJsonObject pose = state()["pose"].toObject();
         const vectorlib::Pose2D truth = rig_->pose();
         const double away = std::hypot(pose["x"].toDouble() - truth.x, pose["y"].toDouble() - truth.y);
-        QVERIFY2(away < 0.02, qPrintable(QString::number(away)));
+        QVERIFY2(away < 0.02, saying(away));
         rig_->with([](auto &all) {
             for (const RoboClawEmulator &controller : all) {
                 QCOMPARE(controller.serialTimeout(), 0.2);
@@ -78,6 +78,3 @@ private:
         QVERIFY(there > flipped / 4);
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorNoise)
-#include "TestMotorNoise.moc"

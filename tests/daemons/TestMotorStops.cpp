@@ -4,8 +4,6 @@
 #include "tests/support/PatientClient.h"
 #include "tests/support/ReleaseStop.h"
 
-#include <csignal>
-
 using namespace hermes;
 using namespace hermes::simulator;
 
@@ -97,6 +95,3 @@ private Q_SLOTS:
         report("stand after the time of braking from the speed at the time-out", standing, 0.05, 1);
     }
 };
-
-QTEST_GUILESS_MAIN(TestMotorStops)
-#include "TestMotorStops.moc"

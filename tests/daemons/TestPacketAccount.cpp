@@ -159,6 +159,3 @@ private Q_SLOTS:
         ring.wait(std::chrono::hours(1)); // ends at once
     }
 };
-
-QTEST_GUILESS_MAIN(TestPacketAccount)
-#include "TestPacketAccount.moc"

@@ -86,6 +86,3 @@ private Q_SLOTS:
         QVERIFY(!follower.isDriving() && follower.rate() == 0 && !follower.isFinished());
     }
 };
-
-QTEST_GUILESS_MAIN(TestPathFollower)
-#include "TestPathFollower.moc"

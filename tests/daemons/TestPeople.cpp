@@ -40,7 +40,7 @@ private Q_SLOTS:
         const double nearest = robotRadius + People::distance + People::radius;
         pass(people, 5 - nearest + 1, robot);
         QVERIFY(std::abs(people.all()[0].position.x - (5 - nearest)) < 0.005);
-        pass(people, People::timeout + 1, robot);
+        pass(people, People::longestWait + 1, robot);
         QVERIFY(people.all()[0].position.x < 5 - nearest - 1.5);
         pass(people, 30, robot); // to the begin and here again
         QVERIFY(people.all()[0].position.x <= 5 - nearest);
@@ -64,6 +64,3 @@ private Q_SLOTS:
         QVERIFY(std::abs(pose.x - (2 - robotRadius - People::radius)) < 1e-6);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPeople)
-#include "TestPeople.moc"

@@ -1,22 +1,18 @@
 #include "daemons/velodynelogger/PlayTime.h"
 
-#include <QTest>
 #include <cstring>
 #include <new>
 
 using namespace hermes;
 using namespace hermes::velodynelogger;
 
-namespace {
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t start_ns = 1700000000 * second_ns;
 
 /// Through a pointer that the compiler cannot follow.
-PlayTime *(*volatile begin)(void *, std::int64_t) = [](void *memory, std::int64_t length_ns) {
+static PlayTime *(*volatile begin)(void *, std::int64_t) = [](void *memory, std::int64_t length_ns) {
     return new (memory) PlayTime(start_ns, length_ns, 3 * second_ns);
 };
-} // namespace
-
 class TestPlayTime : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -77,6 +73,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestPlayTime)
-#include "TestPlayTime.moc"

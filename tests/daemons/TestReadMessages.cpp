@@ -61,7 +61,7 @@ private Q_SLOTS:
         data[member] = value;
         const auto sample = odometryOf(data, start);
         QVERIFY(!sample.ok());
-        QVERIFY2(sample.error().message.contains(error), qPrintable(sample.error().message));
+        VERIFY_CONTAINS(sample.error().message, error);
         for (const double stamp : {std::nan(""), -1.0, 1e300})
             QVERIFY(!odometryOf(message(), stamp).ok());
     }
@@ -90,7 +90,7 @@ private Q_SLOTS:
         const auto scan = scanOf(data);
         QCOMPARE(scan.ok(), error.isEmpty());
         if (!scan)
-            QVERIFY2(scan.error().message.contains(error), qPrintable(scan.error().message));
+            VERIFY_CONTAINS(scan.error().message, error);
     }
 
     void readsRays() {
@@ -118,6 +118,3 @@ private Q_SLOTS:
         QCOMPARE(unknown, quint64(3));
     }
 };
-
-QTEST_GUILESS_MAIN(TestReadMessages)
-#include "TestReadMessages.moc"

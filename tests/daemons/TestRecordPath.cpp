@@ -44,6 +44,3 @@ private Q_SLOTS:
         QCOMPARE(account.counts().packets, std::uint64_t(2000 + 143));
     }
 };
-
-QTEST_GUILESS_MAIN(TestRecordPath)
-#include "TestRecordPath.moc"

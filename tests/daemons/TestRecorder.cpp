@@ -1,7 +1,6 @@
 #include "common/capture/PcapReader.h"
 #include "daemons/velodynelogger/Recorder.h"
 #include "protocol/wire/Fields.h"
-#include "tests/support/FileSizeLimit.h"
 #include "tests/support/Sensor.h"
 
 using namespace hermes;
@@ -124,8 +123,7 @@ private Q_SLOTS:
         plan.fileSeconds = 0.2;
         Recorder recorder;
         QVERIFY(recorder.begin(plan).ok());
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         int pushed = 0;
         while (recorder.state().files.size() <
                3) { // the host's clock, set back by each packet, does not count
@@ -147,8 +145,7 @@ private Q_SLOTS:
         QVERIFY(recorder.begin(planIn(folder)).ok());
         for (int i = 0; i < 5; ++i) {
             push(recorder, sensor, i, i + 1);
-            QElapsedTimer timer;
-            timer.start();
+            auto timer = runningTimer();
             const QFileInfo file(folder.filePath("velodynelogger-0001.pcap"));
             const qint64 expected = 24 + (i + 1) * (16 + 42 + 1206);
             while (QFileInfo(file.filePath()).size() < expected)
@@ -197,7 +194,7 @@ private Q_SLOTS:
         recorder.end();
         const RecordingState state = recorder.state();
         QCOMPARE(state.error->code, int(ErrorCode::InputOutput));
-        QVERIFY2(state.error->message.contains("File too large"), qPrintable(state.error->message));
+        VERIFY_CONTAINS(state.error->message, "File too large");
         QCOMPARE(state.error->data.toObject().value("path").toString(), state.path);
         const int written = int(state.counts.value("packets"));
         QVERIFY(written > 0 && int(state.losses.value("unwritten")) > 0);
@@ -305,6 +302,3 @@ private Q_SLOTS:
         QCOMPARE(victim.size(), size);
     }
 };
-
-QTEST_GUILESS_MAIN(TestRecorder)
-#include "TestRecorder.moc"

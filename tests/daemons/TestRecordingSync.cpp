@@ -5,16 +5,12 @@
 #include "tests/daemons/MachineStalls.h"
 #include "tests/support/Sensor.h"
 
-#include <sys/stat.h>
 #include <sys/syscall.h>
-#include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::seriallogger;
 using namespace hermes::velodynelogger;
 using Clock = std::chrono::steady_clock;
-
-namespace {
 
 /// So many bytes of a file are on the disk at this time.
 struct Sync {
@@ -24,20 +20,18 @@ struct Sync {
     std::thread::id thread;
 };
 
-std::mutex mutex;
-std::vector<Sync> syncs;
-std::atomic<int> diskTime_ms{0};
-std::atomic<bool> diskFails{false};
+static std::mutex mutex;
+static std::vector<Sync> syncs;
+static std::atomic<int> diskTime_ms{0};
+static std::atomic<bool> diskFails{false};
 
-std::vector<Sync> syncsOf(const std::string &path) {
+static std::vector<Sync> syncsOf(const std::string &path) {
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<Sync> found;
     std::copy_if(syncs.begin(), syncs.end(), std::back_inserter(found),
                  [&](const Sync &sync) { return sync.path == path; });
     return found;
 }
-
-} // namespace
 
 /// In place of that of the system, for all of this process.
 extern "C" int fdatasync(int file) {
@@ -240,7 +234,7 @@ private Q_SLOTS:
         QTRY_VERIFY(!rig.isActive());
         diskFails = false;
         const Error told = rig.call("record.stop").error();
-        QVERIFY2(told.message.contains("cannot be written to the disk"), qPrintable(told.message));
+        VERIFY_CONTAINS(told.message, "cannot be written to the disk");
         QVERIFY(told.data.toObject().value("path").toString().startsWith(root.path() + "/run1/" + kind));
     }
 
@@ -251,6 +245,3 @@ private:
         row("serial", "seriallogger");
     }
 };
-
-QTEST_GUILESS_MAIN(TestRecordingSync)
-#include "TestRecordingSync.moc"

@@ -3,10 +3,7 @@
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
-#include <fstream>
-
 using namespace hermes;
-using namespace hermes::scanmatcher;
 using vectorlib::Pose2D;
 using Segments = std::vector<vectorlib::LineSegment2D<double>>;
 using Point = vectorlib::Vector2D<double>;
@@ -127,7 +124,7 @@ private Q_SLOTS:
         scan(square(), truth);
         const Error error = failure("pose.relocalize", {});
         QVERIFY(error.is(ErrorCode::NotReady));
-        QVERIFY2(error.message.contains("4 places"), qPrintable(error.message));
+        VERIFY_CONTAINS(error.message, "4 places");
         const QJsonObject data = error.data.toObject();
         QCOMPARE(data["outcome"].toString(), QString("ambiguous"));
         for (int quarter = 0; quarter < 4; ++quarter) { // the room looks the same after every quarter turn
@@ -161,7 +158,7 @@ private Q_SLOTS:
         const Error noMap = failure("pose.relocalize", {});
         QVERIFY(noMap.is(ErrorCode::NotReady));
         QCOMPARE(noMap.data.toObject()["outcome"].toString(), QString("no_map"));
-        QVERIFY2(noMap.message.contains("map is empty"), qPrintable(noMap.message));
+        VERIFY_CONTAINS(noMap.message, "map is empty");
     }
 
     void saysThatTheScanShowsTooLittle() {
@@ -184,7 +181,7 @@ private Q_SLOTS:
         const auto log = client_->callAndWait("log.tail");
         QVERIFY(log.ok());
         const QByteArray text = QJsonDocument(QJsonArray{*log}).toJson();
-        QVERIFY2(text.contains("found in the whole map after 4 lost scans"), text);
+        VERIFY_CONTAINS(text, "found in the whole map after 4 lost scans");
     }
 
     void aLoadedMapWaitsForItsPlace() {
@@ -197,8 +194,7 @@ private Q_SLOTS:
         QVERIFY(healthItem("tracking")["message"].toString().contains("nothing is mapped"));
         scan(pillars(), {1, 0.9, 0});
         call("pose.relocalize");
-        for (int i = 0; i < 3; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 3);
         QCOMPARE(healthItem("tracking")["message"].toString().left(8), QString("on track"));
         QCOMPARE(number("matched"), 3);
         QCOMPARE(number("map_segments"), int(pillars().size()));
@@ -218,8 +214,7 @@ private Q_SLOTS:
         load(pillars());
         QTRY_VERIFY((scan(pillars(), {1, 0.9, 0}), number("matched") > 1));
         call("pose.set", {{"x", 2}, {"y", 1.5}, {"theta", 0.3}});
-        for (int i = 0; i < 4; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 4);
         QCOMPARE(number("map_segments"), int(pillars().size()));
         QVERIFY(healthItem("tracking")["message"].toString().contains("place that was told"));
         const int lost = number("lost");
@@ -229,8 +224,7 @@ private Q_SLOTS:
             (scan(pillars(), {1, 0.9, 0}), !healthItem("tracking")["message"].toString().contains("told")));
         QCOMPARE(number("map_segments"), int(pillars().size()));
         call("pose.set", {{"x", 1}, {"y", 0.9}, {"theta", 0}});
-        for (int i = 0; i < 6; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 6);
         QCOMPARE(healthItem("tracking")["message"].toString(), QString("on track"));
         QTRY_VERIFY(doubtful > 0);
         QCOMPARE(sure, 0);
@@ -247,8 +241,7 @@ private Q_SLOTS:
         });
         QTRY_VERIFY(matcher->hasSubscribers("scan"));
         call("pose.set", {{"x", 5.2}, {"y", 4}, {"theta", 1.5}});
-        for (int i = 0; i < 10; ++i)
-            scan(hall, {5.2, 4, 1.5});
+        scan(hall, {5.2, 4, 1.5}, 10);
         QCOMPARE(lost(), 10);
         QTRY_COMPARE(told, 10);
         QCOMPARE(accepted, 0);
@@ -256,14 +249,26 @@ private Q_SLOTS:
         QTRY_VERIFY(healthItem("tracking")["message"].toString().contains("is sought"));
     }
 
+    void anUndoneCommandDoesNotConfirmAPlaceThatWasFound() {
+        beginToMap();
+        load(pillars());
+        for (int i = 0; i < 5 || (i < 100 && call("matcher.state")["place"].toString() == "sought"); ++i)
+            scan(pillars(), {5.2, 4, 1.5});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("found"));
+        call("pose.set", {{"x", 1}, {"y", 1}, {"theta", 0}});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("told"));
+        call("map.undo");
+        for (int i = 0; i < 10; ++i) // from one spot
+            scan(pillars(), {5.2, 4, 1.5});
+        QCOMPARE(call("matcher.state")["place"].toString(), QString("found"));
+    }
+
     void aToldPlaceIsNoMotionOfTheDrive() {
         beginToMap();
-        for (int i = 0; i < 5; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 5);
         QTRY_COMPARE(number("key_scans"), 1);
         call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0}}); // where it stands
-        for (int i = 0; i < 10; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 10);
         QCOMPARE(call("matcher.state")["place"].toString(), QString("known"));
         QTRY_COMPARE(number("key_scans"), 2); // another part begins
     }
@@ -272,8 +277,7 @@ private Q_SLOTS:
         beginToMap();
         load(pillars());
         call("pose.set", {{"x", 20}, {"y", 20}, {"theta", 0}, {"confirm", true}});
-        for (int i = 0; i < 5; ++i)
-            scan(square(), {});
+        scan(square(), {}, 5);
         QVERIFY(number("map_segments") > int(pillars().size()));
     }
 
@@ -281,24 +285,20 @@ private Q_SLOTS:
         load(square());
         set("relocalize_after", 1);
         call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0.8}});
-        QElapsedTimer time;
-        time.start();
-        for (int i = 0; i < 20; ++i)
-            scan(square(), {2, -1.5, 0});
+        auto time = runningTimer();
+        scan(square(), {2, -1.5, 0}, 20);
         QCOMPARE(call("matcher.state")["lost"].toInt(), 20);
         const int tried = call("matcher.state")["recoveries"].toInt();
-        QVERIFY2(tried >= 1 && tried <= 1 + time.elapsed() / 1000, qPrintable(QString::number(tried)));
+        QVERIFY2(tried >= 1 && tried <= 1 + time.elapsed() / 1000, saying(tried));
         const QJsonObject tracking = healthItem("tracking");
         QCOMPARE(tracking["level"].toString(), QString("error"));
-        QVERIFY2(tracking["message"].toString().contains("4 places"),
-                 qPrintable(tracking["message"].toString()));
+        VERIFY_CONTAINS(tracking["message"].toString(), "4 places");
     }
 
     void neverTriesWhereItIsSwitchedOff() {
         load(pillars());
         call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-        for (int i = 0; i < 12; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 12);
         QCOMPARE(lost(), 12);
         QCOMPARE(call("matcher.state")["recoveries"].toInt(), 0);
     }
@@ -309,14 +309,12 @@ private Q_SLOTS:
         QTRY_VERIFY(source->hasSubscribers("scan2d"));
         set("relocalize_after", 2);
         call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-        for (int i = 0; i < 3; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 3);
         QCOMPARE(call("matcher.state")["matched"].toInt(), 1);
         QCOMPARE(call("matcher.state")["recovered"].toInt(), 1);
         set("relocalize_after", 3); // too late: the third lost scan is in the map
         call("pose.set", {{"x", 4.5}, {"y", 6.6}, {"theta", 1.0}});
-        for (int i = 0; i < 3; ++i)
-            scan(pillars(), {1, 0.9, 0});
+        scan(pillars(), {1, 0.9, 0}, 3);
         QCOMPARE(call("matcher.state")["lost"].toInt(), 2 + 3);
         QCOMPARE(call("matcher.state")["recoveries"].toInt(), 1);
     }
@@ -362,6 +360,10 @@ private:
         loaded = scans;
     }
 
+    void scan(const Segments &walls, const Pose2D &pose, int times) {
+        for (int i = 0; i < times; ++i)
+            scan(walls, pose);
+    }
     void scan(const Segments &walls, const Pose2D &pose) {
         std::vector<vectorlib::LineSegment2D<float>> world;
         for (const auto &wall : walls)
@@ -387,6 +389,3 @@ private:
     vectorlib::SimulatedScanner<float> scanner;
     int scans = 0, loaded = 0;
 };
-
-QTEST_GUILESS_MAIN(TestRelocalization)
-#include "TestRelocalization.moc"

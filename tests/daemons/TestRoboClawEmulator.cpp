@@ -4,12 +4,13 @@
 using namespace hermes;
 using namespace hermes::simulator;
 
-class TestRoboClawEmulator : public QObject {
+class TestRoboClawEmulator : public QObject, DrivetrainFixture {
     Q_OBJECT
 private Q_SLOTS:
+    void init() { make(); }
+
     void answersAsPublished_data() {
-        QTest::addColumn<QByteArray>("sent");
-        QTest::addColumn<QByteArray>("answer");
+        Rows<QByteArray, QByteArray>("sent", "answer");
         const auto row = [](const char *name, const char *sent, const char *answer) {
             QTest::newRow(name) << QByteArray::fromHex(sent) << QByteArray::fromHex(answer);
         };
@@ -38,9 +39,8 @@ private Q_SLOTS:
         FETCH(QByteArray, sent, QByteArray, answer);
         Drivetrain::Options options;
         options.battery.full = 25.2;
-        Drivetrain drivetrain(options);
+        make(options);
         pass(drivetrain, 0.001);
-        RoboClawClient client(drivetrain);
         if (QByteArray(QTest::currentDataTag()) == "version") // its CRC is that of the oracle
             answer = answer.left(answer.size() - 2) +
                      number(RoboClawClient::crcOf(sent + answer.left(answer.size() - 2)), 2);
@@ -48,8 +48,6 @@ private Q_SLOTS:
     }
 
     void bothAddressesShareALine() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         QVERIFY(client.write(0x80, 22, number(111, 4)));
         QVERIFY(client.write(0x81, 22, number(222, 4)));
         QCOMPARE(client.count(0x80, 0), std::int64_t(111));
@@ -64,7 +62,7 @@ private Q_SLOTS:
         Drivetrain::Options options;
         options.ownLines = true;
         options.controller[0].anyAddress = options.controller[1].anyAddress = true; // as on USB
-        Drivetrain drivetrain(options);
+        make(options);
         RoboClawClient first(drivetrain, 0), second(drivetrain, 1);
         QVERIFY(first.write(0x80, 22, number(111, 4)));
         QCOMPARE(first.count(0x87, 0), std::int64_t(111));
@@ -72,8 +70,6 @@ private Q_SLOTS:
     }
 
     void gapsAndDamageAreSilent() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         const QByteArray stop = QByteArray::fromHex("802500000000000000003404");
         QCOMPARE(client.send(stop.left(5)), QByteArray());
         QCOMPARE(client.send(stop.mid(5), 0.009).toHex(), QByteArray("ff"));
@@ -85,14 +81,12 @@ private Q_SLOTS:
             damaged[bit / 8] = char(damaged[bit / 8] ^ (1 << bit % 8));
             client.send(damaged);
             pass(drivetrain, 0.002);
-            QVERIFY2(!drivetrain.isMoving(), qPrintable(QString("bit %1").arg(bit)));
+            QVERIFY2(!drivetrain.isMoving(), saying("bit %1", bit));
         }
         QVERIFY(drivetrain.controller(0).counts().crcErrors > 70);
     }
 
     void everyReadAnswers() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         const QMap<int, int> sizes{{15, 1},  {16, 5},  {17, 5},  {18, 5},   {19, 5},  {24, 2},  {25, 2},
                                    {30, 5},  {31, 5},  {47, 2},  {48, 4},   {49, 4},  {55, 16}, {56, 16},
                                    {59, 4},  {60, 4},  {63, 28}, {64, 28},  {72, 4},  {75, 3},  {77, 2},
@@ -102,15 +96,13 @@ private Q_SLOTS:
         for (auto entry = sizes.begin(); entry != sizes.end(); ++entry) {
             const QByteArray data = client.read(0x80, entry.key());
             QVERIFY2(data.size() == entry.value() && data != "silent",
-                     qPrintable(QString("command %1: %2").arg(entry.key()).arg(QString(data))));
+                     saying("command %1: %2", entry.key(), QString(data)));
         }
         QCOMPARE(client.read(0x80, 21), QByteArray("RoboClaw 2x45A v4.2.8\n\0", 23));
     }
 
     // The writes of the published table and the bytes of their data.
     void everyWriteIsAcknowledged() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         QMap<int, int> sizes{{14, 1},  {20, 0},  {22, 4},  {23, 4},  {28, 16}, {29, 16}, {32, 2},  {33, 2},
                              {34, 4},  {35, 4},  {36, 4},  {37, 8},  {38, 8},  {39, 8},  {40, 12}, {41, 9},
                              {42, 9},  {43, 17}, {44, 13}, {45, 13}, {46, 21}, {50, 16}, {51, 25}, {52, 6},
@@ -135,8 +127,6 @@ private Q_SLOTS:
     }
 
     void settingsAreKept() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         QVERIFY(client.write(0x80, 14, number(3, 1)));
         QCOMPARE(client.read(0x80, 15), number(3, 1));
         QByteArray dpi, pid; // D, P, I, QPPS are told as P, I, D, QPPS
@@ -180,8 +170,6 @@ private Q_SLOTS:
     }
 
     void faultsOfTheLine() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         RoboClawEmulator::Faults &faults = drivetrain.controller(0).faults();
         faults.drop = 0.3;
         int silent = 0;
@@ -212,8 +200,7 @@ private Q_SLOTS:
     void statusBitsOfBothWidths() {
         Drivetrain::Options options;
         options.controller[1].status = roboclaw::Dialect::Other;
-        Drivetrain drivetrain(options);
-        RoboClawClient client(drivetrain);
+        make(options);
         for (const int i : {0, 1})
             drivetrain.controller(i).faults().status = 0x00080001;
         QCOMPARE(client.read(0x80, 90).toHex(), QByteArray("00080001"));
@@ -221,8 +208,6 @@ private Q_SLOTS:
     }
 
     void oldCommandsSetTheLimits() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         const auto set = [&](int command, int value) {
             QVERIFY(client.write(0x80, command, number(value, 1)));
         };
@@ -246,8 +231,7 @@ private Q_SLOTS:
     }
 
     void encoderStatusTellsWraps() {
-        Drivetrain drivetrain;
-        RoboClawClient client = readyClient(drivetrain);
+        setQpps(client);
         const auto status = [&](int command) { return int(quint8(client.read(0x80, command)[4])); };
         const auto drive = [&](int m1, int m2) {
             QVERIFY(client.speeds(0x80, m1, m2, 1000000));
@@ -271,8 +255,6 @@ private Q_SLOTS:
 
     // The manual tells 0xFF; a public client of the maker waits for one byte more.
     void writtenCellIsAcknowledgedTwice() {
-        Drivetrain drivetrain;
-        RoboClawClient client(drivetrain);
         QByteArray packet = QByteArray::fromHex("80FD05ABCD");
         packet += number(RoboClawClient::crcOf(packet), 2);
         QCOMPARE(client.send(packet).toHex(), QByteArray("ffaa"));
@@ -291,8 +273,7 @@ private Q_SLOTS:
         FETCH(QString, firmware, int, statusSize, QList<int>, unknown);
         Drivetrain::Options options;
         options.controller[0].setFirmware(firmware.toStdString());
-        Drivetrain drivetrain(options);
-        RoboClawClient client(drivetrain);
+        make(options);
         QCOMPARE(client.read(0x80, 21), ("RoboClaw 2x45A v" + firmware + "\n").toLatin1() + '\0');
         QCOMPARE(client.read(0x80, 90).size(), statusSize);
         for (const int command : {15, 24, 49, 72, 77, 78, 101, 104, 107, 110, 113, 116, 118})
@@ -306,8 +287,7 @@ private Q_SLOTS:
     void newFirmwareHasItsOwnFields() {
         Drivetrain::Options options;
         options.controller[0].setFirmware("4.3.6");
-        Drivetrain drivetrain(options);
-        RoboClawClient client(drivetrain);
+        make(options);
         QCOMPARE(client.read(0x80, 59).toHex(), QByteArray("003c015400"));
         QVERIFY(!client.write(0x80, 57, QByteArray::fromHex("00640104")));
         pass(drivetrain, 0.02);
@@ -324,8 +304,7 @@ private Q_SLOTS:
     void commandsCanBeUnknown() {
         Drivetrain::Options options;
         options.controller[0].unknown = {roboclaw::Command::SetSerialTimeout};
-        Drivetrain drivetrain(options);
-        RoboClawClient client(drivetrain);
+        make(options);
         QVERIFY(!client.write(0x80, 14, number(2, 1)));
         QVERIFY(client.write(0x81, 14, number(2, 1)));
         QCOMPARE(client.read(0x80, 15), number(0, 1));
@@ -335,10 +314,7 @@ private Q_SLOTS:
     void versionWithoutLineFeed() {
         Drivetrain::Options options;
         options.controller[0].versionLineFeed = false;
-        Drivetrain drivetrain(options);
-        QCOMPARE(RoboClawClient(drivetrain).read(0x80, 21), QByteArray("RoboClaw 2x45A v4.2.8\0", 22));
+        make(options);
+        QCOMPARE(client.read(0x80, 21), QByteArray("RoboClaw 2x45A v4.2.8\0", 22));
     }
 };
-
-QTEST_GUILESS_MAIN(TestRoboClawEmulator)
-#include "TestRoboClawEmulator.moc"

@@ -60,6 +60,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestRobotBody)
-#include "TestRobotBody.moc"

@@ -1,12 +1,9 @@
 #include "MatcherFixture.h"
 #include "common/Log.h"
-#include "tests/support/FileSizeLimit.h"
 
 #include <future>
-#include <sys/stat.h>
 
 using namespace hermes;
-using namespace hermes::scanmatcher;
 
 class TestScanMatcher : public QObject, MatcherFixture {
     Q_OBJECT
@@ -105,7 +102,7 @@ private Q_SLOTS:
         put(folder->filePath("bad.csv"),
             "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
         const Error error = failure("map.load", {{"path", "bad.csv"}});
-        QVERIFY2(error.message.contains("bad.csv:2"), qPrintable(error.message));
+        VERIFY_CONTAINS(error.message, "bad.csv:2");
         QVERIFY(call("map.get")["size"].toInt() > 0); // the old map stays
         QCOMPARE(::mkfifo(QFile::encodeName(folder->filePath("pipe")).constData(), 0600), 0); // nobody writes
         for (const char *path : {"none.csv", "/dev/zero", ".", "pipe"})
@@ -141,10 +138,10 @@ private Q_SLOTS:
         drive(0, 3);
         const auto message = [this] { return healthItem("source")["message"].toString(); };
         call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scn2d"}}}}}});
-        QTRY_VERIFY2(message().contains("no topic \"scn2d\""), qPrintable(message()));
+        TRY_CONTAINS(message(), "no topic \"scn2d\"");
         QCOMPARE(healthItem("source")["level"].toString(), QString("error"));
         call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scan2d"}}}}}});
-        QTRY_VERIFY2(message().startsWith("no scan from"), qPrintable(message())); // after some seconds
+        TRY_STARTS(message(), "no scan from"); // after some seconds
         QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
         drive(3, 6);
         QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
@@ -173,7 +170,7 @@ private Q_SLOTS:
         current["y"] = QJsonArray{1};
         const Error error = failure("matcher.match", {{"reference", reference}, {"current", current}});
         QVERIFY(error.is(ErrorCode::InvalidParams));
-        QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
+        VERIFY_STARTS(error.message, "current:");
     }
 
     void anglesBeyondATurnAreRefused() {
@@ -258,7 +255,7 @@ private Q_SLOTS:
         QCOMPARE(healthItem("tracking")["level"].toString(), QString("ok"));
         show(30, 42, 3600);
         const QString message = healthItem("tracking")["message"].toString();
-        QVERIFY2(message.startsWith("the pose is doubtful for 4 s: its trust is 0."), qPrintable(message));
+        VERIFY_STARTS(message, "the pose is doubtful for 4 s: its trust is 0.");
         QCOMPARE(healthItem("tracking")["level"].toString(), QString("warn"));
         call("map.clear");
         drive(0, 40);
@@ -269,9 +266,9 @@ private Q_SLOTS:
         std::promise<void> release;
         std::vector<quint64> seen;
         {
-            Worker worker([&](vectorlib::ScanTracker &, const Scan &scan) { seen.push_back(scan.number); });
+            Worker worker([&](const Scan &scan) { seen.push_back(scan.number); });
             worker.setQueueLimit(3);
-            worker.post([&](vectorlib::ScanTracker &) { release.get_future().wait(); });
+            worker.post([&] { release.get_future().wait(); });
             for (quint64 i = 0; i < 10; ++i) {
                 Scan scan;
                 scan.number = i;
@@ -284,6 +281,3 @@ private Q_SLOTS:
         QCOMPARE(seen, (std::vector<quint64>{7, 8, 9}));
     }
 };
-
-QTEST_GUILESS_MAIN(TestScanMatcher)
-#include "TestScanMatcher.moc"

@@ -1,7 +1,6 @@
 #include "SerialFilesFixture.h"
 
 using namespace hermes;
-using namespace hermes::seriallogger;
 
 class TestSerialExport : public QObject, SerialFilesFixture {
     Q_OBJECT
@@ -72,6 +71,3 @@ private Q_SLOTS:
         QVERIFY(!QFile::exists(job.target));
     }
 };
-
-QTEST_GUILESS_MAIN(TestSerialExport)
-#include "TestSerialExport.moc"

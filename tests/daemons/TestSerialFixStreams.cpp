@@ -3,8 +3,6 @@
 using namespace hermes;
 using namespace hermes::seriallogger;
 
-namespace {
-
 constexpr double day_s = 1893456000; // 2030-01-01
 constexpr double knot = 1852.0 / 3600;
 
@@ -196,7 +194,7 @@ private:
     Truth moment_;
 };
 
-NmeaStream played(const DrawnStream &drawn, bool live) {
+static NmeaStream played(const DrawnStream &drawn, bool live) {
     NmeaStream stream;
     stream.live = live;
     for (const Part &part : drawn.parts)
@@ -205,8 +203,6 @@ NmeaStream played(const DrawnStream &drawn, bool live) {
     stream.finish();
     return stream;
 }
-
-} // namespace
 
 /// Receivers of any habits on bad lines: each moment that reached the logger gives one fix, with what is
 /// true; what a fix lacks is counted.
@@ -246,7 +242,7 @@ private:
                 QVERIFY(!fix.value("time").isNull() || !dateKnown);
                 if (!fix.value("time").isNull())
                     QVERIFY2(std::abs(fix.value("time").toDouble() - moment.time) < 1e-5,
-                             qPrintable(QString::number(fix.value("time").toDouble() - moment.time)));
+                             saying(fix.value("time").toDouble() - moment.time));
                 if (moment.hasFix) {
                     QVERIFY(std::abs(fix.value("lat_deg").toDouble() - moment.latitude / 6e5) < 1e-9);
                     QVERIFY(std::abs(fix.value("lon_deg").toDouble() - moment.longitude / 6e5) < 1e-9);
@@ -271,6 +267,3 @@ private:
                     sentences.cutShort) >= drawn.damaged);
     }
 };
-
-QTEST_APPLESS_MAIN(TestSerialFixStreams)
-#include "TestSerialFixStreams.moc"

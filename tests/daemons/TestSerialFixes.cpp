@@ -3,8 +3,6 @@
 using namespace hermes;
 using namespace hermes::seriallogger;
 
-namespace {
-
 constexpr double day_s = 1893456000; // 2030-01-01
 
 /// What is wanted of a fix; -1 for unknown.
@@ -41,8 +39,6 @@ struct Receiver {
 };
 using R = Receiver;
 
-} // namespace
-
 Q_DECLARE_METATYPE(Wanted)
 
 /// What receivers of many kinds say becomes one fix for each moment.
@@ -50,8 +46,7 @@ class TestSerialFixes : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void oneFixForEachMoment_data() {
-        QTest::addColumn<QByteArrayList>("bursts"); // one a second
-        QTest::addColumn<QList<Wanted>>("wanted");
+        Rows<QByteArrayList, QList<Wanted>>("bursts", "wanted"); // bursts: one a second
         constexpr double speed = 5.14444, noon = day_s + 43200;
         const auto row = [](const char *name, auto burst, const QList<Wanted> &wanted) {
             QByteArrayList bursts;
@@ -346,6 +341,3 @@ private Q_SLOTS:
         QCOMPARE(stream.tracker.counts().badFields, quint64(1));
     }
 };
-
-QTEST_APPLESS_MAIN(TestSerialFixes)
-#include "TestSerialFixes.moc"

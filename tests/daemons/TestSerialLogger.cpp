@@ -3,7 +3,6 @@
 #include "common/Time.h"
 
 using namespace hermes;
-using namespace hermes::seriallogger;
 
 class TestSerialLogger : public QObject, SerialLoggerFixture {
     Q_OBJECT
@@ -43,7 +42,7 @@ void TestSerialLogger::wrongPortsAreNamed() {
         {{"ports", array.isArray() ? QJsonValue(array.array()) : QJsonValue(array.object())}});
     QVERIFY(!result.ok());
     const QString text = QJsonDocument(result.error().data.toObject()).toJson();
-    QVERIFY2(text.contains(complaint), qPrintable(text));
+    VERIFY_CONTAINS(text, complaint);
 }
 
 void TestSerialLogger::withoutPortsItWaits() {
@@ -77,7 +76,7 @@ void TestSerialLogger::sendsToTheDevice() {
     QTRY_VERIFY(!isOpen("dev"));
     const Error closed = failure("send", {{"port", "dev"}, {"text", "hello"}});
     QCOMPARE(closed.code, int(ErrorCode::NotReady));
-    QVERIFY2(closed.message.contains("dev is closed"), qPrintable(closed.message));
+    VERIFY_CONTAINS(closed.message, "dev is closed");
 }
 
 void TestSerialLogger::saysWhatAPortLacks() {
@@ -152,6 +151,3 @@ void TestSerialLogger::theLastFixIsNotHeldBack() {
     QTRY_COMPARE(port("gps").value("nmea").toObject().value("late").toInt(), 1);
     QCOMPARE(late.size(), 1);
 }
-
-QTEST_GUILESS_MAIN(TestSerialLogger)
-#include "TestSerialLogger.moc"

@@ -1,7 +1,6 @@
 #include "SerialFilesFixture.h"
 
 using namespace hermes;
-using namespace hermes::seriallogger;
 
 class TestSerialRecorder : public QObject, SerialFilesFixture {
     Q_OBJECT
@@ -162,6 +161,3 @@ private Q_SLOTS:
         QCOMPARE(QFileInfo(base() + ".index").size(), qint64(16 + 24 * pieces->size()));
     }
 };
-
-QTEST_GUILESS_MAIN(TestSerialRecorder)
-#include "TestSerialRecorder.moc"

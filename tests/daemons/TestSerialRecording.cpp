@@ -3,10 +3,7 @@
 #include "common/recording/Sidecar.h"
 #include "tests/support/FreePort.h"
 
-#include <QTcpServer>
-
 using namespace hermes;
-using namespace hermes::seriallogger;
 
 class TestSerialRecording : public QObject, SerialLoggerFixture {
     Q_OBJECT
@@ -166,7 +163,7 @@ private Q_SLOTS:
         call("source.open", {{"recording", "run"}, {"speed", 1000}});
         QTRY_COMPARE(call("source.status")["source"]["state"].toString(), "ended");
         const QString missing = call("source.status")["source"]["error"].toString();
-        QVERIFY2(missing.contains(raw.fileName()), qPrintable(missing));
+        VERIFY_CONTAINS(missing, raw.fileName());
         QCOMPARE(healthItem("source").value("level").toString(), "error");
         call("source.open", {{"live", true}});
         QVERIFY(QFile::remove(folder_->filePath("recordings/run/seriallogger-gps.index")));
@@ -281,6 +278,3 @@ private Q_SLOTS:
         QVERIFY(failure("record.marks", {{"name", "none"}}).is(ErrorCode::InputOutput));
     }
 };
-
-QTEST_GUILESS_MAIN(TestSerialRecording)
-#include "TestSerialRecording.moc"

@@ -2,10 +2,7 @@
 #include "SerialFilesFixture.h"
 #include "common/recording/Sidecar.h"
 
-#include <unistd.h>
-
 using namespace hermes;
-using namespace hermes::seriallogger;
 
 class TestSerialRepair : public QObject, SerialFilesFixture {
     Q_OBJECT
@@ -46,8 +43,7 @@ private Q_SLOTS:
     }
 
     void whatLinksLeadToStays_data() {
-        QTest::addColumn<QString>("file");
-        QTest::addColumn<bool>("isHard");
+        Rows<QString, bool>("file", "isHard");
         for (const char *file : {"logger-a.index", "logger-events.jsonl"}) {
             QTest::addRow("%s, a link", file) << file << false;
             QTest::addRow("%s, a second name", file) << file << true;
@@ -122,6 +118,3 @@ private Q_SLOTS:
         QCOMPARE(pieces->at(2).offset, quint64(large.size()));
     }
 };
-
-QTEST_GUILESS_MAIN(TestSerialRepair)
-#include "TestSerialRepair.moc"

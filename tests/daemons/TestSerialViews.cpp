@@ -79,10 +79,8 @@ private Q_SLOTS:
         LineSplitter splitter;
         QStringList lines;
         const auto sink = [&](const LineSplitter::Line &line) {
-            lines << QString("%1 %2 %3")
-                         .arg(line.offset)
-                         .arg(QString::fromStdString(escaped(line.bytes)))
-                         .arg(line.cut);
+            lines << QString(
+                saying("%1 %2 %3", line.offset, QString::fromStdString(escaped(line.bytes)), line.cut));
         };
         splitter.feed("first ha", at(0), sink);
         splitter.skip(100, sink);
@@ -205,6 +203,3 @@ private Q_SLOTS:
         QCOMPARE(json.value("time").toDouble(), 1774267208.0);
     }
 };
-
-QTEST_APPLESS_MAIN(TestSerialViews)
-#include "TestSerialViews.moc"

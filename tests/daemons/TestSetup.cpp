@@ -6,7 +6,6 @@
 #include "tests/support/FreePort.h"
 
 #include <future>
-#include <sys/stat.h>
 
 using namespace hermes;
 using namespace hermes::supervisor;
@@ -70,9 +69,8 @@ void TestSetup::twoControllersOnUsb() {
 }
 
 void TestSetup::whichIsWhichStaysAsItIs_data() {
-    QTest::addColumn<QByteArray>("settings"); // of the controllers
-    QTest::addColumn<std::vector<FoundSerial>>("lines");
-    QTest::addColumn<QStringList>("expected");
+    Rows<QByteArray, std::vector<FoundSerial>, QStringList>("settings", "lines",
+                                                            "expected"); // settings: of the controllers
     const std::vector<int> all{128, 129, 130, 131, 132, 133, 134, 135};
     const std::vector<FoundSerial> two{controllers("/dev/a", {128}), controllers("/dev/b", {128})};
     const QStringList exchanged{"serial:///dev/b 128", "serial:///dev/a 128"};
@@ -221,8 +219,7 @@ void TestSetup::writesOnlyWhatItCanReadAgain() {
     const auto large = files.write(
         {{"scanmatcher", json(R"({"a": 1})")}, {"simulator", QJsonObject{{"a", QString(1 << 20, 'x')}}}});
     QVERIFY(!large);
-    QVERIFY2(large.error().message.contains("simulator.json: it would have 1048"),
-             qPrintable(large.error().message));
+    VERIFY_CONTAINS(large.error().message, "simulator.json: it would have 1048");
     QCOMPARE(files.current().value(), QJsonObject());
 }
 
@@ -282,18 +279,14 @@ void TestSetup::aFloodDoesNotHoldUpTheSearchForLidars() {
         }));
     const std::atomic<bool> isCancelled{false};
     QStringList problems;
-    QElapsedTimer took;
-    took.start();
+    auto took = runningTimer();
     auto search = std::async(std::launch::async,
                              [&] { return LidarProbe(port, reservePort(), isCancelled).run(problems); });
     const bool hasEnded = search.wait_for(std::chrono::seconds(10)) == std::future_status::ready;
     isOver = true;
     const auto found = search.get();
-    QVERIFY2(hasEnded, qPrintable(QString("the search took %1 ms").arg(took.elapsed())));
+    QVERIFY2(hasEnded, saying("the search took %1 ms", took.elapsed()));
     QVERIFY2(problems.isEmpty(), qPrintable(problems.join('\n')));
     QCOMPARE(int(found.size()), 1);
-    QVERIFY2(found[0].rate_hz > 3000, qPrintable(QString::number(found[0].rate_hz)));
+    QVERIFY2(found[0].rate_hz > 3000, saying(found[0].rate_hz));
 }
-
-QTEST_GUILESS_MAIN(TestSetup)
-#include "TestSetup.moc"

@@ -2,8 +2,6 @@
 #include "daemons/simulator/PacketPump.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <ctime>
-
 using namespace hermes;
 using namespace hermes::simulator;
 
@@ -58,8 +56,7 @@ private Q_SLOTS:
             lastTruth_ns = truth.stamp_ns;
         });
         const double processor = processorSeconds();
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         QVERIFY(pump.start(pillars(), {}, "127.0.0.1", receiver.localPort()));
         std::size_t turns = 0;
         velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
@@ -119,6 +116,3 @@ private Q_SLOTS:
         QCOMPARE(pump.counts().swallowed, swallowed);
     }
 };
-
-QTEST_GUILESS_MAIN(TestSimulation)
-#include "TestSimulation.moc"

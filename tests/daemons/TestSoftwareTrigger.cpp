@@ -144,6 +144,3 @@ private Q_SLOTS:
 private:
     std::unique_ptr<QTemporaryDir> folder_;
 };
-
-QTEST_GUILESS_MAIN(TestSoftwareTrigger)
-#include "TestSoftwareTrigger.moc"

@@ -1,8 +1,6 @@
 #include "common/client/DaemonAddress.h"
 #include "daemons/supervisor/Supervisor.h"
-#include "tests/support/PatientClient.h"
-
-#include <csignal>
+#include "tests/support/DaemonClient.h"
 
 using namespace hermes;
 using namespace hermes::supervisor;
@@ -62,8 +60,8 @@ private Q_SLOTS:
         QCOMPARE(process("one")["restarts"].toInt(), 2);
         const double first = waits[0]["next_start_s"].toDouble(),
                      second = waits[1]["next_start_s"].toDouble();
-        QVERIFY2(first > 0 && first < 0.55, qPrintable(QString::number(first))); // a timer may be 5 % late
-        QVERIFY2(second > 0.55 && second < 1.1, qPrintable(QString::number(second)));
+        QVERIFY2(first > 0 && first < 0.55, saying(first)); // a timer may be 5 % late
+        QVERIFY2(second > 0.55 && second < 1.1, saying(second));
     }
 
     void endInOrderIsNotStartedAgain() {
@@ -114,8 +112,7 @@ private Q_SLOTS:
         launch({QJsonObject{
             {"name", "one"}, {"program", program}, {"arguments", QJsonArray{"100"}}, {"autostart", true}}});
         QTRY_COMPARE(stateOf("one"), QString("waiting"));
-        QVERIFY2(process("one")["last_exit"].toString().startsWith(program + ": "),
-                 qPrintable(process("one")["last_exit"].toString()));
+        VERIFY_STARTS(process("one")["last_exit"].toString(), program + ": ");
         QVERIFY(QFile::link("/bin/sleep", program));
         QTRY_COMPARE(stateOf("one"), QString("running"));
     }
@@ -184,8 +181,7 @@ private Q_SLOTS:
         for (int i = 0; i < 20; ++i) {
             time.start();
             QCOMPARE(stateOf("one"), QString("running"));
-            QVERIFY2(time.elapsed() < 5000,
-                     qPrintable(QString::number(time.elapsed()))); // the watchdog waits for 10 s
+            QVERIFY2(time.elapsed() < 5000, saying(time.elapsed())); // the watchdog waits for 10 s
         }
         for (const char *name : {"one", "two", "three"})
             QVERIFY(call("process.stop", {{"name", name}}).ok());
@@ -210,11 +206,7 @@ private Q_SLOTS:
         QTRY_VERIFY(::kill(pid, 0) != 0);
     }
 
-    void changedEntryIsStartedAnew_data() {
-        const Rows<bool> row("last");
-        row("the first", false);
-        row("the last", true);
-    }
+    void changedEntryIsStartedAnew_data() { falseAndTrue("last", "the first", "the last"); }
 
     void changedEntryIsStartedAnew() {
         QFETCH(bool, last);
@@ -267,8 +259,7 @@ private Q_SLOTS:
         };
         QVERIFY(message("process.start", {{"name", "none"}}).contains("no process \"none\""));
         QVERIFY(message("process.remove", {{"name", "none"}}).contains("no process \"none\""));
-        QVERIFY2(message("process.add", shell("one", "true")).contains("processes.1.name"),
-                 qPrintable(message("process.add", shell("one", "true"))));
+        VERIFY_CONTAINS(message("process.add", shell("one", "true")), "processes.1.name");
         for (const QString &name : {QString(), QString("a\nb"), QString("../a"), QString("a/b"),
                                     QString(100000, 'a'), QString(".a"), QString("a") + QChar(0x1b) + "[2J"})
             QVERIFY2(message("process.add", {{"name", name}}).contains("name"), qPrintable(name.left(20)));
@@ -321,11 +312,7 @@ private:
     void launch(const QJsonArray &processes) {
         supervisor_ = std::make_unique<Supervisor>();
         const QByteArray json = QJsonDocument(processes).toJson(QJsonDocument::Compact);
-        const auto ended = supervisor_->prepare({"hermes-supervisor", "--listen", "tcp://127.0.0.1:0",
-                                                 "--set", "processes=" + QString::fromUtf8(json)});
-        QVERIFY(!ended);
-        const auto launched = supervisor_->launch();
-        QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+        ::launch(*supervisor_, {"processes=" + QString::fromUtf8(json)});
         client_ = std::make_unique<ConnectedClient>(asOwner(supervisor_->info().listen.front()));
     }
 
@@ -359,6 +346,3 @@ private:
     std::unique_ptr<Supervisor> supervisor_;
     std::unique_ptr<PatientClient> client_;
 };
-
-QTEST_GUILESS_MAIN(TestSupervisor)
-#include "TestSupervisor.moc"

@@ -55,6 +55,3 @@ private Q_SLOTS:
         QVERIFY(healthItem("schedule")["message"].toString().contains("no_such_topic"));
     }
 };
-
-QTEST_GUILESS_MAIN(TestTriggerConditions)
-#include "TestTriggerConditions.moc"

@@ -81,6 +81,3 @@ private:
     std::unique_ptr<Trigger> trigger_;
     std::vector<QJsonValue> odometry_; // the poses of all messages; the first stands
 };
-
-QTEST_GUILESS_MAIN(TestTriggerDistance)
-#include "TestTriggerDistance.moc"

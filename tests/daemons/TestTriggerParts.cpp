@@ -309,6 +309,3 @@ private Q_SLOTS:
                 *jitter.worst_s == 1000);
     }
 };
-
-QTEST_GUILESS_MAIN(TestTriggerParts)
-#include "TestTriggerParts.moc"

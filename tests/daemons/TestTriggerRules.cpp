@@ -23,8 +23,7 @@ private Q_SLOTS:
 };
 
 void TestTriggerRules::refuses_data() {
-    QTest::addColumn<QByteArray>("trigger");
-    QTest::addColumn<QString>("path");
+    Rows<QByteArray, QString>("trigger", "path");
     const auto row = [](const char *name, const char *when, const char *actions, const char *path) {
         QTest::newRow(name) << QByteArray(R"({"id": "t", "when": )") + when + R"(, "actions": )" + actions +
                                    "}"
@@ -110,7 +109,7 @@ void TestTriggerRules::refuses() {
     QVERIFY(!errors.isEmpty());
     QCOMPARE(errors.at(0)["path"].toString(), path);
     QVERIFY(!errors.at(0)["expected"].toString().isEmpty());
-    QVERIFY2(error.message.contains(path), qPrintable(error.message));
+    VERIFY_CONTAINS(error.message, path);
     QCOMPARE(call("trigger.list").toArray(), QJsonArray());
 }
 
@@ -136,9 +135,8 @@ void TestTriggerRules::opensNothingButGpioChips() {
         const Result<void> set = GpioLines().set(chip, 3, true);
         QVERIFY(!set);
         QVERIFY(set.error().is(ErrorCode::DeviceFault));
-        QVERIFY2(set.error().message.startsWith(
-                     QString("GPIO chip %1, line 3: cannot open the chip: No such ").arg(chip)),
-                 qPrintable(set.error().message));
+        VERIFY_STARTS(set.error().message,
+                      QString("GPIO chip %1, line 3: cannot open the chip: No such ").arg(chip));
     }
 }
 
@@ -149,7 +147,7 @@ void TestTriggerRules::refusesCycles() {
     const Error error =
         failure("trigger.define", {{"id", "a"}, {"when", after("c")}, {"actions", QJsonArray()}});
     QVERIFY(error.is(ErrorCode::InvalidParams));
-    QVERIFY2(error.message.contains("chain"), qPrintable(error.message));
+    VERIFY_CONTAINS(error.message, "chain");
     QCOMPARE(listed("a")["when"].toObject(), byCommand()); // nothing has changed
     define("d", after("a"));                               // a tree is no cycle
 }
@@ -205,12 +203,9 @@ void TestTriggerRules::unknownIds() {
     for (const char *method : {"trigger.remove", "trigger.arm", "trigger.disarm", "trigger.fire"}) {
         const Error error = failure(method, {{"id", "stranger"}});
         QVERIFY(error.is(ErrorCode::InvalidParams));
-        QVERIFY2(error.message.contains("known"), qPrintable(error.message));
+        VERIFY_CONTAINS(error.message, "known");
     }
     QVERIFY(
         failure("trigger.define", {{"id", "with blank"}, {"when", byCommand()}, {"actions", QJsonArray()}})
             .is(ErrorCode::InvalidParams));
 }
-
-QTEST_GUILESS_MAIN(TestTriggerRules)
-#include "TestTriggerRules.moc"

@@ -4,26 +4,19 @@
 #include "TriggerFixture.h"
 
 #include <cstdarg>
-#include <fcntl.h>
 #include <pty.h>
-#include <sys/ioctl.h>
 #include <sys/syscall.h>
-#include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::softwaretrigger;
-
-namespace {
 
 struct SignalChange {
     double time; // monotonic
     int bit;
     bool on;
 };
-std::vector<SignalChange> signalChanges;
-bool hasSignals = true; // what the port is made to seem
-
-} // namespace
+static std::vector<SignalChange> signalChanges;
+static bool hasSignals = true; // what the port is made to seem
 
 extern "C" int ioctl(int descriptor, unsigned long request, ...) noexcept {
     va_list arguments;
@@ -92,7 +85,7 @@ private Q_SLOTS:
         QVERIFY(signalChanges[1].on && !signalChanges[2].on);
         QCOMPARE(signalChanges[2].bit, TIOCM_RTS);
         const double length = signalChanges[2].time - signalChanges[1].time;
-        QVERIFY2(length >= 0.099 && length < 1, qPrintable(QString::number(length)));
+        QVERIFY2(length >= 0.099 && length < 1, saying(length));
         // At the firing, and within the time that is told.
         const double begin = firing["mono"].toDouble();
         const double end = begin + firing["results"].toArray().at(0)["duration_s"].toDouble();
@@ -113,8 +106,7 @@ private Q_SLOTS:
                 QJsonObject{{"do", "serial"}, {"url", url}, {"text", "a"}}});
         const QJsonArray results = fire("t")["results"].toArray();
         QCOMPARE(results.at(0)["error"]["code"].toInt(), int(ErrorCode::DeviceFault));
-        QVERIFY2(results.at(0)["error"]["message"].toString().contains("DTR"),
-                 qPrintable(results.at(0)["error"]["message"].toString()));
+        VERIFY_CONTAINS(results.at(0)["error"]["message"].toString(), "DTR");
         QVERIFY(results.at(1)["ok"].toBool()); // the port works on
     }
 
@@ -130,6 +122,3 @@ private:
 
     int farEnd_ = -1, nearEnd_ = -1;
 };
-
-QTEST_GUILESS_MAIN(TestTriggerSerial)
-#include "TestTriggerSerial.moc"

@@ -48,7 +48,7 @@ private Q_SLOTS:
         QVERIFY(timedOut >= 15);
         // Begun at their times: the time-out of 0.5 s has delayed none.
         const double begun = slow.at(19)["mono"].toDouble() - slow.at(0)["mono"].toDouble();
-        QVERIFY2(begun < 3, qPrintable(QString::number(begun)));
+        QVERIFY2(begun < 3, saying(begun));
         QVERIFY(target_->values.size() >= 20);
     }
 
@@ -98,6 +98,3 @@ private Q_SLOTS:
         QCOMPARE(fired_["t"].last()["cause"]["n"].toDouble(), all);
     }
 };
-
-QTEST_GUILESS_MAIN(TestTriggerTargets)
-#include "TestTriggerTargets.moc"

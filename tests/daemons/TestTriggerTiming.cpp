@@ -7,12 +7,9 @@
 #include "tests/support/ChildProcess.h"
 #include "tests/support/PatientClient.h"
 
-#include <csignal>
 #include <numeric>
 
 using namespace hermes;
-
-namespace {
 
 /// How late a real-time thread without any work wakes at the same period: what the machine does to everyone.
 class Bystander {
@@ -44,8 +41,6 @@ private:
     std::atomic<bool> ends_{false};
     std::thread thread_;
 };
-
-} // namespace
 
 class TestTriggerTiming : public QObject {
     Q_OBJECT
@@ -161,6 +156,3 @@ private:
     std::unique_ptr<PatientClient> client_;
     std::vector<QJsonValue> fired_;
 };
-
-QTEST_GUILESS_MAIN(TestTriggerTiming)
-#include "TestTriggerTiming.moc"

@@ -38,7 +38,7 @@ private Q_SLOTS:
         QVERIFY(motion);
         QCOMPARE(motion->plausible, plausible);
         for (const double turned : motion->turns)
-            QVERIFY2(std::abs(turned - (plausible ? turn : 0)) < 0.01, qPrintable(QString::number(turned)));
+            QVERIFY2(std::abs(turned - (plausible ? turn : 0)) < 0.01, saying(turned));
     }
 
     void countersWrap() {
@@ -66,6 +66,3 @@ private:
     WheelTracker tracker_;
     std::array<ControllerReadings, 2> readings_;
 };
-
-QTEST_APPLESS_MAIN(TestWheelTracker)
-#include "TestWheelTracker.moc"

@@ -4,9 +4,6 @@
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
 #include "tests/support/DaemonClient.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
 /// A daemon that triggers may watch and call.
 class TargetDaemon : public hermes::Daemon {
 public:
@@ -60,8 +57,7 @@ protected:
     }
     void startTarget(const QString &address) {
         target_ = std::make_unique<TargetDaemon>();
-        QVERIFY(!target_->prepare({"target", "--listen", "tcp://" + address}));
-        QVERIFY(target_->launch().ok());
+        launch(*target_, {}, "tcp://" + address);
     }
     void stopTarget() {
         target_->shutDown();
@@ -69,13 +65,8 @@ protected:
     }
     void startTrigger(const QStringList &settings = {}) {
         trigger_ = std::make_unique<hermes::softwaretrigger::SoftwareTrigger>();
-        QStringList arguments{"softwaretrigger", "--listen", "tcp://127.0.0.1:0"};
-        if (!config_.isEmpty())
-            arguments += {"--config", config_};
-        for (const QString &setting : settings)
-            arguments += {"--set", setting};
-        QVERIFY(!trigger_->prepare(arguments));
-        QVERIFY(trigger_->launch().ok());
+        launch(*trigger_, settings, "tcp://127.0.0.1:0",
+               config_.isEmpty() ? QStringList() : QStringList{"--config", config_});
         fired_.clear();
         connectTo(*trigger_);
         client_->subscribe("fired", {{"queue", 10000}}, [this](const hermes::TopicUpdate &update) {

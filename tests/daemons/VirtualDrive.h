@@ -4,11 +4,6 @@
 #include "daemons/motorcontrol/LineMaster.h"
 #include "daemons/simulator/Drivetrain.h"
 
-#include <algorithm>
-#include <cmath>
-#include <deque>
-#include <random>
-
 /// The motor control without its thread, on a clock of its own: it drives emulated controllers about over a
 /// line of 115,200 baud, of whose bytes a share has one bit flipped, both ways.
 class VirtualDrive {

@@ -3,7 +3,6 @@
 #include <QtGlobal>
 
 #include <deque>
-#include <limits>
 
 /// Reads along what a motor control sends to its controllers, by the published packet format.
 class WireEar {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "tests/support/Files.h"
-
 #include <QMap>
-#include <QProcess>
 #include <QVector>
 
 /// Runs hermes-vector experiment to its end; its exit code, -1 where it crashed. `error` takes what it said.

@@ -1,6 +1,5 @@
 #include "tests/experiments/ExperimentFiles.h"
 #include "tests/gui/VectorProgram.h"
-#include "tests/support/RealData.h"
 #include "vectorlib/experiments/FewestLines.h"
 #include "vectorlib/experiments/MeanBand.h"
 #include "vectorlib/vectorization/FtlsVectorizer.h"
@@ -43,14 +42,14 @@ private Q_SLOTS:
             const Points points = randomWalk(seed, 12);
             QVERIFY2(fewestLines(vectorlib::PointSpan<double>(points), 0.03) ==
                          fewestByTrying(points, 0, 0.03),
-                     qPrintable(QString("seed %1").arg(seed)));
+                     saying("seed %1", seed));
         }
         vectorlib::FtlsVectorizer<double> ftls;
         ftls.settings = {0.05, 0.1, false};
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
             const Points points = randomWalk(seed, 300);
             QVERIFY2(fewestLines(vectorlib::PointSpan<double>(points), 0.05) <= ftls(points).size(),
-                     qPrintable(QString("seed %1").arg(seed)));
+                     saying("seed %1", seed));
         }
         QCOMPARE(fewestLines(vectorlib::PointSpan<double>(Points()), 0.05), std::size_t(0));
     }
@@ -73,7 +72,7 @@ private Q_SLOTS:
             const MeanBand some = MeanBand::of(runs);
             within += some.low <= 0 && 0 <= some.high;
         }
-        QVERIFY2(std::abs(within - 1900) < 60, qPrintable(QString::number(within)));
+        QVERIFY2(std::abs(within - 1900) < 60, saying(within));
     }
 
     // Thesis 6.1.4: without noise the error stays at 0 to the corner, then grows; with noise it goes up and
@@ -182,6 +181,3 @@ private Q_SLOTS:
         QCOMPARE(run({"segment", room, "--coordinates", "bent"}).status, 2);
     }
 };
-
-QTEST_GUILESS_MAIN(TestCloudFigures)
-#include "TestCloudFigures.moc"

@@ -54,10 +54,8 @@ private Q_SLOTS:
             if (property.what == QTest::currentDataTag())
                 for (int i = 0; i < holders.size(); ++i)
                     QVERIFY2((property.shares[std::size_t(i)] == 1) == (holders[i] == '+'),
-                             qPrintable(QString("%1: %2, seed %3")
-                                            .arg(segmentCriteria()[std::size_t(i)].name)
-                                            .arg(property.shares[std::size_t(i)])
-                                            .arg(seed_)));
+                             saying("%1: %2, seed %3", segmentCriteria()[std::size_t(i)].name,
+                                    property.shares[std::size_t(i)], seed_));
     }
 
     void hausdorffCriteriaAreDrawnAlike() {
@@ -101,6 +99,3 @@ private:
     const std::uint64_t seed_ = std::random_device()();
     const std::vector<CriterionProperty> properties_ = criterionProperties(seed_, 200);
 };
-
-QTEST_APPLESS_MAIN(TestCriteria)
-#include "TestCriteria.moc"

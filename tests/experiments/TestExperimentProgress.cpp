@@ -168,6 +168,3 @@ private Q_SLOTS:
         QVERIFY(told.isSteady && told.calls > 10);
     }
 };
-
-QTEST_GUILESS_MAIN(TestExperimentProgress)
-#include "TestExperimentProgress.moc"

@@ -14,9 +14,7 @@ private Q_SLOTS:
     void initTestCase() { QVERIFY(folder_.isValid()); }
 
     void refusesOptionsItDoesNotUse_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QByteArray>("option");
-        QTest::addColumn<QByteArray>("taker");
+        Rows<QStringList, QByteArray, QByteArray>("arguments", "option", "taker");
         const auto row = [](const QStringList &arguments, const char *option, const char *taker) {
             QTest::newRow(qPrintable(arguments.join(' ')))
                 << arguments << QByteArray(option) << QByteArray(taker);
@@ -169,6 +167,3 @@ private Q_SLOTS:
                  2);
     }
 };
-
-QTEST_GUILESS_MAIN(TestExperimentUse)
-#include "TestExperimentUse.moc"

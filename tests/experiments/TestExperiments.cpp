@@ -234,6 +234,3 @@ private:
     int run(const QStringList &arguments) { return runExperiment(arguments, &error_); }
     QByteArray error_;
 };
-
-QTEST_GUILESS_MAIN(TestExperiments)
-#include "TestExperiments.moc"

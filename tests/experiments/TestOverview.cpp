@@ -31,7 +31,7 @@ private Q_SLOTS:
         for (int i = 1; i < 33; ++i)
             way += std::hypot(rows[i]["x"].toDouble() - rows[i - 1]["x"].toDouble(),
                               rows[i]["y"].toDouble() - rows[i - 1]["y"].toDouble());
-        QVERIFY2(std::abs(way - 46.71) < 0.001, qPrintable(QString::number(way)));
+        QVERIFY2(std::abs(way - 46.71) < 0.001, saying(way));
         for (int last = 32; last < rows.size(); last += 33)
             QVERIFY2(rows[last]["error_m"].toDouble() < 0.006, rows[last]["error_m"].constData());
     }
@@ -85,7 +85,7 @@ private Q_SLOTS:
                       other = folder.filePath("a/2024.01.06.log"), out = folder.filePath("out");
         QByteArray error;
         QCOMPARE(runExperiment({"baseline", "--log", a, "--log", b, "--out", out}, &error), 1);
-        QVERIFY2(error.contains("expected logs of different names"), error);
+        VERIFY_CONTAINS(error, "expected logs of different names");
         QVERIFY(!QFile::exists(out));
         QCOMPARE(runExperiment({"baseline", "--log", a, "--log", other, "--first", "2", "--out", out}), 0);
         QSet<QByteArray> sets;
@@ -100,7 +100,7 @@ private Q_SLOTS:
         for (const char *name : {"baseline", "pairs", "calibration"}) {
             QByteArray error;
             QCOMPARE(runExperiment({name, "--log", log, "--every", "100000", "--out", out}, &error), 1);
-            QVERIFY2(error.contains("no pair"), error);
+            VERIFY_CONTAINS(error, "no pair");
             QVERIFY(!QFile::exists(out));
         }
         // Of a log of one scan there are no errors, and no plots of them.
@@ -118,6 +118,3 @@ private Q_SLOTS:
                 !QFile::exists(out + "/free-log-translation.svg"));
     }
 };
-
-QTEST_APPLESS_MAIN(TestOverview)
-#include "TestOverview.moc"

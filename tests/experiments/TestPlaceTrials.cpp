@@ -11,11 +11,7 @@ class TestPlaceTrials : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void fitFindsTheWeights_data() {
-        QTest::addColumn<unsigned>("seed");
-        for (unsigned seed = 1; seed <= 3; ++seed)
-            QTest::addRow("seed %u", seed) << seed;
-    }
+    void fitFindsTheWeights_data() { rowsOfSeeds<unsigned>(1, 3); }
 
     void fitFindsTheWeights() {
         QFETCH(unsigned, seed);
@@ -25,18 +21,17 @@ private Q_SLOTS:
         truth.ahead = 40;
         truth.rival = 12;
         const vectorlib::PlaceTrust found = fittedTrust(drawn(truth, seed, 20000), {});
-        QVERIFY2(std::abs(found.constant - truth.constant) < 0.5,
-                 qPrintable(QString::number(found.constant)));
-        QVERIFY2(std::abs(found.score - truth.score) < 0.7, qPrintable(QString::number(found.score)));
-        QVERIFY2(std::abs(found.ahead - truth.ahead) < 5, qPrintable(QString::number(found.ahead)));
-        QVERIFY2(std::abs(found.rival - truth.rival) < 1.5, qPrintable(QString::number(found.rival)));
+        QVERIFY2(std::abs(found.constant - truth.constant) < 0.5, saying(found.constant));
+        QVERIFY2(std::abs(found.score - truth.score) < 0.7, saying(found.score));
+        QVERIFY2(std::abs(found.ahead - truth.ahead) < 5, saying(found.ahead));
+        QVERIFY2(std::abs(found.rival - truth.rival) < 1.5, saying(found.rival));
     }
 
     void reliabilityOfTheTrueWeights() {
         const PlaceTrustQuality quality = qualityOf({}, drawn({}, 4, 20000));
         for (const CalibrationTenth &t : quality.tenths)
             if (t.solutions > 400)
-                QVERIFY2(std::abs(t.told - t.right) < 0.08, qPrintable(QString::number(t.told)));
+                QVERIFY2(std::abs(t.told - t.right) < 0.08, saying(t.told));
         QVERIFY(quality.found > quality.trials / 10 && quality.wrong < quality.found / 20);
     }
 
@@ -115,6 +110,3 @@ private:
         return trials;
     }
 };
-
-QTEST_APPLESS_MAIN(TestPlaceTrials)
-#include "TestPlaceTrials.moc"

@@ -1,4 +1,3 @@
-#include "tests/support/RealData.h"
 #include "vectorlib/experiments/QualityExperiment.h"
 #include "vectorlib/io/CarmenLog.h"
 
@@ -96,18 +95,8 @@ private:
         return logExperiment(log->scans, options);
     }
     static QString told(const QualityRow &a, const QualityRow &b) {
-        return QString("%1 vertices, J %2, %3 scans: RMSE %4, %5 %6; a %7, %8; f %9")
-            .arg(a.verticesTrue)
-            .arg(a.budget)
-            .arg(a.scans)
-            .arg(a.rmse)
-            .arg(QString::fromStdString(b.algorithm))
-            .arg(b.rmse)
-            .arg(a.areaError)
-            .arg(b.areaError)
-            .arg(a.hitShare);
+        return QString(saying("%1 vertices, J %2, %3 scans: RMSE %4, %5 %6; a %7, %8; f %9", a.verticesTrue,
+                              a.budget, a.scans, a.rmse, QString::fromStdString(b.algorithm), b.rmse,
+                              a.areaError, b.areaError, a.hitShare));
     }
 };
-
-QTEST_APPLESS_MAIN(TestQuality)
-#include "TestQuality.moc"

@@ -60,7 +60,7 @@ private Q_SLOTS:
             QCOMPARE(scan.rays().size(), std::size_t(400 + 100 * trial));
             ScanPairs makePairs(Pairing(pairing), noise);
             const auto &pairs = makePairs(scan, 0, random);
-            QVERIFY2(pairs.size() >= 6, qPrintable(QString::number(trial)));
+            QVERIFY2(pairs.size() >= 6, saying(trial));
             for (const vectorlib::SegmentPair &p : pairs) {
                 QVERIFY(p.moving.direction().dot(p.fixed.direction()) > 0.95);
                 QVERIFY(std::abs(p.fixed.across(p.moving.begin())) < 0.03 &&
@@ -101,7 +101,7 @@ private Q_SLOTS:
                     1e-9); // the points tell the direction that the ray should have had
             largest = std::max(largest, std::abs(std::hypot(x, y) - std::hypot(u, v)));
         }
-        QVERIFY2(largest > 0.01 && largest < 1, qPrintable(QString::number(largest)));
+        QVERIFY2(largest > 0.01 && largest < 1, saying(largest));
     }
 
     void rangesAreFittedWithoutBias() {
@@ -125,8 +125,8 @@ private Q_SLOTS:
             byDistance += line.direction().y / runs;
             byRange += fitted.direction().y / runs;
         }
-        QVERIFY2(std::abs(byDistance) > 0.005, qPrintable(QString::number(byDistance)));
-        QVERIFY2(std::abs(byRange) < 0.002, qPrintable(QString::number(byRange)));
+        QVERIFY2(std::abs(byDistance) > 0.005, saying(byDistance));
+        QVERIFY2(std::abs(byRange) < 0.002, saying(byRange));
     }
 
     void spaceOfTransformations() { // paper figures 2 to 4
@@ -173,8 +173,8 @@ private Q_SLOTS:
             for (const auto &sums : {error, ambiguity}) {
                 const double points = sums["0.01 300"] / sums["0.01 3000"],
                              noise = known ? sums["0.1 300"] / sums["0.01 300"] : 100;
-                QVERIFY2(points > 5 && points < 20, qPrintable(QString::number(points))); // linear
-                QVERIFY2(noise > 50 && noise < 200, qPrintable(QString::number(noise)));  // quadratic
+                QVERIFY2(points > 5 && points < 20, saying(points)); // linear
+                QVERIFY2(noise > 50 && noise < 200, saying(noise));  // quadratic
             }
         }
     }
@@ -193,7 +193,7 @@ private Q_SLOTS:
             const QByteArray few = QByteArray(cause) + " 300", many = QByteArray(cause) + " 3000";
             QVERIFY2(value(many, "bias_t") < known / 10, cause);
             const double fall = value(few, "d_t") / value(many, "d_t");
-            QVERIFY2(fall > 6 && fall < 16, qPrintable(QString::number(fall)));
+            QVERIFY2(fall > 6 && fall < 16, saying(fall));
         }
         QVERIFY(value("extracted 3000", "d_t") > 20 * value("extracted-clean 3000", "d_t"));
     }
@@ -230,7 +230,7 @@ private Q_SLOTS:
             if (row["world"] == "pillars")
                 (row["weighted"] == "1" ? weighted : plain) +=
                     row["var_x"].toDouble() + row["var_y"].toDouble();
-        QVERIFY2(weighted > 0 && weighted < plain / 2, qPrintable(QString("%1 %2").arg(weighted).arg(plain)));
+        QVERIFY2(weighted > 0 && weighted < plain / 2, saying("%1 %2", weighted, plain));
         if (!hasMatplotlib())
             return;
         QCOMPARE(QDir(path("dispersion")).entryList({"*.svg"}).size(), 14);
@@ -245,13 +245,10 @@ private Q_SLOTS:
             least = std::min(least, row["least_reliability"].toDouble());
             most = std::max(most, row["reliability"].toDouble());
         }
-        QVERIFY2(least >= 0 && least < 0.9, qPrintable(QString::number(least)));
-        QVERIFY2(most > 0.95 && most <= 1, qPrintable(QString::number(most)));
+        QVERIFY2(least >= 0 && least < 0.9, saying(least));
+        QVERIFY2(most > 0.95 && most <= 1, saying(most));
         if (hasMatplotlib())
             QVERIFY(
                 contentOf(path("reliability/reliability-circles.svg")).contains("lowest single scan, R = "));
     }
 };
-
-QTEST_GUILESS_MAIN(TestRegistrationExperiments)
-#include "TestRegistrationExperiments.moc"

@@ -93,8 +93,7 @@ private Q_SLOTS:
         const QJsonObject report = json(run(arguments).out), search = report["search"].toObject();
         QCOMPARE(report["settings"].toObject()["every_combination"].toBool(), true);
         const QJsonArray solutions = report["solutions"].toArray();
-        QVERIFY2(solutions.size() >= 8 && solutions.size() <= 30,
-                 qPrintable(QString::number(solutions.size())));
+        QVERIFY2(solutions.size() >= 8 && solutions.size() <= 30, saying(solutions.size()));
         QCOMPARE(search["left_out"].toInt(-1), 0);
         QCOMPARE(search["found"].toInt() - search["parts"].toInt(), solutions.size());
         int accepted = 0;
@@ -269,7 +268,7 @@ private Q_SLOTS:
         FETCH(QStringList, arguments, int, status, QByteArray, message);
         const Result r = run(QStringList("report") + arguments);
         QCOMPARE(r.status, status);
-        QVERIFY2(r.err.contains(message), r.err);
+        VERIFY_CONTAINS(r.err, message);
         QVERIFY(r.out.isEmpty());
     }
 
@@ -286,9 +285,6 @@ private Q_SLOTS:
         put(file, world("w", "[0,0,0]"));
         const Result r = run({"report", file, "--overall"});
         QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("w.json: found 1 poses"), r.err);
+        VERIFY_CONTAINS(r.err, "w.json: found 1 poses");
     }
 };
-
-QTEST_GUILESS_MAIN(TestReport)
-#include "TestReport.moc"

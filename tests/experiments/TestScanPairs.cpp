@@ -1,5 +1,3 @@
-#include "tests/support/RealData.h"
-
 // hermes-vector experiment pairs on real logs: how often the motion between two scans is found.
 class TestScanPairs : public QObject {
     Q_OBJECT
@@ -127,6 +125,3 @@ private:
     QTemporaryDir folder_;
     QByteArray output_;
 };
-
-QTEST_GUILESS_MAIN(TestScanPairs)
-#include "TestScanPairs.moc"

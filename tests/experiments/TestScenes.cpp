@@ -22,10 +22,7 @@ private Q_SLOTS:
             for (const ResultRow &row : results_[scene.toStdString()][algorithm])
                 if (row.points >= 1000)
                     QVERIFY2(std::abs(row.percent(row.lines.mean)) <= 1,
-                             qPrintable(QString("%1, %2 points: %3 lines")
-                                            .arg(algorithm)
-                                            .arg(row.points)
-                                            .arg(row.lines.mean)));
+                             saying("%1, %2 points: %3 lines", algorithm, row.points, row.lines.mean));
     }
 
     void errorAreaKeepsFalling_data() { scenes(); }
@@ -36,10 +33,8 @@ private Q_SLOTS:
         const std::vector<ResultRow> &ftls = results_[scene.toStdString()]["FTLS"];
         for (std::size_t i = 1; i < aftls.size(); ++i)
             QVERIFY2(aftls[i].area.mean < aftls[i - 1].area.mean,
-                     qPrintable(QString("%1 points: %2 m^2, then %3")
-                                    .arg(aftls[i].points)
-                                    .arg(aftls[i - 1].area.mean)
-                                    .arg(aftls[i].area.mean)));
+                     saying("%1 points: %2 m^2, then %3", aftls[i].points, aftls[i - 1].area.mean,
+                            aftls[i].area.mean));
         QVERIFY(aftls.back().area.mean <= ftls.back().area.mean);
     }
 
@@ -51,6 +46,3 @@ private:
     }
     std::map<std::string, std::map<std::string, std::vector<ResultRow>>> results_; // by scene and algorithm
 };
-
-QTEST_APPLESS_MAIN(TestScenes)
-#include "TestScenes.moc"

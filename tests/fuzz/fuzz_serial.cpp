@@ -98,7 +98,7 @@ private:
         }
     }
 
-    void take(std::size_t side, const SerialLink::Moment &one) {
+    void take(std::size_t side, const SerialLink::Arrival &one) {
         FUZZ_REQUIRE(!one.tooLarge);
         FUZZ_REQUIRE(sent_[side].count(one.message) == 1);
         FUZZ_REQUIRE(arrived_[side].insert(one.message).second);

@@ -5,8 +5,6 @@
 #include "common/daemon/Daemon.h"
 #include "tests/common/LoggerFixture.h"
 
-#include <QTimer>
-
 namespace hermes {
 
 /// A logger in the process of the test: records a text, and replays nothing, in a while.

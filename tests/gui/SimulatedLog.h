@@ -2,10 +2,6 @@
 
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <QByteArray>
-
-#include <random>
-
 /// A drive through a drawn building as a raw CARMEN log that tests may spoil; metres, radians, seconds.
 struct SimulatedLog {
     struct Line {

@@ -114,6 +114,3 @@ private Q_SLOTS:
         QVERIFY(scan.err.contains("1 scan(s) left out that repeat"));
     }
 };
-
-QTEST_GUILESS_MAIN(TestBadLogs)
-#include "TestBadLogs.moc"

@@ -1,6 +1,5 @@
 #include "tests/gui/VectorProgram.h"
 
-#include "tests/support/RealData.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
 using vectorlib::Pose2D;
@@ -283,7 +282,7 @@ private Q_SLOTS:
             return r.status == 0 ? found["mean_m"].toDouble(1e9) : 1e9;
         };
         const double before = errorOf("leave"), after = errorOf("close");
-        QVERIFY2(before > tracked && after < closed, qPrintable(QString("%1 to %2").arg(before).arg(after)));
+        QVERIFY2(before > tracked && after < closed, saying("%1 to %2", before, after));
     }
     void thereIsNoGraphWithoutLoops() {
         writeLog({{0, 0, 0}, {1, 0, 0}});
@@ -304,6 +303,3 @@ private Q_SLOTS:
         QCOMPARE(json(r.out)["revisits"].toObject()["pairs"].toInt(), 0);
     }
 };
-
-QTEST_GUILESS_MAIN(TestEvaluate)
-#include "TestEvaluate.moc"

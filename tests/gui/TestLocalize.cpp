@@ -50,7 +50,7 @@ private Q_SLOTS:
         const auto found = posesOfTum(contentOf(path("tum")));
         QCOMPARE(found.size(), part.size());
         const double off = farthest(found, part, way_[0]);
-        QVERIFY2(off < 0.1, qPrintable(QString::number(off)));
+        QVERIFY2(off < 0.1, saying(off));
         QCOMPARE(contentOf(map_), before);
         const QByteArray first = contentOf(path("tum"));
         QCOMPARE(localize(path("second")).status, 0);
@@ -71,7 +71,7 @@ private Q_SLOTS:
         const auto found = posesOfTum(contentOf(path("tum")));
         QCOMPARE(found.size(), ways.size());
         const double off = farthest(found, ways, way_[0]);
-        QVERIFY2(off < 0.1, qPrintable(QString::number(off)));
+        QVERIFY2(off < 0.1, saying(off));
     }
 
     void refusesAnotherBuilding() {
@@ -99,6 +99,3 @@ private Q_SLOTS:
         QVERIFY2(r.status == 1 && r.err.contains("empty.csv: found a map without a wall"), r.err.constData());
     }
 };
-
-QTEST_GUILESS_MAIN(TestLocalize)
-#include "TestLocalize.moc"

@@ -3,8 +3,6 @@
 #include <vectorlib/io/MapCsv.h>
 #include <vectorlib/observation/FloorPlan.h>
 
-#include <fstream>
-
 /// hermes-vector map-merge: two maps become one where they show the same place.
 class TestMapMerge : public QObject, protected TestFolder {
     Q_OBJECT
@@ -122,6 +120,3 @@ private Q_SLOTS:
         QCOMPARE(files(), QStringList{"a.csv"});
     }
 };
-
-QTEST_GUILESS_MAIN(TestMapMerge)
-#include "TestMapMerge.moc"

@@ -156,11 +156,7 @@ private Q_SLOTS:
         QVERIFY(!accepted({"--expected", "0.7,-0.3,2.5", "--deviation-alpha", "0.01"}));
     }
 
-    void covarianceFollowsTheNoise_data() {
-        const Rows<bool> row("arePoints");
-        row("segments", false);
-        row("points", true);
-    }
+    void covarianceFollowsTheNoise_data() { falseAndTrue("arePoints", "segments", "points"); }
 
     void covarianceFollowsTheNoise() {
         QFETCH(bool, arePoints);
@@ -227,6 +223,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestMatch)
-#include "TestMatch.moc"

@@ -54,10 +54,9 @@ private Q_SLOTS:
             QVERIFY2(told == c.outcome, qPrintable(QString(c.fixed) + ": " + text));
             // The text begins with the same words, and says more, of the sets by the names that the command
             // has.
-            QVERIFY2(text.startsWith(QString(told).replace('_', ' ') + ": "), qPrintable(text));
+            VERIFY_STARTS(text, QString(told).replace('_', ' ') + ": ");
             if (told == "too_little")
-                QVERIFY2(text.contains(c.fixed == QByteArray("dots") ? "static" : "dynamic"),
-                         qPrintable(text));
+                VERIFY_CONTAINS(text, c.fixed == QByteArray("dots") ? "static" : "dynamic");
         }
     }
 
@@ -98,6 +97,3 @@ private Q_SLOTS:
             QVERIFY(!solution["accepted"].toBool());
     }
 };
-
-QTEST_GUILESS_MAIN(TestMatchOutcomes)
-#include "TestMatchOutcomes.moc"

@@ -1,9 +1,5 @@
 #include "tests/gui/VectorProgram.h"
 
-#include <cstdlib>
-#include <fcntl.h>
-#include <unistd.h>
-
 /// Long work of hermes-vector tells how far it has come: people at a terminal, and programs by --json. Short
 /// work is silent, and so is all work whose messages go elsewhere.
 class TestProgress : public QObject {
@@ -69,11 +65,10 @@ private Q_SLOTS:
     }
     void longWorkTellsHowFarItIs() {
         QProcess process;
-        QElapsedTimer since;
-        since.start();
+        auto since = runningTimer();
         start(process, longWork("terminal"));
         QTRY_VERIFY_WITH_TIMEOUT(told().contains("tracking, step "), 20000);
-        QVERIFY2(since.elapsed() >= 1000, qPrintable(QString::number(since.elapsed())));
+        QVERIFY2(since.elapsed() >= 1000, saying(since.elapsed()));
         const QRegularExpression line("tracking, step \\d+ of \\d+ \\(\\d+ %\\), \\d+ s left");
         QTRY_VERIFY_WITH_TIMEOUT(line.match(QString::fromUtf8(told())).hasMatch(), 20000);
         QVERIFY(process.waitForFinished(60000));
@@ -86,8 +81,7 @@ private Q_SLOTS:
     }
 
     void jsonIsOneObjectALine() {
-        QElapsedTimer since;
-        since.start();
+        auto since = runningTimer();
         const Result r = run(longWork("json") + QStringList("--json"));
         const double seconds = double(since.elapsed()) / 1000;
         QCOMPARE(r.status, 0);
@@ -150,6 +144,3 @@ private Q_SLOTS:
         QVERIFY(!contentOf(path("closed")).contains("progress"));
     }
 };
-
-QTEST_GUILESS_MAIN(TestProgress)
-#include "TestProgress.moc"

@@ -79,11 +79,7 @@ private Q_SLOTS:
         QVERIFY(svg.contains("Not found: 2 places in the map fit alike"));
     }
 
-    void logIsNoScan_data() {
-        const Rows<QString> row("command");
-        for (const char *command : {"relocalize", "match"})
-            row(command, QString(command));
-    }
+    void logIsNoScan_data() { rowsOf("command", {"relocalize", "match"}); }
     /// What the message says to do does it.
     void logIsNoScan() {
         QFETCH(QString, command);
@@ -128,6 +124,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestRelocalize)
-#include "TestRelocalize.moc"

@@ -2,13 +2,10 @@
 // sensor that is turned on the robot. The map must be right, or the option be named that makes it so.
 #include "tests/gui/SimulatedLog.h"
 #include "tests/gui/VectorProgram.h"
-#include "tests/support/Seed.h"
 
 using vectorlib::pi;
 using vectorlib::Pose2D;
 using vectorlib::Transformation2D;
-
-namespace {
 
 constexpr double between_s = 0.1; // scans
 
@@ -54,8 +51,6 @@ private:
     double speed_, rate_;
     std::vector<Pose2D> poses_;
 };
-
-} // namespace
 
 class TestScannerLogs : public QObject, protected TestFolder {
     Q_OBJECT
@@ -159,6 +154,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestScannerLogs)
-#include "TestScannerLogs.moc"

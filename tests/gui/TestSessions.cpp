@@ -51,12 +51,10 @@ private Q_SLOTS:
     void whatIsInTheWayIsTold() {
         record("run1");
         QString told = start("run1").error().message;
-        QVERIFY2(
-            told.startsWith("nothing was begun; a has a recording \"run1\" already (" + robot_->root.path()),
-            qPrintable(told));
+        VERIFY_STARTS(told, "nothing was begun; a has a recording \"run1\" already (" + robot_->root.path());
         QVERIFY(start("run2").ok());
         told = start("run3").error().message;
-        QVERIFY2(told.startsWith("nothing was begun; a records \"run2\" already"), qPrintable(told));
+        VERIFY_STARTS(told, "nothing was begun; a records \"run2\" already");
         SessionMembers unsure = members();
         unsure.silent = QStringList("d: it does not say what it is");
         SessionRecorder recorder(unsure);
@@ -83,10 +81,9 @@ private Q_SLOTS:
         });
         release.start(1);
         const QString told = start("run1").error().message;
-        QVERIFY2(told.startsWith("\"run1\" is not recorded; b: record.start: no reply within"),
-                 qPrintable(told));
+        VERIFY_STARTS(told, "\"run1\" is not recorded; b: record.start: no reply within");
         for (const char *name : {"a", "b", "c"})
-            QVERIFY2(told.contains(QString("%1 had begun and was stopped").arg(name)), qPrintable(told));
+            VERIFY_CONTAINS(told, QString("%1 had begun and was stopped").arg(name));
         QVERIFY(!robot_->isRecording());
         QCOMPARE(sidecarOf(robot_->root.path() + "/run1", "b").value("ended").toString(), QString("stopped"));
     }
@@ -151,7 +148,7 @@ private Q_SLOTS:
             b_->writer.hold = false;
         });
         const QString told = start("run1").error().message;
-        QVERIFY2(told.contains("b: record.start: the connection was closed"), qPrintable(told));
+        VERIFY_CONTAINS(told, "b: record.start: the connection was closed");
     }
 
     void allAreReleasedTogether() {
@@ -225,9 +222,7 @@ private Q_SLOTS:
     }
 
     void aReplayFollowsAnother_data() {
-        const Rows<bool> row("isEnded"); // both, before the second has begun
-        row("to its end", false);
-        row("and is ended", true);
+        falseAndTrue("isEnded", "to its end", "and is ended"); // both, before the second has begun
     }
 
     void aReplayFollowsAnother() {
@@ -442,6 +437,3 @@ private:
     FakeLogger *a_ = nullptr, *b_ = nullptr, *c_ = nullptr;
     std::chrono::milliseconds timeout_ = Client::defaultTimeout;
 };
-
-QTEST_GUILESS_MAIN(TestSessions)
-#include "TestSessions.moc"

@@ -156,6 +156,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestVectorCaptures)
-#include "TestVectorCaptures.moc"

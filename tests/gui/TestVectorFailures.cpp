@@ -1,9 +1,6 @@
 #include "tests/gui/VectorProgram.h"
 #include "tests/support/Latex.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 /// hermes-vector when something is wrong: exit status, message, and no trace of a file.
 class TestVectorFailures : public QObject, protected TestFolder {
     Q_OBJECT
@@ -193,11 +190,7 @@ private Q_SLOTS:
                 "nnn: cannot be written: File name too long");
     }
 
-    void killLeavesNoFile_data() {
-        const Rows<bool> row("isThere");
-        row("new file", false);
-        row("instead of another", true);
-    }
+    void killLeavesNoFile_data() { falseAndTrue("isThere", "new file", "instead of another"); }
     /// The program waits for the rest of its input when it is killed: nothing it could do about its files.
     void killLeavesNoFile() {
         QFETCH(bool, isThere);
@@ -276,6 +269,3 @@ private Q_SLOTS:
         QVERIFY2(said.contains("standard output: cannot be written"), said.constData());
     }
 };
-
-QTEST_GUILESS_MAIN(TestVectorFailures)
-#include "TestVectorFailures.moc"

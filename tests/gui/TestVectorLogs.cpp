@@ -2,8 +2,6 @@
 
 #include <vectorlib/geometry/Pose2D.h>
 
-#include <functional>
-
 using vectorlib::Pose2D;
 
 /// What hermes-vector map makes of logs whose robots, scanners and coordinates are not the ordinary ones.
@@ -150,6 +148,3 @@ private Q_SLOTS:
         QVERIFY(contentOf(path("a: #2.yaml")).startsWith("image: \"a: #2.pgm\"\n"));
     }
 };
-
-QTEST_GUILESS_MAIN(TestVectorLogs)
-#include "TestVectorLogs.moc"

@@ -1,5 +1,4 @@
 #include "tests/gui/VectorProgram.h"
-#include "tests/support/RealData.h"
 
 /// hermes-vector as its users meet it: columns, values, files, help.
 class TestVectorProgram : public QObject, protected TestFolder {
@@ -29,9 +28,7 @@ private Q_SLOTS:
     }
 
     void vectorizeFindsTheWalls_data() {
-        const Rows<QString> row("algorithm");
-        for (const char *algorithm : {"ftls", "aftls", "inc", "dp", "rw", "rw-adjacent", "sam"})
-            row(algorithm, algorithm);
+        rowsOf("algorithm", {"ftls", "aftls", "inc", "dp", "rw", "rw-adjacent", "sam"});
     }
     void vectorizeFindsTheWalls() {
         QFETCH(QString, algorithm);
@@ -278,6 +275,3 @@ private Q_SLOTS:
         QCOMPARE(run({"ring", capture, "--model", "hdl32e"}).status, 1);
     }
 };
-
-QTEST_GUILESS_MAIN(TestVectorProgram)
-#include "TestVectorProgram.moc"

@@ -3,15 +3,8 @@
 #include "common/capture/PcapWriter.h"
 #include "protocol/velodyne/DataPacket.h"
 #include "protocol/velodyne/Hdl32e.h"
-#include "tests/support/Files.h"
 
-#include <QDir>
-#include <QJsonDocument>
-#include <QJsonObject>
-#include <QProcess>
-#include <QTemporaryDir>
 #include <QXmlStreamReader>
-#include <QtTest>
 
 struct Result {
     int status = -1;

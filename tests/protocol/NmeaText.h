@@ -1,6 +1,5 @@
 #pragma once
 
-#include <QByteArray>
 #include <string_view>
 
 // The first is of a real receiver, the second that of the published field lists.

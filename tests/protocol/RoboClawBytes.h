@@ -2,8 +2,6 @@
 
 #include "protocol/roboclaw/Packet.h"
 
-#include <QByteArray>
-
 namespace hermes::roboclaw {
 
 /// As in the tables of the tests: upper-case hexadecimal, a space between bytes.

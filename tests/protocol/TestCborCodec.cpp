@@ -35,8 +35,7 @@ class TestCborCodec : public QObject {
 
 private Q_SLOTS:
     void reads_data() {
-        QTest::addColumn<QByteArray>("item");
-        QTest::addColumn<QJsonValue>("value");
+        Rows<QByteArray, QJsonValue>("item", "value");
         const auto row = [](const char *digits, const QJsonValue &value) {
             QTest::newRow(digits) << hex(digits) << value;
         };
@@ -136,14 +135,13 @@ private Q_SLOTS:
         const auto items = codec.feed(framed(item) + framed("\x80"));
         QCOMPARE(items.size(), size_t(2)); // in step again at once
         QVERIFY(items[0].error && items[0].error->is(ErrorCode::ParseError));
-        QVERIFY2(items[0].error->message.contains(why), qPrintable(items[0].error->message));
+        VERIFY_CONTAINS(items[0].error->message, why);
         QCOMPARE(items[1].message, QJsonValue(QJsonArray()));
         QCOMPARE(codec.counters().malformed, quint64(1));
     }
 
     void readsTypedArrays_data() {
-        QTest::addColumn<QByteArray>("item");
-        QTest::addColumn<QJsonArray>("values");
+        Rows<QByteArray, QJsonArray>("item", "values");
         const auto row = [](const char *name, const char *digits, const QJsonArray &values) {
             QTest::newRow(name) << hex(digits) << values;
         };
@@ -220,7 +218,7 @@ private Q_SLOTS:
         const QByteArray badBytes(reinterpret_cast<const char *>(&bad), 4),
             goodBytes(reinterpret_cast<const char *>(&good), 4);
         const QString text = problem({}, goodBytes, badBytes);
-        QVERIFY2(text.contains("not finite"), qPrintable(text));
+        VERIFY_CONTAINS(text, "not finite");
         // Shorts where bytes are expected: those that fit.
         std::vector<quint8> bytes(3);
         WireError error;
@@ -354,6 +352,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestCborCodec)
-#include "TestCborCodec.moc"

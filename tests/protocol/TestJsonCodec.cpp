@@ -156,7 +156,7 @@ private Q_SLOTS:
         const auto frame = codec.encode(data);
         QVERIFY(frame.error);
         QVERIFY(frame.bytes.isEmpty());
-        QVERIFY2(frame.error->message.contains("pose.1.x"), qPrintable(frame.error->message));
+        VERIFY_CONTAINS(frame.error->message, "pose.1.x");
         QVERIFY(codec.encode(QJsonArray{INFINITY}).error);
         QCOMPARE(codec.counters().refused, quint64(2));
     }
@@ -233,6 +233,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestJsonCodec)
-#include "TestJsonCodec.moc"

@@ -8,8 +8,7 @@ class TestJsonRpc : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void reads_data() {
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<int>("kind"); // index in RpcMessage: request, response, invalid
+        Rows<QByteArray, int>("text", "kind"); // kind: index in RpcMessage: request, response, invalid
         const auto row = [](const char *text, int kind) { QTest::newRow(text) << QByteArray(text) << kind; };
         row(R"({"jsonrpc":"2.0","id":1,"method":"a"})", 0);
         row(R"({"jsonrpc":"2.0","id":"x","method":"a","params":{}})", 0);
@@ -118,6 +117,3 @@ private Q_SLOTS:
         QCOMPARE(int(ErrorCode::InputOutput), -32008);
     }
 };
-
-QTEST_APPLESS_MAIN(TestJsonRpc)
-#include "TestJsonRpc.moc"

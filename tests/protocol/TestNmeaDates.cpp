@@ -44,6 +44,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestNmeaDates)
-#include "TestNmeaDates.moc"

@@ -142,11 +142,9 @@ private Q_SLOTS:
 
     /// As receivers send them: no variation is 999.9 or 0.0 without a side.
     void fieldsThatAreNotUsedRefuseNothing_data() {
-        const Rows<QByteArray> row("tail");
-        for (const char *tail :
-             {"999.9,E,A", "999.9,,D", "13.8,,A", ",W,A", "181,E,A", "-1.0,E,A", "13.8,N,A", "x,E,A",
-              "13.8,E,d", "13.8,E,A,V", "13.8,E,A,", "13.8,E", "13.8", "", "a,b,c,d,e,f"})
-            row(tail, QByteArray(tail));
+        rowsOf<QByteArray>("tail", {"999.9,E,A", "999.9,,D", "13.8,,A", ",W,A", "181,E,A", "-1.0,E,A",
+                                    "13.8,N,A", "x,E,A", "13.8,E,d", "13.8,E,A,V", "13.8,E,A,", "13.8,E",
+                                    "13.8", "", "a,b,c,d,e,f"});
     }
 
     void fieldsThatAreNotUsedRefuseNothing() {
@@ -170,8 +168,7 @@ private Q_SLOTS:
     }
 
     void whatIsOddIsUnknown_data() {
-        QTest::addColumn<int>("field");
-        QTest::addColumn<QByteArray>("value");
+        Rows<int, QByteArray>("field", "value");
         const auto row = [](int field, const char *value) {
             QTest::addRow("field %d: %s", field, value) << field << QByteArray(value);
         };
@@ -305,6 +302,3 @@ private Q_SLOTS:
         QVERIFY(text && rmc.valid);
     }
 };
-
-QTEST_APPLESS_MAIN(TestNmeaMessages)
-#include "TestNmeaMessages.moc"

@@ -97,8 +97,7 @@ private Q_SLOTS:
     }
 
     void wrongFieldsAreNamed_data() {
-        QTest::addColumn<QByteArray>("body");
-        QTest::addColumn<int>("field");
+        Rows<QByteArray, int>("body", "field");
         const auto row = [](const char *body, int field) {
             QTest::newRow(body) << QByteArray(body) << field;
         };
@@ -143,6 +142,3 @@ private Q_SLOTS:
         QTEST(found, "field");
     }
 };
-
-QTEST_APPLESS_MAIN(TestNmeaSentences)
-#include "TestNmeaSentences.moc"

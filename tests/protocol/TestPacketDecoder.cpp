@@ -183,8 +183,7 @@ private Q_SLOTS:
     }
 
     void modelsThatCannotBeReadAreRefused_data() {
-        QTest::addColumn<std::function<void(SensorModel &)>>("spoil");
-        QTest::addColumn<QString>("fault");
+        Rows<std::function<void(SensorModel &)>, QString>("spoil", "fault");
         const auto row = [](const char *name, std::function<void(SensorModel &)> spoil, const char *fault) {
             QTest::newRow(name) << std::move(spoil) << fault;
         };
@@ -257,6 +256,3 @@ private Q_SLOTS:
         QCOMPARE(points[0].stamp_ns, std::int64_t(5 * 46080 + 15 * 1152));
     }
 };
-
-QTEST_APPLESS_MAIN(TestPacketDecoder)
-#include "TestPacketDecoder.moc"

@@ -1,6 +1,5 @@
 #include "common/capture/PcapReader.h"
 #include "protocol/velodyne/PositionPacket.h"
-#include "tests/support/RealData.h"
 
 #include <cstring>
 
@@ -180,6 +179,3 @@ private Q_SLOTS:
         QVERIFY(gps.counts().wrongValue > 2000 && gps.counts().badNmea > 2000);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPosition)
-#include "TestPosition.moc"

@@ -108,7 +108,7 @@ private Q_SLOTS:
         QFETCH(QVector<int>, commands);
         for (const int command : commands) {
             const Layout *layout = layoutOf(std::uint8_t(command));
-            QVERIFY2(layout, qPrintable(QString("command %1").arg(command)));
+            QVERIFY2(layout, saying("command %1", command));
             QCOMPARE(int(layout->command), command);
             QTEST(layout->isRead, "isRead");
             QTEST(int(sizeOf(layout->fields)), "size");
@@ -151,6 +151,3 @@ private Q_SLOTS:
         QTEST(signedSpeed(Reply{values, {}}), "speed");
     }
 };
-
-QTEST_GUILESS_MAIN(TestRoboClaw)
-#include "TestRoboClaw.moc"

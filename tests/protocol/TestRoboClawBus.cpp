@@ -133,7 +133,7 @@ private Q_SLOTS:
             line.feed("55");
             line.poll();
         }
-        QVERIFY2(line.now > 0.05 && line.now < 0.06, qPrintable(QString::number(line.now)));
+        QVERIFY2(line.now > 0.05 && line.now < 0.06, saying(line.now));
     }
 
     void chatterDoesNotHoldUpWhatIsUrgent() {
@@ -148,7 +148,7 @@ private Q_SLOTS:
         }
         // The first repeats its request, which waits behind.
         QCOMPARE(line.sent, (std::vector<int>{24, 40, 40}));
-        QVERIFY2(line.now < 0.025, qPrintable(QString::number(line.now)));
+        QVERIFY2(line.now < 0.025, saying(line.now));
     }
 
     void urgentRequestsGoFirst() {
@@ -252,6 +252,3 @@ private Q_SLOTS:
         QCOMPARE(line.sent.size(), std::size_t(5));
     }
 };
-
-QTEST_GUILESS_MAIN(TestRoboClawBus)
-#include "TestRoboClawBus.moc"

@@ -144,7 +144,7 @@ private Q_SLOTS:
             for (std::size_t i = 0; i < write->bytes.size(); ++i) {
                 const std::uint8_t byte = std::uint8_t(write->bytes[i] ^ (bit / 8 == i ? 1 << bit % 8 : 0));
                 if (device.feed(byte) == RequestParser::Result::Done)
-                    QVERIFY2(device.request().isRead(), qPrintable(QString("bit %1 was not seen").arg(bit)));
+                    QVERIFY2(device.request().isRead(), saying("bit %1 was not seen", bit));
             }
         }
         const auto read = Request::make(0x80, Command::ReadEncoders);
@@ -196,6 +196,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestRoboClawParsers)
-#include "TestRoboClawParsers.moc"

@@ -51,6 +51,3 @@ private Q_SLOTS:
         QCOMPARE(clock.absolute(300u, host + 9 * hour_ns + 100000), utc + second_ns + 300000);
     }
 };
-
-QTEST_APPLESS_MAIN(TestSensorClock)
-#include "TestSensorClock.moc"

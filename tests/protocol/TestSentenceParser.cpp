@@ -126,6 +126,3 @@ private Q_SLOTS:
         QVERIFY(Sentence("PGRME").type().empty());
     }
 };
-
-QTEST_APPLESS_MAIN(TestSentenceParser)
-#include "TestSentenceParser.moc"

@@ -145,6 +145,3 @@ private Q_SLOTS:
         QVERIFY(!Piece::fromFrame(frame));
     }
 };
-
-QTEST_APPLESS_MAIN(TestSerialFrames)
-#include "TestSerialFrames.moc"

@@ -4,8 +4,6 @@
 #include "protocol/serial/Crc32c.h"
 #include "tests/support/LinkPair.h"
 
-#include <QtEndian>
-
 using namespace hermes;
 
 using Rank = SerialLink::Rank;
@@ -235,7 +233,7 @@ private Q_SLOTS:
             if (random() % 3 == 0)
                 link.next();
         }
-        QVERIFY2(most <= 8 * 64 * pieceBytes, qPrintable(QString::number(most)));
+        QVERIFY2(most <= 8 * 64 * pieceBytes, saying(most));
     }
 
     void begunMessagesAreForgotten() {
@@ -263,7 +261,7 @@ private Q_SLOTS:
             frame.clear();
         };
         QVERIFY(pair.run([&] { return !pair.ends[0].isUnderWay(ticket); }, 25));
-        QVERIFY2(frames < 150, qPrintable(QString::number(frames))); // it does not shout
+        QVERIFY2(frames < 150, saying(frames)); // it does not shout
         QCOMPARE(pair.ends[0].counters().abandoned, 1u);
         QCOMPARE(pair.ends[0].bytesWaiting(), 0);
         QVERIFY(!pair.ends[0].hasTopicUnderWay());
@@ -321,8 +319,7 @@ private Q_SLOTS:
             pair.ends[0].send(message(i, 100), Rank::Assured);
         pair.run([] { return false; }, 15);
         const std::size_t before = pair.arrived[1].size();
-        QVERIFY2(before > 25 && before < 40,
-                 qPrintable(QString::number(before))); // the others wait for the first
+        QVERIFY2(before > 25 && before < 40, saying(before)); // the others wait for the first
         isLost = false;
         QVERIFY(pair.run([&] { return pair.arrived[1].size() == 200; }, 30));
         pair.run([] { return false; }, 5);
@@ -355,8 +352,7 @@ private Q_SLOTS:
     void largeMessageTakesNoTime() {
         LinkPair pair(1e9);
         pair.ends[1].setLimit(6 << 20);
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         pair.ends[0].send(message(1, 1 << 20), Rank::Usual);
         const bool arrived = pair.run([&] { return !pair.arrived[1].empty(); }, 100);
         const qint64 once = time.restart();
@@ -368,6 +364,3 @@ private Q_SLOTS:
         QVERIFY(time.elapsed() < 10 * std::max<qint64>(once, 5)); // four times as much
     }
 };
-
-QTEST_APPLESS_MAIN(TestSerialLink)
-#include "TestSerialLink.moc"

@@ -99,11 +99,7 @@ private Q_SLOTS:
         QVERIFY(std::abs(step_ns - 8 * hdl32e.firingPeriod_ns) < 1000); // stamps are whole microseconds
     }
 
-    void beamsOfAllLasersAreCounted_data() {
-        const Rows<bool> row("dual");
-        row("single", false);
-        row("dual", true);
-    }
+    void beamsOfAllLasersAreCounted_data() { falseAndTrue("dual", "single", "dual"); }
 
     /// Whichever laser is decoded; the second return of a beam does not count.
     void beamsOfAllLasersAreCounted() {
@@ -178,6 +174,3 @@ private Q_SLOTS:
         QVERIFY(counts.wrongSize > 4000 && counts.wrongFlag > 4000);
     }
 };
-
-QTEST_APPLESS_MAIN(TestTurnAssembler)
-#include "TestTurnAssembler.moc"

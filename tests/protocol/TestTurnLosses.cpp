@@ -90,6 +90,3 @@ private Q_SLOTS:
         QCOMPARE(firings, (std::vector<std::uint32_t>{21701, 21701}));
     }
 };
-
-QTEST_APPLESS_MAIN(TestTurnLosses)
-#include "TestTurnLosses.moc"

@@ -9,8 +9,6 @@
 
 using namespace hermes;
 
-namespace {
-
 struct Inner {
     double length = 0;
     int count = 7;
@@ -29,8 +27,6 @@ struct Sample {
     QJsonValue open;
     quint8 small = 0;
 };
-
-} // namespace
 
 namespace hermes {
 
@@ -156,7 +152,7 @@ private Q_SLOTS:
         value.isUndefined() ? json.remove(member) : void(json[member] = value);
         ReadReport report;
         QVERIFY(!readMessage<Sample>(WireValue(json), report));
-        QVERIFY2(report.text().contains(text), qPrintable(report.text()));
+        VERIFY_CONTAINS(report.text(), text);
         QVERIFY(!readMessage<Sample>(WireValue(), report = {}));
         QVERIFY(!readMessage<Sample>(WireValue(QJsonValue(5)), report = {}));
     }
@@ -284,7 +280,7 @@ private Q_SLOTS:
             json["removed"] = QJsonArray{huge};
             ReadReport report;
             QVERIFY(!readMessage<MapMessage>(WireValue(json), report));
-            QVERIFY2(report.text().contains("member removed.0"), qPrintable(report.text()));
+            VERIFY_CONTAINS(report.text(), "member removed.0");
         }
     }
 
@@ -304,6 +300,3 @@ private Q_SLOTS:
         QVERIFY(!schemaOf<Sample>()["required"].toArray().contains("end"));
     }
 };
-
-QTEST_APPLESS_MAIN(TestWire)
-#include "TestWire.moc"

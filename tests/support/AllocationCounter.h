@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include <new>
 
 /// How often the program has called `operator new` so far. This header replaces the operator, so that one

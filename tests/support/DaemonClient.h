@@ -4,6 +4,17 @@
 #include "common/daemon/Daemon.h"
 #include "tests/support/PatientClient.h"
 
+/// Starts a daemon in this process, with settings as `path=value` and more options.
+inline void launch(hermes::Daemon &daemon, const QStringList &settings = {},
+                   const QString &listen = "tcp://127.0.0.1:0", const QStringList &options = {}) {
+    QStringList arguments = QStringList{"test", "--listen", listen} + options;
+    for (const QString &setting : settings)
+        arguments += {"--set", setting};
+    QVERIFY(!daemon.prepare(arguments));
+    const auto launched = daemon.launch();
+    QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+}
+
 /// A client of the daemon that a test runs in its own process: base of the fixtures.
 class DaemonClient {
 protected:

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <QFileInfo>
-#include <QProcess>
-#include <QStandardPaths>
 
 namespace hermes {
 

@@ -2,11 +2,6 @@
 
 #include "protocol/serial/SerialLink.h"
 
-#include <array>
-#include <deque>
-#include <functional>
-#include <vector>
-
 namespace hermes {
 
 /// Two links with a wire between them that takes its time, in a time of its own.

@@ -18,3 +18,9 @@ inline const int slowness = std::max(1, qEnvironmentVariableIntValue("HERMES_SLO
     const int qt_test_timeoutValue = slowness * (timeout);                                                   \
     { QTRY_LOOP_IMPL((expr), qt_test_timeoutValue, qt_test_step); }                                          \
     QTRY_TIMEOUT_DEBUG_IMPL((expr), qt_test_timeoutValue, qt_test_step)
+
+inline QElapsedTimer runningTimer() {
+    QElapsedTimer timer;
+    timer.start();
+    return timer;
+}

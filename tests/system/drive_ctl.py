@@ -16,9 +16,8 @@ import time
 import unittest
 from unittest import mock
 
-from support import BINARIES, Process, free_port, simulated_hall, release, wait_for
+from support import BINARIES, HERMESCTL, Process, free_port, release, simulated_hall, wait_for
 
-HERMESCTL = os.path.join(BINARIES, "hermesctl")
 TOO_LATE = -32004  # on a busy machine the simulated controllers may answer too late; the robot has halted
 
 

@@ -8,10 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from support import BINARIES, SOURCE, DaemonError, Process, free_port, wait_for, text_of
-
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
-HERMESCTL = os.path.join(BINARIES, "hermesctl")
+from support import BINARIES, HERMESCTL, WORLD, DaemonError, Process, free_port, text_of, wait_for
 
 
 class FirstWords(unittest.TestCase):

@@ -8,9 +8,8 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, put
+from support import BINARIES, WORLD, Daemon, DaemonError, Process, free_port, put
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 INPUT_OUTPUT = -32008
 MOST_S = 1.0  # to refuse
 MOST_BYTES = 100e6  # of memory

@@ -15,10 +15,9 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port, refusal, wait_for, put, text_of
+from support import BINARIES, WORLD, Daemon, Process, free_port, put, refusal, text_of, wait_for
 import velodyne_reference as reference
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 SIGMA = 0.01
 
 
@@ -39,10 +38,7 @@ class Listener(threading.Thread):
             pass  # the daemon has ended
 
     def wait(self, count, limit_s=30):
-        deadline = time.monotonic() + limit_s
-        while len(self.messages) < count:
-            assert time.monotonic() < deadline, f"{len(self.messages)} messages came, {count} were expected"
-            time.sleep(0.02)
+        wait_for(f"{count} messages", lambda: len(self.messages) >= count, limit_s)
 
 
 def wall_distance(edges, x, y):

@@ -8,7 +8,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, DaemonError, Process, free_port, put
+from support import BINARIES, DaemonError, Process, free_port, put, wait_for
 
 SIDE = float(os.environ.get("HERMES_SIDE", "1"))
 SPEED, TURN_RATE = 1.0, 2.5  # m/s, rad/s
@@ -66,10 +66,7 @@ class Robot:
             self.acquire()
 
     def acquire(self):
-        deadline = time.monotonic() + 20
-        while not self.motors.call("motor.state")["ready"]:
-            assert time.monotonic() < deadline, f"{self.layout}: the controllers are not ready"
-            time.sleep(0.02)
+        wait_for(f"{self.layout}: readiness", lambda: self.motors.call("motor.state")["ready"], 20)
         self.motors.call("control.acquire", client="square", timeout_s=5)
 
     def drive_to(self, goal, near, near_angle):
@@ -95,13 +92,9 @@ class Robot:
 
     def stand(self):
         self.motors.call("motor.stop")
-        deadline = time.monotonic() + 10
-        while any(self.simulator.call("sim.state")["motors"]["wheels_rps"]):
-            assert time.monotonic() < deadline, f"{self.layout}: the robot does not come to a stand"
-            time.sleep(0.02)
+        wait_for(f"{self.layout}: standing", lambda: not any(self.simulator.call("sim.state")["motors"]["wheels_rps"]), 10)
         cycles = self.motors.call("motor.state")["cycle"]["cycles"]
-        while self.motors.call("motor.state")["cycle"]["cycles"] < cycles + 3:  # the last counts are read
-            time.sleep(0.02)
+        wait_for("the last counts", lambda: self.motors.call("motor.state")["cycle"]["cycles"] >= cycles + 3)
 
     def square(self):
         self.acquire()

@@ -6,9 +6,8 @@ import socket
 import subprocess
 import tempfile
 
-from support import BINARIES, DATA, SOURCE, Daemon, Process, free_port, wait_for
+from support import BINARIES, DATA, WORLD, Daemon, Process, free_port, wait_for
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 PACKETS = 14500  # eight seconds
 
 

@@ -16,15 +16,14 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, Process, free_port, wait_for, text_of
+from support import BINARIES, HERMESCTL, Process, free_port, text_of, wait_for
 
-CTL = os.path.join(BINARIES, "hermesctl")
 IDENTITY = "hermes pairing 1"
 SUITE = "ECDHE-PSK-CHACHA20-POLY1305"
 
 
 def ctl(folder, *words, status=0):
-    done = subprocess.run([CTL, *words], env={**os.environ, "HERMES_KEYS": folder}, capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run([HERMESCTL, *words], env={**os.environ, "HERMES_KEYS": folder}, capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == status, (words, done)
     return done.stdout if status == 0 else done.stderr
 
@@ -38,7 +37,7 @@ class Pair:
 
     def __init__(self, folder, name, role, *options):
         self.folder, self.name, self.port = folder, name, free_port(0)
-        self.process = subprocess.Popen([CTL, "keys", "pair", name, "--role", role, "--json", "--port", str(self.port), *options],
+        self.process = subprocess.Popen([HERMESCTL, "keys", "pair", name, "--role", role, "--json", "--port", str(self.port), *options],
                                         env={**os.environ, "HERMES_KEYS": folder}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.told = json.loads(self.process.stdout.readline())
         self.code = self.told["code"]
@@ -188,7 +187,7 @@ def check_refusals(authority, eva, scratch):
         assert "not empty" in pair.join(full, status=1)
         for code, what in (("ABCDE-FGHJ", "has 9"), (pair.code + "A", "has 11"), ("O" + pair.code[1:], "neither 0"), ("é" + pair.code[1:], "code")):
             assert what in pair.join(none, code, status=2), code
-        other = subprocess.run([CTL, "keys", "pair", "third", "--role", "operator", "--port", str(pair.port)], capture_output=True, text=True,
+        other = subprocess.run([HERMESCTL, "keys", "pair", "third", "--role", "operator", "--port", str(pair.port)], capture_output=True, text=True,
                                env={**os.environ, "HERMES_KEYS": authority}, check=False, timeout=20)
         assert other.returncode == 1 and "--port" in other.stderr, other
         pair.join(none)
@@ -240,7 +239,7 @@ def check_killed(authority, scratch):
     for name, stops in (("killed", False), ("both", True)):
         with Pair(authority, name, "operator") as pair:
             half = Half(pair.port, 50000)
-            joining = subprocess.Popen([CTL, "keys", "join", f"127.0.0.1:{half.port}", pair.code], env={**os.environ, "HERMES_KEYS": folder},
+            joining = subprocess.Popen([HERMESCTL, "keys", "join", f"127.0.0.1:{half.port}", pair.code], env={**os.environ, "HERMES_KEYS": folder},
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             assert half.isFull.wait(10)
             assert state_of(authority, name) == ["valid"]
@@ -319,7 +318,7 @@ def check_others_folders(authority, eva, scratch):
 def waiting_join(folder, port, code):
     """A join that has written its keys, and waits for the other side; None when there was no other side."""
     before = beside(folder)
-    joining = subprocess.Popen([CTL, "keys", "join", f"127.0.0.1:{port}", code, "--timeout", "10"], env={**os.environ, "HERMES_KEYS": folder},
+    joining = subprocess.Popen([HERMESCTL, "keys", "join", f"127.0.0.1:{port}", code, "--timeout", "10"], env={**os.environ, "HERMES_KEYS": folder},
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     wait_for("keys, or the end", lambda: joining.poll() is not None or any(
         os.path.exists(os.path.join(os.path.dirname(folder), entry, "own.crt")) for entry in beside(folder) - before))

@@ -7,9 +7,8 @@ import subprocess
 import threading
 import tty
 
-from support import BINARIES, Daemon, DaemonError, free_port
+from support import BINARIES, HERMESCTL, Daemon, DaemonError, free_port
 
-HERMESCTL = os.path.join(BINARIES, "hermesctl")
 NAMES = ["motorcontrol", "velodynelogger", "seriallogger", "scanmatcher"]
 
 

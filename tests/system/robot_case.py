@@ -7,9 +7,8 @@ import time
 import unittest
 
 from robot import NAMES, Robot
-from support import BINARIES, BUILD, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, BUILD, WORLD, Daemon, DaemonError, Process, free_port, wait_for
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 INTERPOSED = {"LD_PRELOAD": os.path.join(BUILD, "tests", "system", "interposed.so"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
 
 

@@ -8,9 +8,8 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port, wait_for, text_of
+from support import BINARIES, WORLD, Daemon, Process, free_port, text_of, wait_for
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 ROLES = ("observer", "operator", "engineer")
 NOT_AUTHORISED = -32001
 OTHER_USER = 65534

@@ -17,7 +17,7 @@ import tty
 import unittest
 from unittest import mock
 
-from support import BINARIES, SOURCE, SLOWNESS, Daemon, Process, free_port, wait_for
+from support import BINARIES, SLOWNESS, SOURCE, WORLD, Daemon, Process, free_port, wait_for
 
 EXAMPLES = os.path.join(SOURCE, "docs", "examples")
 sys.path.insert(0, EXAMPLES)
@@ -25,7 +25,6 @@ import ld06  # noqa: E402
 
 # The example of the sensor's manual.
 PACKET = bytes.fromhex("542C6808AB7EE000E4DC00E2D900E5D500E3D300E4D000E9CD00E4CA00E2C700E9C500E5C200E5C000E5BE823A1A50")
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 MOUNT = (0.12, -0.05, 0.4)
 
 

@@ -8,7 +8,7 @@ import sys
 import tempfile
 import threading
 
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for, put
+from support import BINARIES, SOURCE, WORLD, Daemon, DaemonError, Process, free_port, put, wait_for
 
 try:
     import jsonschema
@@ -16,7 +16,6 @@ except ImportError:
     print("skipped: python3-jsonschema is not installed")
     sys.exit(77)
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 SCANS = 80  # of the drive
 
 

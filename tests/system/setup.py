@@ -13,11 +13,9 @@ import time
 import tty
 import unittest
 
-from support import BINARIES, SOURCE, DaemonError, Process, SerialPort, free_port, release, wait_for, put, text_of
+from support import BINARIES, HERMESCTL, SOURCE, WORLD, DaemonError, Process, SerialPort, free_port, put, release, text_of, wait_for
 
-HERMESCTL = os.path.join(BINARIES, "hermesctl")
 SAMPLES = os.path.join(SOURCE, "deploy", "settings")
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 
 
 class Line:

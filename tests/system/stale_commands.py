@@ -9,10 +9,9 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, SOURCE, Process, free_port, release, wait_for
+from support import BINARIES, WORLD, Process, free_port, release, wait_for
 from tls import issued, keys
 
-WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 CARRIERS, ENDS, STOPS = ("tcp", "unix", "tls"), ("kill", "freeze"), (None, "motor.stop", "motor.estop")
 LIMIT_S = 0.45  # safety.command_timeout_s and the time of braking from 0.3 m/s, and 0.125 s
 

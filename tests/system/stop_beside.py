@@ -8,7 +8,6 @@ import ctypes
 import json
 import math
 import os
-import random
 import socket
 import subprocess
 import sys
@@ -16,9 +15,8 @@ import tempfile
 import threading
 import time
 
-from lateness import Lateness
 from stop_ends import Caller, Tap
-from stop_traffic import LIMIT_S, batch, hold, line, pump, request, set_niceness
+from stop_traffic import LIMIT_S, batch, figures, hold, line, measure, others, pump, request, set_niceness
 from support import BINARIES, BUILD, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for, put, text_of
 from tls import context_of, issued, keys
 
@@ -126,28 +124,6 @@ def stop_behind(stand, caller, asked, lines, pace):
     return replied, zero, before
 
 
-def measure(stop):
-    """What TRIALS stops gave, and how many were made again because the machine stood still."""
-    taken, again = [], 0
-    with Lateness() as lateness:
-        while len(taken) < TRIALS:
-            time.sleep(random.uniform(0.005, 0.02))
-            lateness.take_longest()
-            one = stop()
-            if max(one[:2]) > LIMIT_S and lateness.take_longest() > LIMIT_S / 2 and again < TRIALS:
-                again += 1
-            else:
-                taken.append(one)
-    return taken, again
-
-
-def figures(times):
-    times = sorted(times)
-    at = [1000 * times[int(share * (len(times) - 1))] for share in (0.5, 0.99, 1)]
-    share = sum(one < LIMIT_S for one in times) / len(times)
-    return f"median {at[0]:.1f}, 99 % {at[1]:.1f}, worst {at[2]:.1f} ms, {100 * share:.0f} % below {1000 * LIMIT_S:.0f} ms", share
-
-
 def check(stand, kind, carrier="TCP", beside=""):
     """Whether it holds. A reply can come no sooner than what was sent before it has been read: of a slow reader only the controllers
     are judged, and that the reply costs no more than that reading."""
@@ -155,7 +131,7 @@ def check(stand, kind, carrier="TCP", beside=""):
     caller = stand.caller(carrier, 1 << 16 if pace < math.inf else None)
     try:
         set_niceness(-15)
-        taken, again = measure(lambda: stop_behind(stand, caller, asked, lines, pace))
+        taken, again = measure(lambda: stop_behind(stand, caller, asked, lines, pace), TRIALS, lambda one: max(one[:2]))
     finally:
         set_niceness(0)
         caller.close()
@@ -195,23 +171,6 @@ def dearest(stand):
     method = max(took, key=took.get)
     print(f"the dearest command: {method}, {100 * took[method]:.2f} ms a call", flush=True)
     return method
-
-
-@contextlib.contextmanager
-def others(stand, *kinds):
-    """So many of each kind: (kind, number)."""
-    started = [subprocess.Popen([sys.executable, __file__, kind, str(stand.port)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-               for kind, number in kinds for _ in range(number)]
-    try:
-        for other in started:
-            other.stdout.readline()
-        time.sleep(0.5)  # let their queues fill
-        yield
-    finally:
-        for other in started:
-            other.kill()
-        for other in started:
-            other.communicate()
 
 
 def play(kind, port):
@@ -297,8 +256,7 @@ class FullDisk:
             return
         assert room == 0, f"{room} blocks became free"
         assert all(number > 0 for number in self.refused.values()), self.refused
-        with open(self.stand.config, encoding="utf-8") as file:
-            assert file.read() == self.before, "the settings file was damaged"
+        assert text_of(self.stand.config) == self.before, "the settings file was damaged"
         print(f"full disk: refused with {INPUT_OUTPUT}: {self.refused}", flush=True)
 
 
@@ -327,13 +285,13 @@ def main():
             for kind in ("nothing", "a batch of 1 MB", "a batch of 1 MB, unread"):
                 late += check(stand, kind, carrier)
         crowd = [(dearest(stand), 8), ("flood", 8), ("silent", 1)]
-        with others(stand, *crowd):
+        with others(__file__, stand.port, *crowd):
             for carrier in ("TCP", "Unix socket", "TLS"):
                 late += check(stand, "a batch of 1 MB", carrier, "crowd, ")
         if disk:
             with FullDisk(stand, disk, folder):
                 late += check(stand, "nothing", beside="full disk, ")
-                with others(stand, *crowd):
+                with others(__file__, stand.port, *crowd):
                     late += check(stand, "a batch of 1 MB", beside="full disk and crowd, ")
         else:
             print("no full disk is tried: it takes root and mounts of one's own")

@@ -121,10 +121,21 @@ TRAFFIC = {
 }
 
 
-def begin(kind, port):
-    number, _ = TRAFFIC[kind]
-    return [subprocess.Popen([sys.executable, __file__, kind, str(port)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-            for _ in range(number)]
+@contextlib.contextmanager
+def others(script, port, *kinds):
+    """So many processes of each kind, (kind, number), in which a script plays."""
+    started = [subprocess.Popen([sys.executable, script, kind, str(port)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+               for kind, number in kinds for _ in range(number)]
+    try:
+        for other in started:
+            other.stdout.readline()
+        time.sleep(0.5)  # let their queues fill
+        yield
+    finally:
+        for other in started:
+            other.kill()
+        for other in started:
+            other.communicate()
 
 
 def stop_once(connection, answers):
@@ -139,12 +150,16 @@ def stop_once(connection, answers):
     return taken
 
 
+def figures(times):
+    times = sorted(times)
+    at = [1000 * times[int(share * (len(times) - 1))] for share in (0.5, 0.99, 1)]
+    share = sum(one < LIMIT_S for one in times) / len(times)
+    return f"median {at[0]:.1f}, 99 % {at[1]:.1f}, worst {at[2]:.1f} ms, {100 * share:.0f} % below {1000 * LIMIT_S:.0f} ms", share
+
+
 def report(kind, taken, again):
-    taken.sort()
-    at = [1000 * taken[int(share * (len(taken) - 1))] for share in (0.5, 0.99, 1)]
-    below = sum(one < LIMIT_S for one in taken) / len(taken)
-    print(f"{kind}: median {at[0]:.1f}, 99 % {at[1]:.1f}, worst {at[2]:.1f} ms, {100 * below:.0f} % below {1000 * LIMIT_S:.0f} ms"
-          + (f"; {again} made again: the machine stood still" if again else ""), flush=True)
+    text, below = figures(taken)
+    print(f"{kind}: {text}" + (f"; {again} made again: the machine stood still" if again else ""), flush=True)
     return below >= SHARE
 
 
@@ -156,15 +171,15 @@ def set_niceness(value):
         pass
 
 
-def measure(stop):
-    """How long each of TRIALS stops took, and how many were made again because the machine stood still."""
+def measure(stop, trials, longest=lambda one: one):
+    """What so many stops gave, and how many were made again because the machine stood still; longest: the time of one."""
     taken, again = [], 0
     with Lateness() as lateness:
-        while len(taken) < TRIALS and math.inf not in taken:
+        while len(taken) < trials and math.inf not in taken:
             time.sleep(random.uniform(0.005, 0.02))
             lateness.take_longest()
             one = stop()
-            if LIMIT_S < one < math.inf and lateness.take_longest() > LIMIT_S / 2 and again < TRIALS:
+            if LIMIT_S < longest(one) < math.inf and lateness.take_longest() > LIMIT_S / 2 and again < trials:
                 again += 1
             else:
                 taken.append(one)
@@ -191,19 +206,12 @@ def check(kind, port):
     wait_for("room for others", lambda: has_room(port))
     kept = None if "silent" in kind else connect(port)
     answers = kept and kept.makefile()
-    others = begin(kind, port)
     try:
-        for other in others:
-            other.stdout.readline()
-        time.sleep(0.5)  # let their queues fill
-        set_niceness(-15)
-        return report(kind, *measure(lambda: stop_once(kept, answers) if kept else stop_as_newcomer(port)))
+        with others(__file__, port, (kind, TRAFFIC[kind][0])):
+            set_niceness(-15)
+            return report(kind, *measure(lambda: stop_once(kept, answers) if kept else stop_as_newcomer(port), TRIALS))
     finally:
         set_niceness(0)
-        for other in others:
-            other.kill()
-        for other in others:
-            other.communicate()
         if kept:
             kept.close()
 

@@ -11,6 +11,8 @@ import tty
 SOURCE = os.environ.get("HERMES_SOURCE", os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..")))
 BUILD = os.environ.get("HERMES_BUILD", os.path.join(SOURCE, "build", "release"))
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(BUILD, "bin"))
+WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
+HERMESCTL = os.path.join(BINARIES, "hermesctl")
 DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 EXPERIMENTS = os.path.exists(os.path.join(BINARIES, "hermes-experiments"))  # ./check builds it with --all
 # How many times slower and larger this build is than those for which limits are written: as tests/support/Patience.h.

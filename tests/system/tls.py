@@ -14,15 +14,14 @@ import threading
 import time
 import warnings
 
-from support import BINARIES, Daemon, Process, free_port, wait_for, put
+from support import BINARIES, HERMESCTL, Daemon, Process, free_port, put, wait_for
 
-CTL = os.path.join(BINARIES, "hermesctl")
 NOT_AUTHORISED = -32001
 HALF_GREETING = bytes([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc])
 
 
 def keys(folder, *words, status=0):
-    done = subprocess.run([CTL, "keys", *words], env={**os.environ, "HERMES_KEYS": folder}, capture_output=True, text=True, check=False)
+    done = subprocess.run([HERMESCTL, "keys", *words], env={**os.environ, "HERMES_KEYS": folder}, capture_output=True, text=True, check=False)
     assert done.returncode == status, (words, done)
     return done.stdout if status == 0 else done.stderr
 
@@ -212,7 +211,7 @@ def check_revocation(process, port, folder):
 def check_hermesctl(port, folder):
     """The client of ours: as an engineer; against who has only a client's certificate; with the wrong authority."""
     def ctl(keys_folder, at, status):
-        done = subprocess.run([CTL, "call", f"tls://127.0.0.1:{at}", "daemon.info"], env={**os.environ, "HERMES_KEYS": keys_folder},
+        done = subprocess.run([HERMESCTL, "call", f"tls://127.0.0.1:{at}", "daemon.info"], env={**os.environ, "HERMES_KEYS": keys_folder},
                               capture_output=True, text=True, check=False)
         assert done.returncode == status, done
         return done.stdout + done.stderr
@@ -245,7 +244,7 @@ def check_hermesctl(port, folder):
 def check_advice(port, folder, foreign):
     """hermesctl says what is likely when it does not come to terms with a daemon, and what to do."""
     def ctl(keys_folder, address):
-        done = subprocess.run([CTL, "call", address, "daemon.info", "--timeout", "5"], env={**os.environ, "HERMES_KEYS": keys_folder},
+        done = subprocess.run([HERMESCTL, "call", address, "daemon.info", "--timeout", "5"], env={**os.environ, "HERMES_KEYS": keys_folder},
                               capture_output=True, text=True, check=False)
         assert done.returncode == 1, done
         return done.stderr

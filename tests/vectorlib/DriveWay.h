@@ -4,9 +4,6 @@
 #include <vectorlib/geometry/Pose2D.h>
 #include <vectorlib/geometry/Vector2D.h>
 
-#include <cmath>
-#include <vector>
-
 /// The poses of a robot that drives straight from place to place and turns where it stands; metres, radians.
 class DriveWay {
 public:

@@ -1,26 +1,18 @@
 #pragma once
 
-#include "tests/vectorlib/DriveWay.h"
-#include "tests/vectorlib/ScanWorld.h"
-
-#include <algorithm>
+#include "tests/vectorlib/DrawnBuilding.h"
 
 /// A large floor drawn at random: corridors that cross, and between them blocks of rooms of many sizes, each
 /// with a door to a corridor, some furnished; metres. The same state of the generator gives the same floor.
-class OfficeFloor {
+class OfficeFloor : public DrawnBuilding {
 public:
-    using Point = ScanWorld::Point;
-
     OfficeFloor(Point size, std::mt19937 &random)
-        : random_(random)
+        : DrawnBuilding(random)
         , columns_(corridors(size.x))
         , rows_(corridors(size.y)) {
         const Point low(columns_.front().low, rows_.front().low),
             high(columns_.back().high, rows_.back().high);
-        wall(low, {high.x, low.y});
-        wall({high.x, low.y}, high);
-        wall(high, {low.x, high.y});
-        wall({low.x, high.y}, low);
+        box(low, high);
         doors_.resize(columns_.size() * rows_.size());
         for (std::size_t i = 0; i + 1 < columns_.size(); ++i)
             for (std::size_t k = 0; k + 1 < rows_.size(); ++k)
@@ -59,19 +51,10 @@ public:
             way.goTo(corner);
         return way.poses();
     }
-    const std::vector<vectorlib::LineSegment2D<double>> &walls() const { return walls_; }
     /// As ScanWorld sees: the rays from right to left; what is out of reach has no point.
     ScanWorld::Points scan(const vectorlib::Transformation2D &pose, const ScanWorld::Scanner &scanner) {
-        std::normal_distribution<double> noise;
-        ScanWorld::Points points;
-        for (int i = 0; i < scanner.rays; ++i) {
-            const double angle = scanner.fieldOfView * (double(i) / (scanner.rays - 1) - 0.5);
-            const Point ray(std::cos(angle), std::sin(angle));
-            const double r = range(pose.translation(), pose.rotate(ray), scanner.reach);
-            if (r < scanner.reach)
-                points.emplace_back(ray * (r + scanner.sigma * noise(random_)));
-        }
-        return points;
+        return ScanWorld::see(pose, random_, scanner,
+                              [&](Point from, Point ray) { return range(from, ray, scanner.reach); });
     }
 
 private:
@@ -79,14 +62,7 @@ private:
         double low, high;
         double middle() const { return (low + high) / 2; }
     };
-    struct Door {
-        Point before, inside; // in the middle of the corridor, and in the room
-    };
-    using Wall = vectorlib::LineSegment2D<double>;
 
-    double between(double a, double b) { return a + (b - a) * double(random_() % 100001) / 100000; }
-    int any(unsigned count) { return int(random_() % count); }
-    void wall(Point from, Point to) { walls_.emplace_back(from, to); }
     std::vector<Corridor> corridors(double length) {
         std::vector<Corridor> result;
         for (double at = 0; at < length; at += between(14, 24)) {
@@ -120,16 +96,13 @@ private:
             const double deep = corner.y + (back - corner.y) * 0.4;
             doors.push_back({{door + gap / 2, corridor}, {door + gap / 2, deep}});
             for (int boxes = any(3); boxes > 0; --boxes)
-                box({between(x + 0.1, next - 1.3), corner.y + (back - corner.y) * between(0.6, 0.8)});
+                furnish({between(x + 0.1, next - 1.3), corner.y + (back - corner.y) * between(0.6, 0.8)});
             x = next;
         }
     }
-    void box(Point low) {
+    void furnish(Point low) {
         const double width = between(0.4, 1.2), depth = between(0.4, 0.9);
-        wall(low, {low.x + width, low.y});
-        wall({low.x + width, low.y}, {low.x + width, low.y + depth});
-        wall({low.x + width, low.y + depth}, {low.x, low.y + depth});
-        wall({low.x, low.y + depth}, low);
+        box(low, low + Point(width, depth));
     }
     void visitRooms(DriveWay &way, std::size_t column, std::size_t row, bool eastward) {
         std::vector<Door> doors = doors_[row * columns_.size() + column];
@@ -137,11 +110,8 @@ private:
             return eastward ? a.before.x < b.before.x : b.before.x < a.before.x;
         });
         for (const Door &door : doors)
-            if (any(12) == 0) {
-                way.goTo(door.before);
-                way.goTo(door.inside);
-                way.goTo(door.before);
-            }
+            if (any(12) == 0)
+                visit(door, way);
     }
 
     // Walls by cells, so that a ray asks only those on its way.
@@ -149,8 +119,8 @@ private:
         width_ = int(high.x / cell_m) + 1;
         height_ = int(high.y / cell_m) + 1;
         cells_.resize(std::size_t(width_) * std::size_t(height_));
-        for (std::size_t n = 0; n < walls_.size(); ++n) {
-            const Point a = walls_[n].begin(), b = walls_[n].end();
+        for (std::size_t n = 0; n < world.walls.size(); ++n) {
+            const Point a = world.walls[n].begin(), b = world.walls[n].end();
             for (int y = cellOf(std::min(a.y, b.y) - edge_m, height_);
                  y <= cellOf(std::max(a.y, b.y) + edge_m, height_); ++y)
                 for (int x = cellOf(std::min(a.x, b.x) - edge_m, width_);
@@ -165,7 +135,7 @@ private:
         double nearest = reach;
         for (;;) {
             for (const std::size_t n : cells_[std::size_t(y * width_ + x)])
-                nearest = std::min(nearest, rangeOf(walls_[n], from, ray));
+                nearest = std::min(nearest, ScanWorld::rangeOf(world.walls[n], from, ray));
             const double nextX = (cell_m * (x + (stepX > 0)) - from.x) / ray.x;
             const double nextY = (cell_m * (y + (stepY > 0)) - from.y) / ray.y;
             if (std::min(nextX, nextY) >= nearest)
@@ -175,17 +145,9 @@ private:
                 return nearest;
         }
     }
-    static double rangeOf(const Wall &wall, Point from, Point ray) {
-        const double across = ray.cross(wall.direction());
-        const double r = (wall.begin() - from).cross(wall.direction()) / across;
-        const double t = wall.along(from + ray * r);
-        return r > 0 && t >= 0 && t <= wall.length() ? r : 1e9;
-    }
 
     static constexpr double cell_m = 1, edge_m = 1e-6;
-    std::mt19937 &random_;
     std::vector<Corridor> columns_, rows_;
-    std::vector<Wall> walls_;
     std::vector<std::vector<Door>> doors_;        // of each corridor between two crossings along x
     std::vector<std::vector<std::size_t>> cells_; // numbers of walls
     int width_ = 0, height_ = 0;

@@ -3,9 +3,6 @@
 #include <vectorlib/geometry/LineSegment2D.h>
 #include <vectorlib/geometry/Transformation2D.h>
 
-#include <random>
-#include <vector>
-
 /// Pairs within 8 m of the static origin that `truth` brings onto each other exactly; the dynamic ones are
 /// slid along their lines and cut differently. Any direction, weights between 0.5 and 3.
 inline std::vector<vectorlib::SegmentPair> randomPairs(const vectorlib::Transformation2D &truth, int count,

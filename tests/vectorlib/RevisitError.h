@@ -2,9 +2,7 @@
 
 #include <vectorlib/geometry/Transformation2D.h>
 
-#include <cmath>
 #include <cstddef>
-#include <vector>
 
 inline vectorlib::Transformation2D between(const vectorlib::Pose2D &from, const vectorlib::Pose2D &to) {
     return vectorlib::Transformation2D(from).inverse() * vectorlib::Transformation2D(to);

@@ -1,17 +1,14 @@
 #pragma once
 
-#include "tests/vectorlib/DriveWay.h"
-#include "tests/vectorlib/ScanWorld.h"
+#include "tests/vectorlib/DrawnBuilding.h"
 
 /// A building drawn at random in which much looks alike: a corridor around a block, with rooms of one size
 /// and shape along its outer side, some of them furnished; metres. The same state of the generator gives the
 /// same building.
-class RingBuilding {
+class RingBuilding : public DrawnBuilding {
 public:
-    ScanWorld world;
-
     explicit RingBuilding(std::mt19937 &random)
-        : random_(random)
+        : DrawnBuilding(random)
         , width_(between(1.8, 2.6))
         , pitch_(between(3, 4.5))
         , depth_(between(3, 4.5))
@@ -34,31 +31,14 @@ public:
         for (int side = 0; side < 4 * rounds; ++side) {
             const Point to = corners[(side + 1) % 4];
             for (const Door &door : doors_[std::size_t(side % 4)])
-                if (any(4) == 0) {
-                    way.goTo(door.before);
-                    way.goTo(door.inside);
-                    way.goTo(door.before);
-                }
+                if (any(4) == 0)
+                    visit(door, way);
             way.goTo(to);
         }
         return way.poses();
     }
 
 private:
-    using Point = ScanWorld::Point;
-    struct Door {
-        Point before, inside; // in the middle of the corridor, and in the room
-    };
-
-    double between(double a, double b) { return a + (b - a) * double(random_() % 100001) / 100000; }
-    int any(unsigned count) { return int(random_() % count); }
-    void wall(Point from, Point to) { world.walls.emplace_back(from, to); }
-    void box(Point low, Point high) {
-        wall(low, {high.x, low.y});
-        wall({high.x, low.y}, high);
-        wall(high, {low.x, high.y});
-        wall({low.x, high.y}, low);
-    }
     // Outside of the wall from one corner of the corridor to the next.
     void roomsAlong(Point from, Point to) {
         const Point along = (to - from) * (1 / (to - from).norm()), out(along.y, -along.x);
@@ -84,7 +64,7 @@ private:
             }
         }
     }
-    std::mt19937 &random_;
+
     double width_, pitch_, depth_, door_;  // of the corridor, the rooms, and a door's place in its room
     double a_, b_;                         // sides of the block
     std::vector<std::vector<Door>> doors_; // of each side

@@ -3,8 +3,6 @@
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/observation/Observer.h"
 
-#include <vector>
-
 using Segment = vectorlib::LineSegment2D<double>;
 using Segments = std::vector<Segment>;
 using Point = vectorlib::Vector2D<double>;

@@ -1,9 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/Transformation2D.h"
-
-#include <random>
-#include <vector>
+#include "vectorlib/mapping/TimedScan.h"
 
 /// Walls and round things, and what a scanner sees of them.
 struct ScanWorld {
@@ -46,6 +44,12 @@ struct ScanWorld {
         return scan(pose, random, Scanner());
     }
     Points scan(const vectorlib::Transformation2D &pose, std::mt19937 &random, const Scanner &scanner) const {
+        return see(pose, random, scanner, [this](Point from, Point ray) { return range(from, ray); });
+    }
+    /// The same, with a function that gives how far a ray goes from a point.
+    template <typename Range>
+    static Points see(const vectorlib::Transformation2D &pose, std::mt19937 &random, const Scanner &scanner,
+                      const Range &range) {
         std::normal_distribution<double> noise;
         Points points;
         for (int i = 0; i < scanner.rays; ++i) {
@@ -57,17 +61,19 @@ struct ScanWorld {
         }
         return points;
     }
+    /// How far a ray goes from a point to a wall, 1e9 where it meets none; metres.
+    static double rangeOf(const vectorlib::LineSegment2D<double> &wall, Point from, Point ray) {
+        const double across = ray.cross(wall.direction());
+        const double r = (wall.begin() - from).cross(wall.direction()) / across;
+        const double t = wall.along(from + ray * r);
+        return r > 0 && t >= 0 && t <= wall.length() ? r : 1e9;
+    }
 
 private:
     double range(Point from, Point ray) const {
         double nearest = 1e9;
-        for (const auto &wall : walls) {
-            const double across = ray.cross(wall.direction());
-            const double r = (wall.begin() - from).cross(wall.direction()) / across;
-            const double t = wall.along(from + ray * r);
-            if (r > 0 && t >= 0 && t <= wall.length())
-                nearest = std::min(nearest, r);
-        }
+        for (const auto &wall : walls)
+            nearest = std::min(nearest, rangeOf(wall, from, ray));
         for (const Circle &c : pillars) {
             const double along = (c.centre - from).dot(ray), across = (c.centre - from).cross(ray);
             const double depth = c.radius * c.radius - across * across;
@@ -77,3 +83,16 @@ private:
         return nearest;
     }
 };
+
+/// A scan with the pose that wheels tell of it.
+inline vectorlib::TimedScan timedScan(ScanWorld::Points points, const ScanWorld::Scanner &scanner,
+                                      double stamp, const vectorlib::Pose2D &wheels) {
+    vectorlib::TimedScan scan;
+    scan.points = std::move(points);
+    scan.stamp = stamp;
+    scan.odometry.emplace(0, std::vector<vectorlib::OdometrySample>{{stamp, wheels, {}, {}}});
+    scan.rays = std::size_t(scanner.rays);
+    scan.fieldOfView = scanner.fieldOfView;
+    scan.closed = false;
+    return scan;
+}

@@ -37,6 +37,3 @@ private Q_SLOTS:
         QVERIFY(near >= 0.95 * rooms);
     }
 };
-
-QTEST_APPLESS_MAIN(TestAftlsOptimum)
-#include "TestAftlsOptimum.moc"

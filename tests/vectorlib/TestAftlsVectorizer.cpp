@@ -7,8 +7,6 @@ using namespace vectorlib;
 using Lines = Algorithm::Lines;
 using Points = Algorithm::Points;
 
-namespace {
-
 constexpr auto nelderMead = AftlsVectorizer<double>::Search::NelderMead;
 
 // The three synthetic environments of thesis figures 6.8 to 6.10, seen from the origin.
@@ -47,7 +45,8 @@ const std::vector<Environment> environments = {
 };
 
 // Segments a scan and vectorizes every cluster.
-int countLines(const Environment &environment, int rays, std::uint64_t seed, const Algorithm &algorithm) {
+static int countLines(const Environment &environment, int rays, std::uint64_t seed,
+                      const Algorithm &algorithm) {
     SimulatedScanner<double> scanner(seed);
     scanner.rays = rays;
     scanner.sigma = 0.005;
@@ -64,8 +63,6 @@ int countLines(const Environment &environment, int rays, std::uint64_t seed, con
     }
     return count;
 }
-
-} // namespace
 
 class TestAftlsVectorizer : public QObject {
     Q_OBJECT
@@ -87,11 +84,7 @@ private Q_SLOTS:
         QVERIFY((lines[0].segment.end() - Vector2D<double>(2, 1.2)).norm() < 1e-9);
     }
 
-    void isNeverWorseThanFtls_data() {
-        const Rows<bool> row("simplex");
-        row("descent", false);
-        row("Nelder-Mead", true);
-    }
+    void isNeverWorseThanFtls_data() { falseAndTrue("simplex", "descent", "Nelder-Mead"); }
 
     void isNeverWorseThanFtls() {
         QFETCH(bool, simplex);
@@ -107,8 +100,7 @@ private Q_SLOTS:
                 const Lines before = ftls(points);
                 const Lines &after = aftls(points);
                 QCOMPARE(after.size(), before.size());
-                QVERIFY2(errorOf(after) <= errorOf(before) * (1 + 1e-9),
-                         qPrintable(QString("seed %1").arg(seed)));
+                QVERIFY2(errorOf(after) <= errorOf(before) * (1 + 1e-9), saying("seed %1", seed));
             }
     }
 
@@ -160,7 +152,7 @@ private Q_SLOTS:
             QVERIFY(errorOf(lines) >= optimal.error() * (1 - 1e-9));
             near += errorOf(lines) <= 1.01 * optimal.error();
         }
-        QVERIFY2(near >= 93, qPrintable(QString("%1 of 100 rooms").arg(near)));
+        QVERIFY2(near >= 93, saying("%1 of 100 rooms", near));
     }
 
     void simplexKeepsTwoPointsToALine() { // erratum 4: tau < b_1, and every line has two
@@ -207,9 +199,9 @@ private Q_SLOTS:
         FtlsVectorizer<double> ftls;
         AftlsVectorizer<double> aftls;
         const double few = cornerError(aftls, 1000), many = cornerError(aftls, 16000);
-        QVERIFY2(many < 0.5 * few, qPrintable(QString("%1 m, then %2 m").arg(few).arg(many)));
+        QVERIFY2(many < 0.5 * few, saying("%1 m, then %2 m", few, many));
         const double ftlsMany = cornerError(ftls, 16000);
-        QVERIFY2(many < 0.3 * ftlsMany, qPrintable(QString("%1 m, FTLS %2 m").arg(many).arg(ftlsMany)));
+        QVERIFY2(many < 0.3 * ftlsMany, saying("%1 m, FTLS %2 m", many, ftlsMany));
     }
 
     void rightNumberOfLines_data() {
@@ -228,12 +220,8 @@ private Q_SLOTS:
             for (int seed = 1; seed <= scans; ++seed)
                 found += countLines(e, rays, seed, algorithms[algorithm]);
             const double expected = scans * e.lines();
-            QVERIFY2(
-                std::abs(found - expected) <= 0.01 * expected,
-                qPrintable(QString("%1 rays: %2 lines, %3 expected").arg(rays).arg(found).arg(expected)));
+            QVERIFY2(std::abs(found - expected) <= 0.01 * expected,
+                     saying("%1 rays: %2 lines, %3 expected", rays, found, expected));
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestAftlsVectorizer)
-#include "TestAftlsVectorizer.moc"

@@ -2,11 +2,9 @@
 
 using namespace vectorlib;
 
-namespace {
-
 /// A random chain of lines with noise; some with stray points, some far from the origin.
 template <typename Scalar>
-std::vector<Vector2D<Scalar>> randomCluster(std::mt19937 &random) {
+static std::vector<Vector2D<Scalar>> randomCluster(std::mt19937 &random) {
     std::uniform_real_distribution<double> u(0, 1);
     const std::size_t count = 2 + random() % (random() % 4 ? 900 : 4000);
     std::normal_distribution<double> noise(0, u(random) * 0.03);
@@ -28,26 +26,24 @@ std::vector<Vector2D<Scalar>> randomCluster(std::mt19937 &random) {
 }
 
 template <typename Scalar>
-TlsSums exactSums(const std::vector<Vector2D<Scalar>> &points, std::size_t first, std::size_t end) {
+static TlsSums exactSums(const std::vector<Vector2D<Scalar>> &points, std::size_t first, std::size_t end) {
     return TlsSums::of(points.begin() + std::ptrdiff_t(first), points.begin() + std::ptrdiff_t(end));
 }
 
-bool withinRounding(const TlsSums &found, const TlsSums &exact, double rounding) {
+static bool withinRounding(const TlsSums &found, const TlsSums &exact, double rounding) {
     const double bound = rounding + 1e-8;
     return found.n == exact.n && std::abs(found.xx - exact.xx) <= bound &&
            std::abs(found.xy - exact.xy) <= bound && std::abs(found.yy - exact.yy) <= bound;
 }
 
 template <typename Scalar>
-FtlsVectorizer<Scalar> ftls(simd::Level level, double sigma) {
+static FtlsVectorizer<Scalar> ftls(simd::Level level, double sigma) {
     FtlsVectorizer<Scalar> vectorize;
     vectorize.level = level;
     vectorize.settings.polyline = false;
     vectorize.settings.sigma = sigma;
     return vectorize;
 }
-
-} // namespace
 
 template <typename Scalar>
 static void checkIntervals(simd::Level level) {
@@ -65,9 +61,8 @@ static void checkIntervals(simd::Level level) {
         for (std::size_t i = 0; i < lines.size(); ++i) {
             const VectorizedLine &line = lines[i];
             // Three points alone, or two beside a single one, are one line whatever sigma says.
-            QVERIFY2(
-                variance(line.first, line.last) <= 1 + 1e-9 || line.sums.n == 3,
-                qPrintable(QString("seed %1: points %2 .. %3").arg(seed).arg(line.first).arg(line.last)));
+            QVERIFY2(variance(line.first, line.last) <= 1 + 1e-9 || line.sums.n == 3,
+                     saying("seed %1: points %2 .. %3", seed, line.first, line.last));
             QVERIFY(line.first == (i == 0 ? 0 : lines[i - 1].last + 1) && line.last > line.first);
             if (i + 1 == lines.size())
                 continue;
@@ -81,8 +76,7 @@ static void checkIntervals(simd::Level level) {
         notLongest += meeting > 1;
     }
     QVERIFY(ends > 10000);
-    QVERIFY2(notLongest <= 3,
-             qPrintable(QString::number(notLongest))); // where a single point broke up a neighbour
+    QVERIFY2(notLongest <= 3, saying(notLongest)); // where a single point broke up a neighbour
 }
 
 class TestBlockSums : public QObject {
@@ -157,7 +151,7 @@ private Q_SLOTS:
                 const SumRow &last = sums.table().row(sums.lastRow());
                 QVERIFY2(withinRounding(sums.tls(0, count, last), exactSums(points, 0, count),
                                         sums.rounding(0, count)),
-                         qPrintable(QString("%1 points").arg(count)));
+                         saying("%1 points", count));
             }
         }
     }
@@ -219,7 +213,7 @@ private Q_SLOTS:
             }
         }
         const int allowed = simd::bestLevel() == simd::Level::Avx2 ? 3 : 0;
-        QVERIFY2(different <= allowed, qPrintable(QString("%1 of 3000").arg(different)));
+        QVERIFY2(different <= allowed, saying("%1 of 3000", different));
     }
 
     // In small clusters every point has a row: no level may tell otherwise, not even where rounding alone
@@ -243,7 +237,7 @@ private Q_SLOTS:
             QCOMPARE(lines.size(), expected.size());
             for (std::size_t i = 0; i < lines.size(); ++i)
                 QVERIFY2(lines[i].last == expected[i].last && lines[i].sigma == expected[i].sigma,
-                         qPrintable(QString("seed %1, line %2").arg(seed).arg(i)));
+                         saying("seed %1, line %2", seed, i));
         }
     }
 
@@ -310,7 +304,7 @@ private Q_SLOTS:
                 same = reversed[lines.size() - 1 - i].first == points.size() - 1 - lines[i].last;
             different += !same;
         }
-        QVERIFY2(different <= 75, qPrintable(QString("%1 of 1500").arg(different)));
+        QVERIFY2(different <= 75, saying("%1 of 1500", different));
     }
 
     // A point far away in the middle of a block spoils the float sums of the whole block: exact sums find it.
@@ -346,6 +340,3 @@ private Q_SLOTS:
             }
     }
 };
-
-QTEST_APPLESS_MAIN(TestBlockSums)
-#include "TestBlockSums.moc"

@@ -92,6 +92,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestBundles)
-#include "TestBundles.moc"

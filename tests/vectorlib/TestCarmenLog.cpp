@@ -1,5 +1,3 @@
-#include "tests/support/RealData.h"
-
 #include <vectorlib/io/CarmenDrive.h>
 
 using namespace vectorlib;
@@ -123,9 +121,7 @@ private Q_SLOTS:
     }
 
     void noReturnIsNoNumberOfMetres_data() {
-        const Rows<QByteArray> row("range");
-        for (const char *range : {"inf", "+inf", "-Infinity", "NaN", "-nan", "0", "-1", "-0.5"})
-            row(range, range);
+        rowsOf<QByteArray>("range", {"inf", "+inf", "-Infinity", "NaN", "-nan", "0", "-1", "-0.5"});
     }
     void noReturnIsNoNumberOfMetres() {
         QFETCH(QByteArray, range);
@@ -363,6 +359,3 @@ private Q_SLOTS:
         QVERIFY2(message.contains(expected), message.constData());
     }
 };
-
-QTEST_APPLESS_MAIN(TestCarmenLog)
-#include "TestCarmenLog.moc"

@@ -34,7 +34,7 @@ private Q_SLOTS:
         }
         // In one room of some 100,000 a sliver of a wall also fits the next wall, which is nearly in line
         // with it.
-        QVERIFY2(inexact <= 2, qPrintable(QString::number(inexact)));
+        QVERIFY2(inexact <= 2, saying(inexact));
     }
 
     void expectedTransformationMovesTheSearch() {
@@ -168,6 +168,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestCorrespondence)
-#include "TestCorrespondence.moc"

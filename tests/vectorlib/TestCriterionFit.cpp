@@ -39,7 +39,7 @@ private Q_SLOTS:
             const CriterionMinimum found = CriterionMinimizer()(criterion, near(truth, random));
             QVERIFY(found.converged);
             QVERIFY2(difference(found.transformation, truth) < 1e-9,
-                     qPrintable(QString("case %1: %2").arg(i).arg(difference(found.transformation, truth))));
+                     saying("case %1: %2", i, difference(found.transformation, truth)));
         }
     }
 
@@ -69,8 +69,7 @@ private Q_SLOTS:
             newton += CriterionMinimizer()(criterion, start).iterations;
             simplex += fit.evaluations();
         }
-        QVERIFY2(newton < 100 * 12 && simplex > 5 * newton,
-                 qPrintable(QString("%1 %2").arg(newton).arg(simplex)));
+        QVERIFY2(newton < 100 * 12 && simplex > 5 * newton, saying("%1 %2", newton, simplex));
     }
 
     void newtonLeavesFlatDirectionsAlone() { // two walls of a corridor
@@ -163,7 +162,7 @@ private Q_SLOTS:
             QVERIFY(criterion(result) <= criterion(start));
             found += difference(result, truth) < 1e-6;
         }
-        QVERIFY2(found >= 95, qPrintable(QString::number(found))); // no promise
+        QVERIFY2(found >= 95, saying(found)); // no promise
     }
 
     void nelderMeadOfNaN() {
@@ -192,6 +191,3 @@ private Q_SLOTS:
         QVERIFY(difference(fit(quadrangle, {}), truth) < 0.03);
     }
 };
-
-QTEST_APPLESS_MAIN(TestCriterionFit)
-#include "TestCriterionFit.moc"

@@ -1,7 +1,6 @@
 // Drives through buildings that are drawn at random, on which something goes wrong. A pose that is wrong by
 // more than 0.3 m or 5 degrees is told as doubtful within 3 s of scans, and no wall is drawn from it.
 // HERMES_CASES tells how many drives are drawn, HERMES_SEED the first of them; without it always the same 50.
-#include "tests/support/Seed.h"
 #include "tests/vectorlib/OfficeFloor.h"
 #include "tests/vectorlib/RingBuilding.h"
 
@@ -9,8 +8,6 @@
 
 using namespace vectorlib;
 using Point = Vector2D<double>;
-
-namespace {
 
 constexpr double between_s = 0.15; // scans
 constexpr double wrong_m = 0.3, wrong_rad = 5 * pi / 180;
@@ -135,7 +132,7 @@ private:
             return {ring.world, way};
         }
         OfficeFloor floor({between(50, 70), between(50, 60)}, random_);
-        return {{floor.walls(), {}}, floor.drive(2 * maxScans, step_m)};
+        return {{floor.world.walls, {}}, floor.drive(2 * maxScans, step_m)};
     }
     // As a drive whose loops were closed leaves it.
     void map(const Building &b) {
@@ -365,8 +362,6 @@ private:
     bool mayBend_ = false; // nothing could tell that a pose was wrong
 };
 
-} // namespace
-
 class TestDoubt : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -392,8 +387,8 @@ private Q_SLOTS:
             all.add(kinds[i]);
         }
         tell("all", all);
-        QVERIFY2(all.failed <= std::max(few, cases / maxFailed), qPrintable(QString::number(all.failed)));
-        QVERIFY2(all.doubted * maxDoubted <= all.right, qPrintable(QString::number(all.doubted)));
+        QVERIFY2(all.failed <= std::max(few, cases / maxFailed), saying(all.failed));
+        QVERIFY2(all.doubted * maxDoubted <= all.right, saying(all.doubted));
     }
 
 private:
@@ -402,6 +397,3 @@ private:
               100.0 * f.doubted / std::max(1, f.right), f.wrong, f.wronglyBelieved);
     }
 };
-
-QTEST_APPLESS_MAIN(TestDoubt)
-#include "TestDoubt.moc"

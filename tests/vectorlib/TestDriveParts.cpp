@@ -2,7 +2,6 @@
 #include <vectorlib/graph/DriveRefiner.h>
 #include <vectorlib/mapping/ScanTracker.h>
 
-#include "tests/support/Seed.h"
 #include "tests/vectorlib/OfficeFloor.h"
 #include "tests/vectorlib/RevisitError.h"
 
@@ -55,13 +54,8 @@ class TestDriveParts : public QObject {
         static constexpr ScanWorld::Scanner scanner{361, 1.5 * pi, 0.02, 20};
 
         void take(ScanWorld::Points points) {
-            TimedScan scan;
-            scan.points = std::move(points);
-            scan.stamp = 0.3 * double(drive.loops.scans());
-            scan.odometry.emplace(0, std::vector<OdometrySample>{{scan.stamp, wheels.pose(), {}, {}}});
-            scan.rays = std::size_t(scanner.rays);
-            scan.fieldOfView = scanner.fieldOfView;
-            scan.closed = false;
+            TimedScan scan =
+                timedScan(std::move(points), scanner, 0.3 * double(drive.loops.scans()), wheels.pose());
             const Transformation2D pose(tracker.process(scan).pose);
             const Transformation2D motion = drive.loops.scans() > 0 ? last.inverse() * pose : pose;
             last = pose;
@@ -153,6 +147,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestDriveParts)
-#include "TestDriveParts.moc"

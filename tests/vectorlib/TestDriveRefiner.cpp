@@ -47,7 +47,7 @@ private Q_SLOTS:
             QVERIFY(told > 0 && told == keys);
             const double before = revisitError(d.poses, d.wavering), after = revisitError(d.poses, refined);
             qInfo("%.4f to %.4f m", before, after);
-            QVERIFY2(after < 0.5 * before, qPrintable(QString("%1 to %2").arg(before).arg(after)));
+            QVERIFY2(after < 0.5 * before, saying("%1 to %2", before, after));
             QCOMPARE(refined[0].x, d.wavering[0].x);
         }
     }
@@ -78,7 +78,7 @@ private Q_SLOTS:
         double farthest = 0;
         for (std::size_t i = 0; i < poses.size(); ++i)
             farthest = std::max(farthest, std::hypot(poses[i].x - before[i].x, poses[i].y - before[i].y));
-        QVERIFY2(farthest < 0.3, qPrintable(QString::number(farthest)));
+        QVERIFY2(farthest < 0.3, saying(farthest));
     }
 
     void scansOfNothingMoveNothing() {
@@ -102,6 +102,3 @@ private Q_SLOTS:
         QVERIFY(!refine(poses, {}));
     }
 };
-
-QTEST_APPLESS_MAIN(TestDriveRefiner)
-#include "TestDriveRefiner.moc"

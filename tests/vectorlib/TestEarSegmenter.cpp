@@ -189,7 +189,7 @@ private Q_SLOTS:
             for (std::size_t i = 0; i < ranges.size(); ++i)
                 points.push_back(ranges[i] > 0 ? Vector2D<float>(polar.point(i)) : Vector2D<float>(nan, nan));
             const std::vector<int> expected = ofRanges(polar).labels;
-            QVERIFY2(ofPoints(points).labels == expected, qPrintable(QString("scan %1").arg(scan)));
+            QVERIFY2(ofPoints(points).labels == expected, saying("scan %1", scan));
             ofPoints.settings.coordinates = EarSettings::Coordinates::Cartesian;
             unlike += ofPoints(points).labels != expected;
             ofPoints.settings.coordinates = EarSettings::Coordinates::Polar;
@@ -312,6 +312,3 @@ private Q_SLOTS:
         QVERIFY(points > 700 && points <= 780);
     }
 };
-
-QTEST_APPLESS_MAIN(TestEarSegmenter)
-#include "TestEarSegmenter.moc"

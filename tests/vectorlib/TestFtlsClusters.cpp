@@ -1,13 +1,9 @@
-#include "tests/support/RealData.h"
-
 #include <vectorlib/io/CarmenLog.h>
 #include <vectorlib/segmentation/EarSegmenter.h>
 #include <vectorlib/vectorization/FtlsVectorizer.h>
 #include <vectorlib/vectorization/IncVectorizer.h>
 
 using namespace vectorlib;
-
-namespace {
 
 using Cluster = std::vector<Vector2D<float>>;
 
@@ -52,7 +48,7 @@ private:
 };
 
 /// Walls of random lengths with corners between them, all with noise; few of them have as much as sigma.
-Cluster randomWalls(std::mt19937_64 &random, std::size_t count) {
+static Cluster randomWalls(std::mt19937_64 &random, std::size_t count) {
     std::uniform_real_distribution<double> u(0, 1);
     std::normal_distribution<double> normal;
     const double noise = std::pow(10, -1 - 3 * u(random)),
@@ -69,8 +65,6 @@ Cluster randomWalls(std::mt19937_64 &random, std::size_t count) {
     return points;
 }
 
-} // namespace
-
 /// FTLS of points in float and in double finds as many lines, and never falls apart: at most two for each of
 /// INC.
 class TestFtlsClusters : public QObject {
@@ -86,11 +80,7 @@ private Q_SLOTS:
                 QStringLiteral("cluster %1").arg(i));
         QVERIFY2(compared.faults.isEmpty(), qPrintable(compared.faults.mid(0, 10).join("\n")));
     }
-    void realClusters_data() {
-        const Rows<QString> row("log");
-        for (const char *log : {"belgioioso", "fhw", "freiburg-079", "intel", "orebro"})
-            row(log, QString(log));
-    }
+    void realClusters_data() { rowsOf("log", {"belgioioso", "fhw", "freiburg-079", "intel", "orebro"}); }
 
     void realClusters() {
         QFETCH(QString, log);
@@ -120,6 +110,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestFtlsClusters)
-#include "TestFtlsClusters.moc"

@@ -128,6 +128,3 @@ private Q_SLOTS:
         QVERIFY(model.twist().omega == 0 && std::abs(model.twist().vx) < 2);
     }
 };
-
-QTEST_APPLESS_MAIN(TestGeometry)
-#include "TestGeometry.moc"

@@ -84,7 +84,7 @@ private Q_SLOTS:
             QVERIFY(probabilities(found) < 1 + 1e-9);
         }
         QCOMPARE(wrong, 0);
-        QVERIFY2(right >= 0.9 * runs, qPrintable(QString::number(right)));
+        QVERIFY2(right >= 0.9 * runs, saying(right));
     }
 
     void motionAndItsInverse() {
@@ -125,7 +125,7 @@ private Q_SLOTS:
             QVERIFY(covariance(1, 1) < 0.01 * 0.01 && covariance(2, 2) < 0.01 * 0.01);
             QVERIFY(s.probability < 0.8);
         }
-        QVERIFY2(along >= 8 && most - least > 2, qPrintable(QString::number(along)));
+        QVERIFY2(along >= 8 && most - least > 2, saying(along));
     }
 
     void symmetricRoomIsAmbiguous_data() {
@@ -177,10 +177,9 @@ private Q_SLOTS:
             alike += !truth.solutions.empty() && fitsAlike(truth.solutions[0].agreement, best.agreement);
         }
         qInfo("accepted: %d right, %d far wrong, %d of them while the truth fits alike", right, wrong, alike);
-        QVERIFY2(alike <= runs * kinds / 80,
-                 qPrintable(QString::number(alike))); // of some the search sees none
-        QVERIFY2(wrong <= runs * kinds / 32, qPrintable(QString::number(wrong)));
-        QVERIFY2(right >= 0.4 * runs * kinds, qPrintable(QString::number(right)));
+        QVERIFY2(alike <= runs * kinds / 80, saying(alike)); // of some the search sees none
+        QVERIFY2(wrong <= runs * kinds / 32, saying(wrong));
+        QVERIFY2(right >= 0.4 * runs * kinds, saying(right));
     }
 
     void mirroredRoomIsNotTheSame() {
@@ -202,7 +201,7 @@ private Q_SLOTS:
             const Transformation2D pose(0.05 * i - 1, 0, 0.3 * i);
             const GlobalPairMatch &found =
                 match(hall().scan(pose, random), ScanWorld::grove().scan({-1, 0.1 * i - 2, 0}, random));
-            QVERIFY2(!found.isAccepted(), qPrintable(QString::number(i)));
+            QVERIFY2(!found.isAccepted(), saying(i));
         }
     }
 
@@ -246,14 +245,13 @@ private Q_SLOTS:
         const Points fine = hall().scan({}, random, {100000, 2 * pi, 0.01});
         const Points other = hall().scan({0.4, 0.3, 2}, random, {100000, 2 * pi, 0.01});
         GlobalPairMatcher match;
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         QVERIFY(!match(noise, otherNoise).isAccepted());
         QVERIFY(!match(spiral, noise).isAccepted());
         QVERIFY(!match(spiral, spiral).isAccepted()); // it fits every ninth of a turn
         QVERIFY(match(fine, other).isAccepted());
         QVERIFY(isRight(match(fine, other).solutions[0], {0.4, 0.3, 2}));
-        QVERIFY2(timer.elapsed() < 60000 * slowness, qPrintable(QString::number(timer.elapsed())));
+        QVERIFY2(timer.elapsed() < 60000 * slowness, saying(timer.elapsed()));
     }
 
     void steadyStateAllocatesNothing() {
@@ -282,6 +280,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_GUILESS_MAIN(TestGlobalPairMatcher)
-#include "TestGlobalPairMatcher.moc"

@@ -58,7 +58,7 @@ private Q_SLOTS:
             const double expected =
                 std::max(oneWay(pair.fixed, pair.moving), oneWay(pair.moving, pair.fixed));
             const double found = hausdorffDistance(pair.fixed, pair.moving);
-            QVERIFY2(std::abs(found - expected) < 0.03, qPrintable(QString("seed %1").arg(seed)));
+            QVERIFY2(std::abs(found - expected) < 0.03, saying("seed %1", seed));
         }
     }
 
@@ -95,6 +95,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestHausdorffDistances)
-#include "TestHausdorffDistances.moc"

@@ -5,33 +5,29 @@
 #include "tests/vectorlib/OfficeFloor.h"
 #include "tests/vectorlib/RevisitError.h"
 
-#include <ctime>
 #include <numeric>
-#include <unistd.h>
 
 using namespace vectorlib;
 
-namespace {
-
 /// Of the processor, as others may hold it up.
-double millisecondsSince(std::clock_t begin) {
+static double millisecondsSince(std::clock_t begin) {
     return 1000.0 * double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 /// Memory of this process; megabytes.
-double memory_MB() {
+static double memory_MB() {
     QFile file("/proc/self/statm");
     if (!file.open(QIODevice::ReadOnly))
         return 0;
     return double(file.readAll().split(' ').value(1).toLongLong()) * double(sysconf(_SC_PAGESIZE)) / 1e6;
 }
-double quantile(std::vector<double> values, double part) {
+static double quantile(std::vector<double> values, double part) {
     if (values.empty())
         return 0;
     const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
-double sumOf(const std::vector<double> &values) {
+static double sumOf(const std::vector<double> &values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
@@ -51,13 +47,7 @@ public:
     bool live = false;
 
     void take(ScanWorld::Points points, const ScanWorld::Scanner &scanner, const Pose2D &wheels) {
-        TimedScan scan;
-        scan.points = std::move(points);
-        scan.stamp = double(drive.loops.scans());
-        scan.odometry.emplace(0, std::vector<OdometrySample>{{scan.stamp, wheels, {}, {}}});
-        scan.rays = std::size_t(scanner.rays);
-        scan.fieldOfView = scanner.fieldOfView;
-        scan.closed = false;
+        TimedScan scan = timedScan(std::move(points), scanner, double(drive.loops.scans()), wheels);
         const auto begin = std::clock();
         const Transformation2D pose(tracker.process(scan).pose);
         const Transformation2D motion = drive.loops.scans() == 0 ? pose : last_.inverse() * pose;
@@ -100,8 +90,6 @@ private:
     MapBuilder anew_;
 };
 
-} // namespace
-
 /// A drive of many scans through a large floor: what it costs, and how that grows.
 class TestLargeDrive : public QObject {
     Q_OBJECT
@@ -120,11 +108,7 @@ class TestLargeDrive : public QObject {
     }
 
 private Q_SLOTS:
-    void aScanCostsNoMoreAsTheDriveGrows_data() {
-        const Rows<bool> row("live");
-        row("offline", false);
-        row("live", true);
-    }
+    void aScanCostsNoMoreAsTheDriveGrows_data() { falseAndTrue("live", "offline", "live"); }
     // HERMES_SCANS: how many. Tells what each twentieth of the drive cost.
     void aScanCostsNoMoreAsTheDriveGrows() {
         QFETCH(bool, live);
@@ -166,13 +150,10 @@ private Q_SLOTS:
               "%.3f m",
               length / 1000, counts.closed, counts.tried, finished, mapping.tracker.builder.map.size(),
               memory_MB(), error);
-        QVERIFY2(error < 0.05, qPrintable(QString("%1 m").arg(error)));
+        QVERIFY2(error < 0.05, saying("%1 m", error));
         QCOMPARE(mapping.tracker.counts().lost, 0U);
         const double first = sumOf({medians.begin(), medians.begin() + 5}) / 5;
         const double last = sumOf({medians.end() - 5, medians.end()}) / 5;
-        QVERIFY2(last < 4 * first, qPrintable(QString("%1 ms, then %2 ms").arg(first).arg(last)));
+        QVERIFY2(last < 4 * first, saying("%1 ms, then %2 ms", first, last));
     }
 };
-
-QTEST_APPLESS_MAIN(TestLargeDrive)
-#include "TestLargeDrive.moc"

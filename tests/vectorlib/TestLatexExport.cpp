@@ -4,12 +4,10 @@
 
 using namespace vectorlib;
 
-namespace {
-
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Write>
-QByteArray document(Write write, LatexExport::As as = LatexExport::As::Document) {
+static QByteArray document(Write write, LatexExport::As as = LatexExport::As::Document) {
     std::ostringstream out;
     LatexExport latex(out, "A title", as);
     write(latex);
@@ -17,7 +15,7 @@ QByteArray document(Write write, LatexExport::As as = LatexExport::As::Document)
     return QByteArray::fromStdString(out.str());
 }
 
-Picture room() {
+static Picture room() {
     Picture picture("Room 50 % & #1");
     picture.area({"#b7d9c0", 0, "common area"}, {{0, 0}, {4, 0}, {4, 3}});
     picture.segments<double>({colour::map, 2, "walls", false, true}, {{{0, 0}, {4, 0}}, {{4, 0}, {4, 3}}});
@@ -26,8 +24,6 @@ Picture room() {
     picture.pose({colour::reference, 2, "sensor"}, {1, 1}, 0);
     return picture;
 }
-
-} // namespace
 
 /// LaTeXExport of thesis 4.2.2.
 class TestLatexExport : public QObject {
@@ -162,6 +158,3 @@ private:
         return texts;
     }
 };
-
-QTEST_GUILESS_MAIN(TestLatexExport)
-#include "TestLatexExport.moc"

@@ -53,11 +53,7 @@ private Q_SLOTS:
         for (const auto &[i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
             const double scale = std::sqrt(measured(i, i) * measured(j, j));
             QVERIFY2(std::abs(stated(i, j) - measured(i, j)) < 0.05 * scale,
-                     qPrintable(QString("%1 %2: stated %3, measured %4")
-                                    .arg(i)
-                                    .arg(j)
-                                    .arg(stated(i, j))
-                                    .arg(measured(i, j))));
+                     saying("%1 %2: stated %3, measured %4", i, j, stated(i, j), measured(i, j)));
         }
     }
 
@@ -79,6 +75,3 @@ private Q_SLOTS:
         QVERIFY(!lineCovariance(sumsOf(three), std::nan("")).matrix.hasNaN());
     }
 };
-
-QTEST_APPLESS_MAIN(TestLineCovariance)
-#include "TestLineCovariance.moc"

@@ -7,8 +7,6 @@
 
 using namespace vectorlib;
 
-namespace {
-
 /// Takes scans by where the drive was tracked, and moves the poses as it goes.
 class Closing {
 public:
@@ -31,7 +29,7 @@ private:
     Pose2D last_;
 };
 /// Eight equal rooms on both sides of a corridor of 2 m, each with a door and a box.
-ScanWorld rowsOfRooms(double pitch) {
+static ScanWorld rowsOfRooms(double pitch) {
     using Point = ScanWorld::Point;
     ScanWorld world;
     const auto wall = [&](double x0, double y0, double x1, double y1) {
@@ -55,13 +53,11 @@ ScanWorld rowsOfRooms(double pitch) {
     wall(rooms * pitch, 0, rooms * pitch, 2);
     return world;
 }
-bool isWrong(const PoseConstraint &c, const std::vector<Pose2D> &drive, const LoopCloser &loops) {
+static bool isWrong(const PoseConstraint &c, const std::vector<Pose2D> &drive, const LoopCloser &loops) {
     const Transformation2D off =
         between(drive[loops.scanOf(c.from)], drive[loops.scanOf(c.to)]).inverse() * c.motion;
     return off.translation().norm() > 0.5 || std::abs(off.alpha()) > 0.17;
 }
-
-} // namespace
 
 /// Drives that come back to where they were.
 class TestLoopCloser : public QObject {
@@ -90,13 +86,9 @@ class TestLoopCloser : public QObject {
                                            m.alpha() * (1 + 0.05 * noise(random)) + 0.005 * noise(random)))
                              .pose();
             }
-            TimedScan scan;
-            scan.points = building.world.scan(Transformation2D(result.drive[i]), random, scanner);
-            scan.stamp = 0.3 * double(i);
-            scan.odometry.emplace(0, std::vector<OdometrySample>{{scan.stamp, wheels, {}, {}}});
-            scan.rays = std::size_t(scanner.rays);
-            scan.fieldOfView = scanner.fieldOfView;
-            scan.closed = false;
+            TimedScan scan =
+                timedScan(building.world.scan(Transformation2D(result.drive[i]), random, scanner), scanner,
+                          0.3 * double(i), wheels);
             const ScanReport &report = tracker.process(scan);
             result.tracked.push_back(report.pose);
             result.loops.add(scan.points, report.pose,
@@ -133,7 +125,7 @@ private Q_SLOTS:
         qInfo("%d buildings: %zu loops closed, %d wrong motions found, %d folded, %.3f m at revisits", plans,
               closed, wrong, folded, sum / plans);
         QVERIFY(closed > std::size_t(50 * plans));
-        QVERIFY2(folded <= plans / 50, qPrintable(QString::number(folded)));
+        QVERIFY2(folded <= plans / 50, saying(folded));
         QVERIFY(sum / plans < 0.10);
     }
 
@@ -160,7 +152,7 @@ private Q_SLOTS:
         loops.close();
         const double after = revisitError(drive, loops.poses());
         qInfo("%.3f to %.3f", before, after);
-        QVERIFY2(before > 0.3 && after < 0.05, qPrintable(QString("%1 to %2").arg(before).arg(after)));
+        QVERIFY2(before > 0.3 && after < 0.05, saying("%1 to %2", before, after));
     }
 
     // Around a floor of some 200 m, where wheels turn by 0.002 rad too much on each metre: farther off than
@@ -193,7 +185,7 @@ private Q_SLOTS:
         qInfo("it missed by %.1f m; %.3f m at revisits, %.3f m before", missed, after,
               revisitError(drive, bent));
         QVERIFY(missed > 9);
-        QVERIFY2(after < 0.05, qPrintable(QString::number(after)));
+        QVERIFY2(after < 0.05, saying(after));
     }
 
     // Eight on a way of two metres each, and one that tells otherwise.
@@ -257,7 +249,7 @@ private Q_SLOTS:
             double farthest = 0;
             for (std::size_t i = 0; i < way.poses().size(); ++i)
                 farthest = std::max(farthest, between(way.poses()[i], loops.poses()[i]).translation().norm());
-            QVERIFY2(farthest < 0.2, qPrintable(QString("%1 m, rooms of %2 m").arg(farthest).arg(pitch)));
+            QVERIFY2(farthest < 0.2, saying("%1 m, rooms of %2 m", farthest, pitch));
         }
     }
 
@@ -293,8 +285,8 @@ private Q_SLOTS:
             double farthest = 0;
             for (std::size_t i = 0; i < drive.size(); ++i)
                 farthest = std::max(farthest, between(drive[i], loops.poses()[i]).translation().norm());
-            QVERIFY2(farthest < 0.2, qPrintable(QString("%1 m, rooms of %2 m").arg(farthest).arg(pitch)));
-            QVERIFY2(across > 10, qPrintable(QString("%1 loops, rooms of %2 m").arg(across).arg(pitch)));
+            QVERIFY2(farthest < 0.2, saying("%1 m, rooms of %2 m", farthest, pitch));
+            QVERIFY2(across > 10, saying("%1 loops, rooms of %2 m", across, pitch));
         }
     }
 
@@ -369,8 +361,7 @@ private Q_SLOTS:
         for (std::size_t i = 0; i < drive.size(); ++i) {
             const Transformation2D off =
                 between(drive[0], drive[i]).inverse() * between(loops.poses()[0], loops.poses()[i]);
-            QVERIFY2(off.translation().norm() < 0.05 && std::abs(off.alpha()) < 0.03,
-                     qPrintable(QString::number(i)));
+            QVERIFY2(off.translation().norm() < 0.05 && std::abs(off.alpha()) < 0.03, saying(i));
         }
     }
 
@@ -387,6 +378,3 @@ private Q_SLOTS:
             QVERIFY(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.theta));
     }
 };
-
-QTEST_APPLESS_MAIN(TestLoopCloser)
-#include "TestLoopCloser.moc"

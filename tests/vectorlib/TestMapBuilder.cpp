@@ -150,10 +150,8 @@ private Q_SLOTS:
                                        pose * Transformation2D(dx, dy, dalpha));
             QVERIFY(match.accepted);
             QVERIFY2(distance(match.pose.pose(), truth) < 0.02,
-                     qPrintable(QString("pose %1: %2 m off, %3 pairs")
-                                    .arg(i)
-                                    .arg(distance(match.pose.pose(), truth))
-                                    .arg(match.pairs.size())));
+                     saying("pose %1: %2 m off, %3 pairs", i, distance(match.pose.pose(), truth),
+                            match.pairs.size()));
             QVERIFY(std::abs(wrapAngle(match.pose.alpha() - truth.theta)) < 0.005);
             QVERIFY(match.reliability > 0.8);
         }
@@ -191,11 +189,11 @@ private Q_SLOTS:
                 motion.reset(truth);
             const ScanReport &report =
                 builder.process(scan(truth, 1000, 0.01, random), motion.predict(0.1 * i));
-            QVERIFY2(report.outcome == ScanReport::Outcome::Matched, qPrintable(QString("scan %1").arg(i)));
-            QVERIFY2(distance(report.pose, truth) < 0.03, qPrintable(QString("scan %1").arg(i)));
+            QVERIFY2(report.outcome == ScanReport::Outcome::Matched, saying("scan %1", i));
+            QVERIFY2(distance(report.pose, truth) < 0.03, saying("scan %1", i));
             motion.update(report.pose, 0.1 * i);
         }
-        QVERIFY2(builder.map.size() <= 20, qPrintable(QString("%1 edges").arg(builder.map.size())));
+        QVERIFY2(builder.map.size() <= 20, saying("%1 edges", builder.map.size()));
     }
 
     void theScanBeforeMakesUpForWheelsThatSlip() {
@@ -214,7 +212,7 @@ private Q_SLOTS:
                 found +=
                     report.outcome == ScanReport::Outcome::Matched && distance(report.pose, truth) < 0.03;
             }
-            QVERIFY2(matchPrevious ? found == 41 : found < 20, qPrintable(QString::number(found)));
+            QVERIFY2(matchPrevious ? found == 41 : found < 20, saying(found));
         }
     }
 
@@ -236,6 +234,3 @@ private Q_SLOTS:
         QCOMPARE(builder.map.size(), before);
     }
 };
-
-QTEST_APPLESS_MAIN(TestMapBuilder)
-#include "TestMapBuilder.moc"

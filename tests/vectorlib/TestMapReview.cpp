@@ -100,13 +100,13 @@ private Q_SLOTS:
         const MapReviewCounts counts = MapReview()(map, drive.all());
         QVERIFY(counts.removed > 0);
         for (const Point gone : {Point(1.5, 1.3), Point(1.5, 0.5), Point(2, 0.9), Point(1, 0.9)})
-            QVERIFY2(!hasWallAt(map, gone), qPrintable(QString("%1, %2").arg(gone.x).arg(gone.y)));
+            QVERIFY2(!hasWallAt(map, gone), saying("%1, %2", gone.x, gone.y));
         for (const Point stays : {Point(-1.7, 1.3), Point(-1.7, 0.5), Point(-1.2, 0.9), Point(-2.2, 0.9)})
-            QVERIFY2(hasWallAt(map, stays), qPrintable(QString("%1, %2").arg(stays.x).arg(stays.y)));
+            QVERIFY2(hasWallAt(map, stays), saying("%1, %2", stays.x, stays.y));
         for (std::size_t i = 0; i < corners.size(); ++i)
             for (double t = 0.02; t < 1; t += 0.02) {
                 const Point p = corners[i] + (corners[(i + 1) % 4] - corners[i]) * t;
-                QVERIFY2(hasWallAt(map, p), qPrintable(QString("%1, %2").arg(p.x).arg(p.y)));
+                QVERIFY2(hasWallAt(map, p), saying("%1, %2", p.x, p.y));
             }
         const auto people = [](const VectorMap &of) {
             double sum = 0;
@@ -117,7 +117,7 @@ private Q_SLOTS:
             return sum;
         };
         qInfo("people: %.1f m to %.1f m", people(builder.map), people(map));
-        QVERIFY2(people(map) < 0.25 * people(builder.map), qPrintable(QString::number(people(map))));
+        QVERIFY2(people(map) < 0.25 * people(builder.map), saying(people(map)));
         // What stays, stays under its number.
         map.forEach([&](const MapEdge &e) {
             if (std::size_t(e.id) < builder.map.slots().size())
@@ -185,7 +185,7 @@ private Q_SLOTS:
         QCOMPARE(counts.cut, std::size_t(1));
         QCOMPARE(counts.removed, std::size_t(0));
         QCOMPARE(map.size(), std::size_t(3));
-        QVERIFY2(std::abs(counts.contradicted - 1) < 0.41, qPrintable(QString::number(counts.contradicted)));
+        QVERIFY2(std::abs(counts.contradicted - 1) < 0.41, saying(counts.contradicted));
         QVERIFY(!hasWallAt(map, {2.5, 2}) && hasWallAt(map, {3.3, 2}) && hasWallAt(map, {1.7, 2}));
         double points = 0;
         map.forEach([&](const MapEdge &e) {
@@ -283,6 +283,3 @@ private Q_SLOTS:
         QCOMPARE(made.near({5, -20}, {30, 10}).size(), std::size_t(4));
     }
 };
-
-QTEST_APPLESS_MAIN(TestMapReview)
-#include "TestMapReview.moc"

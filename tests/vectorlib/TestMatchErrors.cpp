@@ -56,15 +56,15 @@ private Q_SLOTS:
         // The reference is then at y = 1.9: a parallelogram of 2 m x 0.1 m behind a triangle that narrows to
         // it.
         const MatchedArea area = errors_.area(one_, wall, wall, Transformation2D(0, 0.1, 0));
-        QVERIFY2(near(area.error, 0.2), qPrintable(QString::number(area.error)));
-        QVERIFY2(near(area.common, 1.9 * 1.9 / 2), qPrintable(QString::number(area.common)));
+        QVERIFY2(near(area.error, 0.2), saying(area.error));
+        QVERIFY2(near(area.common, 1.9 * 1.9 / 2), saying(area.common));
         QVERIFY(near(area.percent(), 100 * 0.2 / (0.2 + 1.805)));
     }
 
     void areaOfCrossingWalls() {
         const std::vector<TypedSegment> level{typed({1, 2}, {-1, 2})}, tilted{typed({1, 2.2}, {-1, 1.8})};
         const MatchedArea area = errors_.area(one_, level, tilted, {});
-        QVERIFY2(near(area.error, 2 * 0.5 * 0.2), qPrintable(QString::number(area.error)));
+        QVERIFY2(near(area.error, 2 * 0.5 * 0.2), saying(area.error));
     }
 
     void areaIsSeenFromTheCurrentPose() {
@@ -110,6 +110,3 @@ private Q_SLOTS:
         QCOMPARE(errors_.area({}, wall, wall, {}).percent(), 0.0);
     }
 };
-
-QTEST_APPLESS_MAIN(TestMatchErrors)
-#include "TestMatchErrors.moc"

@@ -2,8 +2,6 @@
 
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
-#include <ctime>
-
 using namespace vectorlib;
 
 /// Segments of any length and direction, or of four directions as those of buildings; metres.
@@ -68,11 +66,11 @@ private Q_SLOTS:
                 for (std::size_t f = 0; f < fixed.size(); ++f)
                     if (mayCorrespond(fixed[f], m, permitted)) {
                         ++found;
-                        QVERIFY2(isNear[f], qPrintable(QString("draw %1, segment %2").arg(i).arg(f)));
+                        QVERIFY2(isNear[f], saying("draw %1, segment %2", i, f));
                     }
             }
         }
-        QVERIFY2(found > 100, qPrintable(QString::number(found)));
+        QVERIFY2(found > 100, saying(found));
     }
 
     void farAndHugeReachesAreNoTrouble() {
@@ -114,6 +112,3 @@ private Q_SLOTS:
         QVERIFY(seconds[1] < 320 * seconds[0]);
     }
 };
-
-QTEST_APPLESS_MAIN(TestNearLines)
-#include "TestNearLines.moc"

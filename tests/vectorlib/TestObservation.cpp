@@ -197,7 +197,7 @@ private Q_SLOTS:
             squares += error * error;
         }
         QCOMPARE(ray, scanner.rays);
-        QVERIFY2(std::abs(sum / ray) < 0.0005, qPrintable(QString::number(sum / ray)));
+        QVERIFY2(std::abs(sum / ray) < 0.0005, saying(sum / ray));
         QVERIFY(std::abs(std::sqrt(squares / ray) - 0.01) < 0.0005);
     }
 
@@ -212,8 +212,7 @@ private Q_SLOTS:
             largest = std::max(largest, std::abs(point.x - 5));
             squares += (point.x - 5) * (point.x - 5);
         }
-        QVERIFY2(largest < 0.02 * std::sqrt(3.0) + 1e-5 && largest > 0.0345,
-                 qPrintable(QString::number(largest)));
+        QVERIFY2(largest < 0.02 * std::sqrt(3.0) + 1e-5 && largest > 0.0345, saying(largest));
         QVERIFY(std::abs(std::sqrt(squares / 20000) - 0.02) < 0.0005);
     }
 
@@ -234,6 +233,3 @@ private Q_SLOTS:
         QCOMPARE(scanner.angle(180), pi / 2);
     }
 };
-
-QTEST_APPLESS_MAIN(TestObservation)
-#include "TestObservation.moc"

@@ -62,8 +62,7 @@ private Q_SLOTS:
         }
         QCOMPARE(check.contradiction().has_value(), isContradicted);
         if (isContradicted)
-            QVERIFY2(steps <= 14 && check.contradiction()->odometry.x > 0.59,
-                     qPrintable(QString::number(steps)));
+            QVERIFY2(steps <= 14 && check.contradiction()->odometry.x > 0.59, saying(steps));
     }
 
     void clocksThatStepContradictNothing() {
@@ -235,6 +234,3 @@ private Q_SLOTS:
             QVERIFY((Vector2D<double>(point) - expected).norm() < 1e-5);
     }
 };
-
-QTEST_GUILESS_MAIN(TestOdometry)
-#include "TestOdometry.moc"

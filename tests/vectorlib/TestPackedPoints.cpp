@@ -39,6 +39,3 @@ private Q_SLOTS:
         QCOMPARE(found[1].x, 0.0F);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPackedPoints)
-#include "TestPackedPoints.moc"

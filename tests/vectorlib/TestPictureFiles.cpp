@@ -188,6 +188,3 @@ private Q_SLOTS:
         QVERIFY(!OccupancyPicture::draw(map, {}));
     }
 };
-
-QTEST_APPLESS_MAIN(TestPictureFiles)
-#include "TestPictureFiles.moc"

@@ -146,6 +146,3 @@ private:
     PlaceSearch search_;
     std::vector<LineSegment2D<float>> world_;
 };
-
-QTEST_APPLESS_MAIN(TestPlaceEvidence)
-#include "TestPlaceEvidence.moc"

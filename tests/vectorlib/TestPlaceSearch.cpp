@@ -28,11 +28,7 @@ private Q_SLOTS:
         scanner = SimulatedScanner<float>(3);
     }
 
-    void findsPlacesOfFloorPlans_data() {
-        QTest::addColumn<unsigned>("seed");
-        for (unsigned seed = 1; seed <= 5; ++seed)
-            QTest::addRow("seed %u", seed) << seed;
-    }
+    void findsPlacesOfFloorPlans_data() { rowsOfSeeds<unsigned>(1, 5); }
 
     void findsPlacesOfFloorPlans() {
         QFETCH(unsigned, seed);
@@ -44,7 +40,7 @@ private Q_SLOTS:
             QVERIFY(!result.isFound() || isNear(result.places.front().pose, pose));
             found += result.isFound();
         }
-        QVERIFY2(found >= 19, qPrintable(QString::number(found)));
+        QVERIFY2(found >= 19, saying(found));
     }
 
     void findsByEdgesAlone() {
@@ -70,8 +66,8 @@ private Q_SLOTS:
     }
 
     void tellsIdenticalRooms_data() {
-        QTest::addColumn<int>("rooms");
-        QTest::addColumn<bool>("isChanged"); // a cupboard stands there that the map does not know
+        Rows<int, bool>("rooms",
+                        "isChanged"); // isChanged: a cupboard stands there that the map does not know
         for (const int rooms : {2, 4, 5}) {
             QTest::addRow("%d rooms", rooms) << rooms << false;
             QTest::addRow("%d rooms, changed", rooms) << rooms << true;
@@ -107,14 +103,10 @@ private Q_SLOTS:
             for (int i = 0; i < 10; ++i)
                 found += find(map.walls(), see(other.walls(), other.place())).isFound();
         }
-        QVERIFY2(found <= 1, qPrintable(QString::number(found))); // one of them is a plain room
+        QVERIFY2(found <= 1, saying(found)); // one of them is a plain room
     }
 
-    void followsAChangingMap_data() {
-        QTest::addColumn<unsigned>("seed");
-        for (unsigned seed = 31; seed <= 34; ++seed)
-            QTest::addRow("seed %u", seed) << seed;
-    }
+    void followsAChangingMap_data() { rowsOfSeeds<unsigned>(31, 34); }
 
     // Walls come, change and go; the index then says the same as one made anew.
     void followsAChangingMap() {
@@ -177,9 +169,7 @@ private Q_SLOTS:
 
     void saysWhatIsWrong_data() {
         constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-        QTest::addColumn<Walls>("map");
-        QTest::addColumn<Points>("points");
-        QTest::addColumn<Outcome>("outcome");
+        Rows<Walls, Points, Outcome>("map", "points", "outcome");
         const Points inRoom = see(room(0, 0), {2.5, 1.5, 0.7});
         const Walls noPlace{{{double(nan), 0}, {1, 0}}, {{0, 0}, {9999, 0}}, {{1, 1}, {1, 1}}};
         QTest::addRow("no map") << Walls() << inRoom << Outcome::NoMap;
@@ -219,10 +209,9 @@ private Q_SLOTS:
         // 100,000 points.
         scanner.rays = 100000;
         const Points many = see(room(0, 0), {2.5, 1.5, 0.7});
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         QVERIFY(find(room(0, 0), many).isFound());
-        QVERIFY2(time.elapsed() < muchTooLongMs * slowness, qPrintable(QString::number(time.elapsed())));
+        QVERIFY2(time.elapsed() < muchTooLongMs * slowness, saying(time.elapsed()));
         // 500,000 walls, of which the index is not made in the time that is given.
         std::mt19937 random(6);
         Walls map;
@@ -237,7 +226,7 @@ private Q_SLOTS:
         search->maxSeconds = 0.02;
         const Relocalized &result = (*search)(slots, extract(points), points);
         QCOMPARE(result.outcome, Outcome::Unfinished);
-        QVERIFY2(result.ms < muchTooLongMs, qPrintable(QString::number(result.ms)));
+        QVERIFY2(result.ms < muchTooLongMs, saying(result.ms));
         const std::size_t before = search->index().size();
         QVERIFY(before > 0 && before < slots.size());
         (*search)(slots, extract(points), points); // goes on from there
@@ -281,7 +270,7 @@ private Q_SLOTS:
         search->maxSeconds = 1;
         const Relocalized &result = find(room(0, 0), points);
         QVERIFY2(result.isFound(), result.text().c_str());
-        QVERIFY2(result.ms < first, qPrintable(QString("%1 ms after %2 ms").arg(result.ms).arg(first)));
+        QVERIFY2(result.ms < first, saying("%1 ms after %2 ms", result.ms, first));
         PlaceIndex anew;
         anew.follow(mapOf(room(0, 0)));
         QCOMPARE(search->index().size(), anew.size());
@@ -289,8 +278,7 @@ private Q_SLOTS:
     }
 
     void acceptsPlacesAsTheOutcomeSays_data() {
-        QTest::addColumn<Walls>("map");
-        QTest::addColumn<bool>("differs"); // one wall of the map, from what is there
+        Rows<Walls, bool>("map", "differs"); // differs: one wall of the map, from what is there
         Walls rooms = room(0, 0);
         for (const auto &wall : room(7, 0))
             rooms.push_back(wall);
@@ -314,8 +302,8 @@ private Q_SLOTS:
                 std::size_t(std::count_if(result.places.begin(), result.places.end(),
                                           [](const Place &p) { return p.fault == PlaceFault::None; }));
             const bool isFirst = !result.places.empty() && result.places.front().fault == PlaceFault::None;
-            QVERIFY2(isFirst == (accepted > 0), qPrintable(QString::number(constant)));
-            QVERIFY2(accepted == (result.outcome == Outcome::Found), qPrintable(QString::number(constant)));
+            QVERIFY2(isFirst == (accepted > 0), saying(constant));
+            QVERIFY2(accepted == (result.outcome == Outcome::Found), saying(constant));
             outcomes.insert(result.outcome);
         }
         QVERIFY(outcomes.count(Outcome::Nowhere));
@@ -350,6 +338,3 @@ private:
     std::unique_ptr<PlaceSearch> search;
     std::vector<LineSegment2D<float>> world_;
 };
-
-QTEST_APPLESS_MAIN(TestPlaceSearch)
-#include "TestPlaceSearch.moc"

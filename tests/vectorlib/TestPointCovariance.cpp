@@ -114,11 +114,8 @@ private Q_SLOTS:
             far += square > 11.34;
             ++count;
         }
-        const QString text = QString("seed %1: %2 pairs, mean %3, far %4")
-                                 .arg(seed)
-                                 .arg(count)
-                                 .arg(sum / count)
-                                 .arg(far / count);
+        const QString text =
+            QString(saying("seed %1: %2 pairs, mean %3, far %4", seed, count, sum / count, far / count));
         QVERIFY2(count > 0.7 * pairs, qPrintable(text));
         QVERIFY2(sum > 1.5 * count && sum < 4.5 * count && far < 0.05 * count, qPrintable(text));
     }
@@ -135,7 +132,7 @@ private Q_SLOTS:
             if (moving[i].x > 3.9)
                 moving[i].x += i / 20 % 2 == 0 ? 0.04f : -0.04f;
         const double after = deviations(told(fixed, moving, {}))(0);
-        QVERIFY2(after > 2 * before, qPrintable(QString("%1 %2").arg(before).arg(after)));
+        QVERIFY2(after > 2 * before, saying("%1 %2", before, after));
     }
 
     void whatNothingHoldsIsUnknown() {
@@ -182,6 +179,3 @@ private Q_SLOTS:
         QVERIFY(covariance.determinant() > 0 && covariance(0, 0) > 0 && deviations(covariance)(0) < 1e-3);
     }
 };
-
-QTEST_GUILESS_MAIN(TestPointCovariance)
-#include "TestPointCovariance.moc"

@@ -49,7 +49,7 @@ private Q_SLOTS:
             const Points points = roomScan(seed, 600);
             std::vector<std::size_t> expected{0};
             recursively(points, 0, points.size() - 1, 0.06, expected);
-            QVERIFY2(keptPoints(vectorize, points) == expected, qPrintable(QString("seed %1").arg(seed)));
+            QVERIFY2(keptPoints(vectorize, points) == expected, saying("seed %1", seed));
         }
     }
 
@@ -86,7 +86,7 @@ private Q_SLOTS:
             return many / few;
         };
         const double tolerance = growth();
-        QVERIFY2(tolerance < 3, qPrintable(QString::number(tolerance)));
+        QVERIFY2(tolerance < 3, saying(tolerance));
         vectorize.direction = ReumannWitkamVectorizer<double>::Direction::NextPoint;
         QVERIFY(growth() > 2 * tolerance);
     }
@@ -192,6 +192,3 @@ private Q_SLOTS:
         QCOMPARE(allocationsOf(SplitAndMergeVectorizer<float>(), points), std::size_t(0));
     }
 };
-
-QTEST_APPLESS_MAIN(TestPointElimination)
-#include "TestPointElimination.moc"

@@ -149,7 +149,7 @@ private Q_SLOTS:
                 if (vertex < lines.size())
                     moved[vertex].segment = {lines[vertex].segment.begin() + step,
                                              lines[vertex].segment.end()};
-                QVERIFY2(squaresOf(points, moved) > 0.995 * squares, qPrintable(QString::number(vertex)));
+                QVERIFY2(squaresOf(points, moved) > 0.995 * squares, saying(vertex));
             }
     }
 
@@ -167,6 +167,3 @@ private Q_SLOTS:
         QCOMPARE(interruptions(lines), 0);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPolyline)
-#include "TestPolyline.moc"

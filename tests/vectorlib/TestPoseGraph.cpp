@@ -78,8 +78,7 @@ private Q_SLOTS:
                 graph.poses[i] = {drive[i].x + normal(0.3), drive[i].y + normal(0.3),
                                   drive[i].theta + normal(0.1)};
             QVERIFY(graph.optimise());
-            QVERIFY2(farthest(graph.poses, drive) < 1e-6,
-                     qPrintable(QString::number(farthest(graph.poses, drive))));
+            QVERIFY2(farthest(graph.poses, drive) < 1e-6, saying(farthest(graph.poses, drive)));
             for (const PoseConstraint &c : graph.constraints)
                 QVERIFY(graph.squaredErrorOf(c) < 1e-9);
         }
@@ -116,7 +115,7 @@ private Q_SLOTS:
         for (const PoseConstraint &c : graph.constraints)
             sum += graph.squaredErrorOf(c);
         const double free = 3 * (double(graph.constraints.size()) - double(drive.size() - 1));
-        QVERIFY2(sum > 0.7 * free && sum < 1.4 * free, qPrintable(QString("%1 of %2").arg(sum).arg(free)));
+        QVERIFY2(sum > 0.7 * free && sum < 1.4 * free, saying("%1 of %2", sum, free));
     }
 
     void loopsThatTheOthersContradictLoseTheirWeight() {
@@ -144,7 +143,7 @@ private Q_SLOTS:
             }
         }
         QCOMPARE(believed, 0);
-        QVERIFY2(kept > 0.9 * right, qPrintable(QString("%1 of %2").arg(kept).arg(right)));
+        QVERIFY2(kept > 0.9 * right, saying("%1 of %2", kept, right));
     }
 
     void whatWasRefusedCountsAgainWhenItFits() {
@@ -206,6 +205,3 @@ private Q_SLOTS:
             QVERIFY(std::abs(edge[6 + i].toDouble() - expected[i]) < 1e-9);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPoseGraph)
-#include "TestPoseGraph.moc"

@@ -188,6 +188,3 @@ private Q_SLOTS:
         QVERIFY(search(scan, scan).search.outcome == SearchOutcome::BadSettings);
     }
 };
-
-QTEST_APPLESS_MAIN(TestPublishedSearch)
-#include "TestPublishedSearch.moc"

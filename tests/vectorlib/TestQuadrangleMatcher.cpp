@@ -58,7 +58,7 @@ private Q_SLOTS:
             QVERIFY(found.accepted);
             QCOMPARE(found.pairs.size(), room.size());
             QVERIFY2((found.pose.translation() - truth.translation()).norm() < 1e-3,
-                     qPrintable(QString("seed %1, try %2").arg(seed).arg(i)));
+                     saying("seed %1, try %2", seed, i));
             QVERIFY(std::abs((truth.inverse() * found.pose).alpha()) < 1e-3);
         }
     }
@@ -82,7 +82,7 @@ private Q_SLOTS:
         Segments edges{edge(0, 0), edge(10, 0.12), edge(20, -0.12)};
         QuadrangleMatcher match;
         for (int order = 0; order < 3; ++order) {
-            QVERIFY2(match(edges, edges, {}).accepted, qPrintable(QString::number(order)));
+            QVERIFY2(match(edges, edges, {}).accepted, saying(order));
             std::rotate(edges.begin(), edges.begin() + 1, edges.end());
         }
     }
@@ -100,6 +100,3 @@ private Q_SLOTS:
         QVERIFY(!match(room, room, {qQNaN(), 0, 0}).accepted);
     }
 };
-
-QTEST_APPLESS_MAIN(TestQuadrangleMatcher)
-#include "TestQuadrangleMatcher.moc"

@@ -32,11 +32,8 @@ private Q_SLOTS:
             const std::vector<SegmentPair> pairs = randomPairs(truth, 2 + i % 199, random);
             QCOMPARE(registration.add(pairs), pairs.size());
             const double e = difference(registration.transformation(), truth);
-            QVERIFY2(e < 1e-9, qPrintable(QString("case %1, %2 pairs, reliability %3: %4")
-                                              .arg(i)
-                                              .arg(pairs.size())
-                                              .arg(registration.reliability())
-                                              .arg(e)));
+            QVERIFY2(e < 1e-9, saying("case %1, %2 pairs, reliability %3: %4", i, pairs.size(),
+                                      registration.reliability(), e));
             QVERIFY(registration.ambiguity().total() < 1e-12 * (1 + registration.weight()));
         }
     }
@@ -216,7 +213,7 @@ private Q_SLOTS:
             QVERIFY(registration.isSolvable());
             QVERIFY(std::abs(registration.reliability() - 1e-5) < 1e-9);
             QVERIFY2(difference(registration.transformation(), truth) < 1e-9,
-                     qPrintable(QString::number(difference(registration.transformation(), truth))));
+                     saying(difference(registration.transformation(), truth)));
         }
     }
 
@@ -328,6 +325,3 @@ private Q_SLOTS:
         QCOMPARE(vectorlib::mayCorrespond(fixed, seen, {0.5, 0.5, 0.2}), possible);
     }
 };
-
-QTEST_APPLESS_MAIN(TestRegistration)
-#include "TestRegistration.moc"

@@ -73,11 +73,7 @@ private Q_SLOTS:
             for (int j = 0; j < 3; ++j)
                 QVERIFY2(std::abs(measured(i, j) - stated(i, j)) <
                              0.06 * std::sqrt(measured(i, i) * measured(j, j)),
-                         qPrintable(QString("(%1, %2): measured %3, stated %4")
-                                        .arg(i)
-                                        .arg(j)
-                                        .arg(measured(i, j))
-                                        .arg(stated(i, j))));
+                         saying("(%1, %2): measured %3, stated %4", i, j, measured(i, j), stated(i, j)));
     }
 
     void knownMapAddsNothing() {
@@ -139,6 +135,3 @@ private Q_SLOTS:
         QVERIFY(!noPairs());
     }
 };
-
-QTEST_APPLESS_MAIN(TestRegistrationCovariance)
-#include "TestRegistrationCovariance.moc"

@@ -151,13 +151,12 @@ private Q_SLOTS:
         }
         RelationMatcher match;
         const RelationMatch &found = match(far, far);
-        QVERIFY2(found.compared < 5000000, qPrintable(QString::number(found.compared)));
+        QVERIFY2(found.compared < 5000000, saying(found.compared));
         QVERIFY2(!found.isCut && found.isMatched(), describe(found.outcome));
         match.settings.maxCompared = 50000;
         match(far, far);
         // The last relation of the current scan is compared to its end.
-        QVERIFY2(found.isCut && found.compared < 50000 + 2 * 12000,
-                 qPrintable(QString::number(found.compared)));
+        QVERIFY2(found.isCut && found.compared < 50000 + 2 * 12000, saying(found.compared));
     }
 
     void everyBoundOnScoresHolds() {
@@ -166,7 +165,7 @@ private Q_SLOTS:
         for (const std::size_t most : {0, 1, 7, 30, 100}) {
             match.settings.maxScores = most;
             const RelationMatch &found = match(segments, segments);
-            QVERIFY2(found.isCut && found.scores <= most, qPrintable(QString::number(found.scores)));
+            QVERIFY2(found.isCut && found.scores <= most, saying(found.scores));
         }
     }
 
@@ -211,7 +210,7 @@ private Q_SLOTS:
             match(scanned(made, made.first, 2 * seed), scanned(made, made.second, 2 * seed + 1));
         QVERIFY2(found.isMatched(), describe(found.outcome));
         QVERIFY2((found.pose.translation() - truth.translation()).norm() < 0.03,
-                 qPrintable(QString::number((found.pose.translation() - truth.translation()).norm())));
+                 saying((found.pose.translation() - truth.translation()).norm()));
         QVERIFY(std::abs(wrapAngle(found.pose.alpha() - truth.alpha())) < 0.01);
     }
 
@@ -229,9 +228,9 @@ private Q_SLOTS:
             ++matched;
             QVERIFY2((found.pose.translation() - truth.translation()).norm() < 0.05 &&
                          std::abs(wrapAngle(found.pose.alpha() - truth.alpha())) < 0.02,
-                     qPrintable(QString("seed %1").arg(seed)));
+                     saying("seed %1", seed));
         }
-        QVERIFY2(matched >= 97, qPrintable(QString::number(matched)));
+        QVERIFY2(matched >= 97, saying(matched));
     }
 
     void strangeSegmentsNeverCrash() {
@@ -251,7 +250,7 @@ private Q_SLOTS:
                     set.push_back(s);
                 }
             const RelationMatch &found = match(sets[0], sets[1]);
-            QVERIFY2(found.pose.isFinite(), qPrintable(QString("round %1 of seed 99").arg(round)));
+            QVERIFY2(found.pose.isFinite(), saying("round %1 of seed 99", round));
             for (const CorrespondencePair &p : found.pairs)
                 QVERIFY(std::size_t(p.fixed) < sets[0].size() && std::size_t(p.moving) < sets[1].size());
         }
@@ -346,6 +345,3 @@ private:
         return extract(points);
     }
 };
-
-QTEST_APPLESS_MAIN(TestRelationMatcher)
-#include "TestRelationMatcher.moc"

@@ -127,10 +127,8 @@ private Q_SLOTS:
         toCurrent.fill(current, current, {});
         for (int i = 0; i < 8; ++i)
             for (int j = 0; j < 8; ++j) {
-                QVERIFY2(toReference(i, j) == (table41[i][j] == '1'),
-                         qPrintable(QString("4.1: %1, %2").arg(i + 1).arg(j + 1)));
-                QVERIFY2(toCurrent(i, j) == (table42[i][j] == '1'),
-                         qPrintable(QString("4.2: %1, %2").arg(i + 1).arg(j + 1)));
+                QVERIFY2(toReference(i, j) == (table41[i][j] == '1'), saying("4.1: %1, %2", i + 1, j + 1));
+                QVERIFY2(toCurrent(i, j) == (table42[i][j] == '1'), saying("4.2: %1, %2", i + 1, j + 1));
                 QCOMPARE(toCurrent(i, j), toCurrent(j, i));
             }
     }
@@ -203,7 +201,7 @@ private Q_SLOTS:
                     b.like(r, [&](const auto &other) { found.emplace_back(other.first, other.second); });
                     std::sort(expected.begin(), expected.end());
                     std::sort(found.begin(), found.end());
-                    QVERIFY2(found == expected, qPrintable(QString("seed %1").arg(seed)));
+                    QVERIFY2(found == expected, saying("seed %1", seed));
                 }
             };
             check(a.angles(), b.angles(), [&](const AngleRelation &r, const AngleRelation &o) {
@@ -233,7 +231,7 @@ private Q_SLOTS:
             for (std::size_t i = 0; i < r.size(); ++i)
                 for (std::size_t j = 0; j < c.size(); ++j)
                     QVERIFY2(std::abs(table.merged(int(i), int(j)) - expected[i * c.size() + j]) < 1e-6,
-                             qPrintable(QString("seed %1: %2, %3").arg(seed).arg(i).arg(j)));
+                             saying("seed %1: %2, %3", seed, i, j));
         }
     }
 
@@ -437,6 +435,3 @@ private:
         return table;
     }
 };
-
-QTEST_APPLESS_MAIN(TestRelations)
-#include "TestRelations.moc"

@@ -65,8 +65,8 @@ private Q_SLOTS:
             all.matched += count.matched;
             all.wrong += count.wrong;
         }
-        QVERIFY2(all.wrong <= 30, qPrintable(QString::number(all.wrong)));
-        QVERIFY2(all.matched >= 300, qPrintable(QString::number(all.matched)));
+        QVERIFY2(all.wrong <= 30, saying(all.wrong));
+        QVERIFY2(all.matched >= 300, saying(all.matched));
     }
 
     void roomsThatDoNotRepeatAreFound_data() {
@@ -129,6 +129,3 @@ private:
     }
     RelationMatcher match_;
 };
-
-QTEST_APPLESS_MAIN(TestRelationsRepeating)
-#include "TestRelationsRepeating.moc"

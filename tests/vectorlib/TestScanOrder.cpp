@@ -9,12 +9,10 @@
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
 
-namespace {
-
 /// What a caller may do to the points of a scan.
 enum Order { AsSeen, Clockwise, Shuffled, HalfReversed, StartedAnywhere, OverOneTurn, Doubled, WithNaN, All };
 
-Points inOrder(Points points, int order, std::mt19937 &random) {
+static Points inOrder(Points points, int order, std::mt19937 &random) {
     const std::size_t n = points.size();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     Points result;
@@ -47,7 +45,7 @@ Points inOrder(Points points, int order, std::mt19937 &random) {
 /// What a matcher tells: a motion, where it takes it for the right one.
 using Told = std::optional<Transformation2D>;
 
-bool isNear(const Transformation2D &a, const Transformation2D &b, double metres, double radians) {
+static bool isNear(const Transformation2D &a, const Transformation2D &b, double metres, double radians) {
     const Transformation2D off = a.inverse() * b;
     return off.translation().norm() < metres && std::abs(off.alpha()) < radians;
 }
@@ -96,8 +94,6 @@ struct Matchers {
                                                             : Told();
     }
 };
-
-} // namespace
 
 /// Scans whose points do not come counter-clockwise, each once: the order itself, and what the matchers make
 /// of such scans.
@@ -159,8 +155,7 @@ private Q_SLOTS:
                 if (ordered(shuffled).begin() != shuffled.data())
                     QVERIFY(points(ordered(shuffled)) == scan);
                 else
-                    QVERIFY2(n < 10,
-                             qPrintable(QString::number(n))); // three points are in order or clockwise
+                    QVERIFY2(n < 10, saying(n)); // three points are in order or clockwise
             }
             Points spoilt = inOrder(scan, WithNaN, random);
             if (n >= 100)
@@ -169,8 +164,7 @@ private Q_SLOTS:
     }
 
     void matchersTellTheSame_data() {
-        QTest::addColumn<int>("order");
-        QTest::addColumn<double>("turn");
+        Rows<int, double>("order", "turn");
         const char *names[] = {"as seen",          "clockwise",     "shuffled", "half reversed",
                                "started anywhere", "over one turn", "doubled",  "NaN in between"};
         for (int order = AsSeen; order < All; ++order)
@@ -270,7 +264,7 @@ private Q_SLOTS:
             for (const Told &told :
                  {match.globally(scans[0], moving), match.near(scans[0], moving, motion),
                   match.byMap(scans[0], moving, motion), match.byRelations(scans[0], moving)})
-                QVERIFY2(told && isNear(*told, motion, 0.02, 0.005), qPrintable(QString::number(order)));
+                QVERIFY2(told && isNear(*told, motion, 0.02, 0.005), saying(order));
         }
     }
 
@@ -301,6 +295,3 @@ private Q_SLOTS:
         QCOMPARE(more, std::size_t(0));
     }
 };
-
-QTEST_GUILESS_MAIN(TestScanOrder)
-#include "TestScanOrder.moc"

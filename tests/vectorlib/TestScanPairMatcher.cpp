@@ -62,11 +62,7 @@ private Q_SLOTS:
         QCOMPARE(simd::NearestOfEight(same, same, 0, 0).number, 0);
     }
 
-    void motionIsFound_data() {
-        const Rows<bool> row("round");
-        row("room", false);
-        row("round pillars", true);
-    }
+    void motionIsFound_data() { falseAndTrue("round", "room", "round pillars"); }
 
     void motionIsFound() {
         QFETCH(bool, round);
@@ -89,8 +85,8 @@ private Q_SLOTS:
             error += metres(found.pose, motion);
             errorByLines += metres(found.byLines, motion);
         }
-        QVERIFY2(near >= runs - 1, qPrintable(QString::number(near)));
-        QVERIFY2(!round || error < 0.6 * errorByLines, qPrintable(QString::number(error / errorByLines)));
+        QVERIFY2(near >= runs - 1, saying(near));
+        QVERIFY2(!round || error < 0.6 * errorByLines, saying(error / errorByLines));
     }
 
     void corridorKeepsTheExpectedPlaceAlongIt() {
@@ -177,6 +173,3 @@ private Q_SLOTS:
         QCOMPARE(more, std::size_t(0));
     }
 };
-
-QTEST_GUILESS_MAIN(TestScanPairMatcher)
-#include "TestScanPairMatcher.moc"

@@ -2,8 +2,6 @@
 #include <vectorlib/mapping/ScanTracker.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 
-#include "tests/support/Rows.h"
-
 using namespace vectorlib;
 
 Q_DECLARE_METATYPE(vectorlib::Pose2D)
@@ -144,7 +142,7 @@ private Q_SLOTS:
                 ++followed;
             }
         }
-        QVERIFY2(followed > 0, qPrintable(QString::number(followed)));
+        QVERIFY2(followed > 0, saying(followed));
     }
 
     void passesOverAScanOfNothing() {
@@ -172,8 +170,7 @@ private Q_SLOTS:
     void trustIsHighInARoom() {
         for (int i = 1; i <= 20; ++i) {
             see({-2 + 0.1 * i, -1, 0.05 * i}, 10 + 0.1 * i);
-            QVERIFY2(tracker->trust() > 0.9 && tracker->trust() <= 1,
-                     qPrintable(QString::number(tracker->trust())));
+            QVERIFY2(tracker->trust() > 0.9 && tracker->trust() <= 1, saying(tracker->trust()));
         }
     }
 
@@ -184,7 +181,7 @@ private Q_SLOTS:
         tracker = std::make_unique<ScanTracker>();
         for (int i = 0; i <= 20; ++i) {
             see(corridor, {0.1 * i, 0, 0}, 10 + 0.1 * i);
-            QVERIFY2(tracker->trust() < 0.5, qPrintable(QString::number(tracker->trust())));
+            QVERIFY2(tracker->trust() < 0.5, saying(tracker->trust()));
         }
         QCOMPARE(tracker->counts().matched, std::uint64_t(21));
     }
@@ -210,7 +207,7 @@ private Q_SLOTS:
             see(world, {-1.5, -0.5, 0}, 10 + 0.1 * i);
             sum += tracker->trust();
         }
-        QVERIFY2(sum / 20 < 0.5, qPrintable(QString::number(sum / 20)));
+        QVERIFY2(sum / 20 < 0.5, saying(sum / 20));
     }
 
     void trustIsNoneWhenLost() {
@@ -249,8 +246,8 @@ private Q_SLOTS:
             lost += report.outcome != ScanReport::Outcome::Matched;
             wrong += report.outcome == ScanReport::Outcome::Matched && !isNear(report.pose, pose);
         }
-        QVERIFY2(wrong <= 10, qPrintable(QString::number(wrong)));
-        QVERIFY2(isLost || lost == 0, qPrintable(QString::number(lost)));
+        QVERIFY2(wrong <= 10, saying(wrong));
+        QVERIFY2(isLost || lost == 0, saying(lost));
     }
 
     void whatIsKnownAgainstAPlaceFadesWithTheWay() {
@@ -280,7 +277,7 @@ private Q_SLOTS:
         for (int i = 0; i < 120; ++i)
             see(corridor, {0.05 * i, 0, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
         const double x = tracker->builder.report().pose.x;
-        QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, qPrintable(QString::number(x)));
+        QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, saying(x));
     }
 
     void whatContradictedAMapDoesNotStopItsGrowth() {
@@ -405,9 +402,7 @@ private Q_SLOTS:
     // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads. Also
     // where a map that was bent hid as much before it was corrected.
     void whoIsCarriedToARoomAlikeMapsNothing_data() {
-        const Rows<bool> row("wasBent");
-        row("from a good map", false);
-        row("from one that was bent", true);
+        falseAndTrue("wasBent", "from a good map", "from one that was bent");
     }
     void whoIsCarriedToARoomAlikeMapsNothing() {
         QFETCH(bool, wasBent);
@@ -472,6 +467,3 @@ private:
     SimulatedScanner<float> scanner{5};
     std::unique_ptr<ScanTracker> tracker;
 };
-
-QTEST_APPLESS_MAIN(TestScanTracker)
-#include "TestScanTracker.moc"

@@ -174,6 +174,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestSearchVerdicts)
-#include "TestSearchVerdicts.moc"

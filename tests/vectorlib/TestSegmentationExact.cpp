@@ -4,8 +4,6 @@
 
 using namespace vectorlib;
 
-namespace {
-
 /// The algorithm of thesis 5.2 as it is written: every point against all its K predecessors, labels rewritten
 /// at each merge.
 struct Reference {
@@ -60,7 +58,7 @@ struct Reference {
 };
 
 /// Ranges of a made-up scan: walls that jump, noise, stray points, invalid ranges.
-std::vector<float> randomRanges(std::mt19937 &random, std::size_t count) {
+static std::vector<float> randomRanges(std::mt19937 &random, std::size_t count) {
     std::uniform_real_distribution<float> u(0, 1);
     std::normal_distribution<float> noise(0, 0.01f);
     const float stray = u(random) < 0.3f ? 0.3f : 0.03f, jump = u(random) * 0.05f,
@@ -83,7 +81,7 @@ std::vector<float> randomRanges(std::mt19937 &random, std::size_t count) {
     return ranges;
 }
 
-EarSettings randomSettings(std::mt19937 &random, std::size_t count) {
+static EarSettings randomSettings(std::mt19937 &random, std::size_t count) {
     EarSettings s;
     s.neighbours = 1 + int(random() % (random() % 4 ? 15 : 80));
     s.closed = random() % 2;
@@ -93,19 +91,19 @@ EarSettings randomSettings(std::mt19937 &random, std::size_t count) {
     return s;
 }
 
-void levels() {
+static void levels() {
     const Rows<int> row("level");
     row("scalar", int(simd::Level::Scalar));
     row("best of this processor", int(simd::bestLevel()));
 }
 
-void compare(const Segmentation &found, const Reference &expected, unsigned seed) {
-    QVERIFY2(found.labels == expected.labels, qPrintable(QString("seed %1").arg(seed)));
-    QVERIFY2(found.order == expected.order, qPrintable(QString("seed %1").arg(seed)));
+static void compare(const Segmentation &found, const Reference &expected, unsigned seed) {
+    QVERIFY2(found.labels == expected.labels, saying("seed %1", seed));
+    QVERIFY2(found.order == expected.order, saying("seed %1", seed));
 }
 
 template <typename Scalar>
-void compareCartesian(simd::Level level) {
+static void compareCartesian(simd::Level level) {
     EarSegmenter<Scalar> segment;
     segment.level = level;
     for (unsigned seed = 1; seed <= 600 && !QTest::currentTestFailed(); ++seed) {
@@ -137,7 +135,7 @@ void compareCartesian(simd::Level level) {
 
 /// `scale`: metres in a unit of the ranges, which are rounded to whole units where these are integers.
 template <typename Range>
-void comparePolar(simd::Level level, double scale) {
+static void comparePolar(simd::Level level, double scale) {
     EarSegmenter<float> segment;
     segment.level = level;
     for (unsigned seed = 1; seed <= 600 && !QTest::currentTestFailed(); ++seed) {
@@ -174,8 +172,6 @@ void comparePolar(simd::Level level, double scale) {
         compare(segment(scan), Reference(count, valid, s, near, gap), seed);
     }
 }
-
-} // namespace
 
 class TestSegmentationExact : public QObject {
     Q_OBJECT
@@ -267,6 +263,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestSegmentationExact)
-#include "TestSegmentationExact.moc"

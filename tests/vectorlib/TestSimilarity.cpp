@@ -176,6 +176,3 @@ private Q_SLOTS:
         QVERIFY(std::isnan(criterion({qQNaN(), 0, 0})));
     }
 };
-
-QTEST_APPLESS_MAIN(TestSimilarity)
-#include "TestSimilarity.moc"

@@ -22,8 +22,8 @@ private Q_SLOTS:
             const Eigen::Matrix3d h = a * a.transpose() + 1e-3 * Eigen::Matrix3d::Identity();
             const Eigen::Vector3d g = drawn<3, 1>();
             const auto x = solveSymmetric(h, g);
-            QVERIFY2(x, qPrintable(QString("matrix %1").arg(i)));
-            QVERIFY2((h * *x - g).norm() < 1e-10, qPrintable(QString("matrix %1").arg(i)));
+            QVERIFY2(x, saying("matrix %1", i));
+            QVERIFY2((h * *x - g).norm() < 1e-10, saying("matrix %1", i));
         }
     }
 
@@ -55,6 +55,3 @@ private:
     }
     std::mt19937 random_{1};
 };
-
-QTEST_APPLESS_MAIN(TestSmallMatrix)
-#include "TestSmallMatrix.moc"

@@ -62,11 +62,7 @@ private Q_SLOTS:
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b)
                 QVERIFY2(std::abs(measured(a, b) - told(a, b)) < 0.1 * std::sqrt(told(a, a) * told(b, b)),
-                         qPrintable(QStringLiteral("(%1, %2): measured %3, told %4")
-                                        .arg(a)
-                                        .arg(b)
-                                        .arg(measured(a, b))
-                                        .arg(told(a, b))));
+                         saying("(%1, %2): measured %3, told %4", a, b, measured(a, b), told(a, b)));
     }
 
     void nothingWhereNothingIsKnown() {
@@ -86,6 +82,3 @@ private Q_SLOTS:
         QVERIFY(!covariance(foreign, walls, walls));
     }
 };
-
-QTEST_APPLESS_MAIN(TestSolutionCovariance)
-#include "TestSolutionCovariance.moc"

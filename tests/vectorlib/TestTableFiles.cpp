@@ -203,6 +203,3 @@ private Q_SLOTS:
         QVERIFY(again.str() == written);
     }
 };
-
-QTEST_APPLESS_MAIN(TestTableFiles)
-#include "TestTableFiles.moc"

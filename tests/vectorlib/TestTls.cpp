@@ -93,8 +93,7 @@ private Q_SLOTS:
             p += Vector2D<double>(10000, -10000);
         const double expected = fitLine(sumsOf(near)).variance;
         const TlsLine fit = fitLine(sumsOf(far));
-        QVERIFY2(std::abs(fit.variance / expected - 1) < 1e-6,
-                 qPrintable(QString::number(fit.variance / expected - 1)));
+        QVERIFY2(std::abs(fit.variance / expected - 1) < 1e-6, saying(fit.variance / expected - 1));
 
         double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
         for (const Vector2D<double> &p : far) {
@@ -147,6 +146,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestTls)
-#include "TestTls.moc"

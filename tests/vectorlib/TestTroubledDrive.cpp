@@ -9,13 +9,11 @@ using namespace vectorlib;
 using Segment = LineSegment2D<double>;
 using Point = Vector2D<double>;
 
-namespace {
-
 constexpr double start = 1.7e9; // of the clock
 constexpr double turn = 0.1;    // of the scanner; seconds
 constexpr float middle = 0.05f;
 
-std::vector<Segment> makeRoom() {
+static std::vector<Segment> makeRoom() {
     std::vector<Segment> walls;
     const auto box = [&](Point centre, double half, double angle, bool inside) {
         std::vector<Point> corners;
@@ -37,7 +35,7 @@ std::vector<Segment> makeRoom() {
 const std::vector<Segment> room = makeRoom();
 
 // Once around a square of 4 m with round corners, at 0.8 m/s and up to 1 rad/s; a pose each millisecond.
-std::vector<Pose2D> makeWay() {
+static std::vector<Pose2D> makeWay() {
     std::vector<Pose2D> way(500, Pose2D{-1.2, -2, 0});
     double v = 0, omega = 0;
     Pose2D at = way.back();
@@ -59,7 +57,7 @@ std::vector<Pose2D> makeWay() {
 const std::vector<Pose2D> way = makeWay();
 const double wayEnd = double(way.size() - 1) / 1000;
 
-Pose2D poseAt(double seconds) {
+static Pose2D poseAt(double seconds) {
     const double ms = std::clamp(seconds * 1000, 0.0, double(way.size()) - 1.001);
     const Pose2D &a = way[std::size_t(ms)], &b = way[std::size_t(ms) + 1];
     const double k = ms - std::floor(ms);
@@ -68,7 +66,7 @@ Pose2D poseAt(double seconds) {
 
 using Spans = std::vector<std::pair<double, double>>; // from, to; seconds
 
-std::optional<double> endOf(const Spans &spans, double time) {
+static std::optional<double> endOf(const Spans &spans, double time) {
     for (const auto &[from, to] : spans)
         if (time >= from && time < to)
             return to;
@@ -76,8 +74,8 @@ std::optional<double> endOf(const Spans &spans, double time) {
 }
 
 // A turn of a scanner that goes by these poses: taken clockwise and told counter-clockwise, as by an HDL-32E.
-TimedScan takeScan(const std::vector<Segment> &walls, double begin,
-                   const std::function<Pose2D(double)> &poseOf, std::mt19937_64 &random) {
+static TimedScan takeScan(const std::vector<Segment> &walls, double begin,
+                          const std::function<Pose2D(double)> &poseOf, std::mt19937_64 &random) {
     constexpr int rays = 1800;
     std::normal_distribution<double> noise(0, 0.01);
     TimedScan scan;
@@ -174,7 +172,7 @@ private:
 };
 
 // The farthest that an edge of the map is from the wall that is nearest there.
-double worstEdge(const VectorMap &map) {
+static double worstEdge(const VectorMap &map) {
     double worst = 0;
     map.forEach([&](const MapEdge &edge) {
         for (int i = 0; i <= 10; ++i) {
@@ -188,7 +186,7 @@ double worstEdge(const VectorMap &map) {
     return worst;
 }
 
-Spans draw(std::mt19937 &random, int count, double shortest, double longest) {
+static Spans draw(std::mt19937 &random, int count, double shortest, double longest) {
     std::uniform_real_distribution<double> share;
     Spans spans;
     for (int i = 0; i < count; ++i) {
@@ -198,7 +196,7 @@ Spans draw(std::mt19937 &random, int count, double shortest, double longest) {
     return spans;
 }
 
-Trouble drawTrouble(const QString &kind, std::mt19937 &random) {
+static Trouble drawTrouble(const QString &kind, std::mt19937 &random) {
     Trouble t;
     const bool mixed = kind == "mixed";
     if (mixed || kind == "behind")
@@ -219,16 +217,12 @@ Trouble drawTrouble(const QString &kind, std::mt19937 &random) {
     return t;
 }
 
-} // namespace
-
 class TestTroubledDrive : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void noWallIsMadeUp_data() {
-        const Rows<QString> row("kind");
-        for (const char *kind : {"all is well", "behind", "far behind", "silent", "late", "frozen", "blind",
-                                 "clock", "none at all", "mixed"})
-            row(kind, kind);
+        rowsOf("kind", {"all is well", "behind", "far behind", "silent", "late", "frozen", "blind", "clock",
+                        "none at all", "mixed"});
     }
 
     void noWallIsMadeUp() {
@@ -321,6 +315,3 @@ private Q_SLOTS:
         QVERIFY(worstEdge(tracker.builder.map) < 0.05);
     }
 };
-
-QTEST_APPLESS_MAIN(TestTroubledDrive)
-#include "TestTroubledDrive.moc"

@@ -45,7 +45,7 @@ private Q_SLOTS:
         FtlsVectorizer<float> vectorize;
         for (unsigned seed = 1; seed <= 20; ++seed) {
             const auto &lines = vectorize(polyline(staircase, 100, 0.01, seed));
-            QVERIFY2(lines.size() == 6, qPrintable(QString("seed %1: %2 lines").arg(seed).arg(lines.size())));
+            QVERIFY2(lines.size() == 6, saying("seed %1: %2 lines", seed, lines.size()));
             for (std::size_t i = 0; i + 1 < lines.size(); ++i)
                 QVERIFY((lines[i].segment.end() - staircase[i + 1]).norm() < 0.05);
         }
@@ -106,7 +106,7 @@ private Q_SLOTS:
                     nearest = std::min(nearest, (corner - Vector2D<double>(p)).norm());
                 worst = std::max(worst, nearest);
             }
-        QVERIFY2(worst < 0.12, qPrintable(QString::number(worst)));
+        QVERIFY2(worst < 0.12, saying(worst));
     }
 
     // Where ranges jump by 100 m within a block, sums in float are good for nothing.
@@ -195,6 +195,3 @@ private Q_SLOTS:
         QCOMPARE(more, std::size_t(0));
     }
 };
-
-QTEST_APPLESS_MAIN(TestVectorizer)
-#include "TestVectorizer.moc"

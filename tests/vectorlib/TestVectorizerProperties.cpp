@@ -119,7 +119,7 @@ private Q_SLOTS:
         }
         // FTLS, where AFTLS starts, meets half way; where noise makes two places for a break point equally
         // good, each end leads to its own.
-        QVERIFY2(same >= 99, qPrintable(QString("%1 of 100").arg(same)));
+        QVERIFY2(same >= 99, saying("%1 of 100", same));
     }
 
     // A strip along the first two points says nothing of one along the last two.
@@ -143,9 +143,9 @@ private Q_SLOTS:
         }
         // A simplex collapses where it does.
         const double apart = isOneOf(algorithm, {"aftls by Nelder-Mead"}) ? 0.02 : 0.01;
-        QVERIFY2(std::abs(sum / reversedSum - 1) < apart, qPrintable(QString::number(sum / reversedSum)));
+        QVERIFY2(std::abs(sum / reversedSum - 1) < apart, saying(sum / reversedSum));
         if (isOneOf(algorithm, {"tls", "aftls"}))
-            QVERIFY2(near >= 296, qPrintable(QString("%1 of 300").arg(near)));
+            QVERIFY2(near >= 296, saying("%1 of 300", near));
     }
 
     // One line whatever sigma is, and a strip that is not the line.
@@ -192,10 +192,8 @@ private Q_SLOTS:
     }
 
     void degenerateInput_data() {
-        QTest::addColumn<Algorithm>("algorithm");
-        QTest::addColumn<QVector<QPointF>>("points");
-        QTest::addColumn<double>("sigma");
-        QTest::addColumn<int>("lines"); // -1: any number of them
+        Rows<Algorithm, QVector<QPointF>, double, int>("algorithm", "points", "sigma",
+                                                       "lines"); // lines: -1 is any number
         const double nan = std::nan(""), infinite = HUGE_VAL;
         QVector<QPointF> corner, cross, circle;
         for (int i = 0; i < 40; ++i)
@@ -293,6 +291,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestVectorizerProperties)
-#include "TestVectorizerProperties.moc"

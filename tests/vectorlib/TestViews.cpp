@@ -236,6 +236,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_APPLESS_MAIN(TestViews)
-#include "TestViews.moc"

@@ -8,8 +8,6 @@
 #include <vectorlib/vectorization/ReumannWitkamVectorizer.h>
 #include <vectorlib/vectorization/SplitAndMergeVectorizer.h>
 
-#include <QtTest>
-
 /// One of the vectorizers behind a common call.
 struct Algorithm {
     using Lines = std::vector<vectorlib::VectorizedLine>;

@@ -9,6 +9,7 @@
 
 namespace hermes::experiments {
 
+using vector::addOption;
 using vector::between;
 using vector::example;
 using vector::wholeNumber;
@@ -170,34 +171,25 @@ void addExperimentCommand(CLI::App &app) {
         list += std::string("\n  ") + e.name + ": " + e.what;
     }
     sub->add_option("NAME", command->name, list)->required()->check(CLI::IsMember(names));
-    sub->add_option("--out", command->folder, "Folder for the files; made when missing")
-        ->type_name("FOLDER")
+    addOption(*sub, "--out FOLDER", command->folder, "Folder for the files; made when missing")
         ->capture_default_str();
-    sub->add_option(
-           "--log", command->logs,
-           "CARMEN log for log, pairs, places and free-log; CARMEN log or capture of an HDL-32E or VLP-16 "
-           "for "
-           "empty-room, corridor, laboratory and real-segmentation; several logs for calibration, baseline, "
-           "place-trust and pose-trust")
-        ->allow_extra_args(false)
-        ->type_name("FILE");
-    sub->add_option("--other", command->others,
-                    "places, place-trust: search the scans of this CARMEN log of another building, which are "
-                    "to be refused; pose-trust: a log, or several, that nothing is fitted to")
-        ->allow_extra_args(false)
-        ->type_name("FILE");
+    addOption(*sub, "--log FILE", command->logs,
+              "CARMEN log for log, pairs, places and free-log; CARMEN log or capture of an HDL-32E or VLP-16 "
+              "for empty-room, corridor, laboratory and real-segmentation; several logs for calibration, "
+              "baseline, place-trust and pose-trust")
+        ->allow_extra_args(false);
+    addOption(*sub, "--other FILE", command->others,
+              "places, place-trust: search the scans of this CARMEN log of another building, which are to be "
+              "refused; pose-trust: a log, or several, that nothing is fitted to")
+        ->allow_extra_args(false);
     command->sensor.addTo(*sub);
-    sub->add_option("--every", command->every,
-                    "pairs, calibration, baseline, free-log, free-approach: only every N-th scan, and its "
-                    "next N-th one; of several logs the first N for the first, the last for all that follow")
+    addOption(*sub, "--every N", command->every, wholeNumber(1, 1e9),
+              "pairs, calibration, baseline, free-log, free-approach: only every N-th scan, and its next "
+              "N-th one; of several logs the first N for the first, the last for all that follow")
         ->allow_extra_args(false)
-        ->transform(wholeNumber(1, 1e9))
-        ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--first", command->pairOptions.first,
-                    "pairs, calibration, baseline: only the first N pairs")
-        ->transform(wholeNumber(1, 1e9))
-        ->type_name("N");
+    addOption(*sub, "--first N", command->pairOptions.first, wholeNumber(1, 1e9),
+              "pairs, calibration, baseline: only the first N pairs");
     sub->add_flag("--no-guess", command->noGuess,
                   "pairs: match by the two scans alone, without odometry or any other estimate");
     sub->add_option_function<std::string>(
@@ -209,35 +201,26 @@ void addExperimentCommand(CLI::App &app) {
            "parameters on one and judge them on the other")
         ->check(CLI::IsMember({"1", "2"}))
         ->type_name("1|2");
-    sub->add_option("--draw", command->pictures,
-                    "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")
-        ->transform(wholeNumber(0, 10000))
-        ->type_name("N")
+    addOption(*sub, "--draw N", command->pictures, wholeNumber(0, 10000),
+              "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")
         ->capture_default_str();
-    sub->add_option("--worlds", command->worlds,
-                    "Folder of cutsquare.json, oblique.json, pillars.json, home.json, corner.json, "
-                    "quadratic.json, laboratory.json and corridor.json instead "
-                    "of those installed with the program")
-        ->type_name("FOLDER");
-    sub->add_option("--runs", command->runs,
-                    "Scans for each number of points (and each pose); floor plans of drawn-places and "
-                    "place-trust; drawn drives of pose-trust (20; 100 for accuracy, registration-bias, "
-                    "dispersion, weighting and reliability, as published)")
-        ->transform(wholeNumber(1, 10000))
-        ->type_name("N");
+    addOption(*sub, "--worlds FOLDER", command->worlds,
+              "Folder of cutsquare.json, oblique.json, pillars.json, home.json, corner.json, quadratic.json, "
+              "laboratory.json and corridor.json instead of those installed with the program");
+    addOption(*sub, "--runs N", command->runs, wholeNumber(1, 10000),
+              "Scans for each number of points (and each pose); floor plans of drawn-places and place-trust; "
+              "drawn drives of pose-trust (20; 100 for accuracy, registration-bias, dispersion, weighting "
+              "and reliability, as published)");
     sub->add_flag("--known-edges", command->knownEdges,
                   "accuracy, dispersion, weighting, reliability: a line for each run of rays on one edge, "
                   "instead of segmentation and vectorization of the scan");
-    sub->add_option("--max-points", command->options.maxPoints, "Leave out larger clouds")
-        ->transform(wholeNumber(20, 1e6))
-        ->type_name("N")
+    addOption(*sub, "--max-points N", command->options.maxPoints, wholeNumber(20, 1e6),
+              "Leave out larger clouds")
         ->capture_default_str();
-    sub->add_option("--noise", command->options.noise, "Of the range, standard deviation, metres")
-        ->check(between(0, 1))
-        ->type_name("M")
+    addOption(*sub, "--noise M", command->options.noise, between(0, 1),
+              "Of the range, standard deviation, metres")
         ->capture_default_str();
-    sub->add_option("--seed", command->options.seed, "Of the noise; the same seed gives the same scans")
-        ->type_name("I")
+    addOption(*sub, "--seed I", command->options.seed, "Of the noise; the same seed gives the same scans")
         ->capture_default_str();
     sub->add_flag("--force", command->force, "Overwrite files that exist");
     sub->footer(example("hermes-experiments experiment corners --out results"));

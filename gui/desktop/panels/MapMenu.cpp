@@ -65,6 +65,7 @@ MapMenu::MapMenu(QWidget *parent)
     add(tr("&Export on the robot..."), "exportMap", "map.export", &MapMenu::exportAs);
     undo_ = add(tr("&Undo"), "undoMap", "map.undo", &MapMenu::bringBack);
     redo_ = add(tr("&Redo"), "redoMap", "map.undo", &MapMenu::bringForth);
+    confirm_ = add(tr("&Confirm the place..."), "confirmPlace", "pose.set", &MapMenu::confirm);
     addSeparator();
     mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", nullptr);
     localization_ =
@@ -290,6 +291,13 @@ void MapMenu::undo(bool again) {
          });
 }
 
+void MapMenu::confirm() {
+    ask(tr("Is the robot really where the map shows it? What it sees is drawn there from now on, whatever "
+           "the "
+           "scans say."),
+        tr("It is there"), [this] { Q_EMIT confirmed(); });
+}
+
 void MapMenu::setMode(const QString &mode) {
     call("matcher.start", {{"mode", mode}}, [this, mode](const QJsonValue &) {
         question_.close();
@@ -309,6 +317,10 @@ void MapMenu::readMode() {
         localization_->setChecked((*state)["mode"] == QJsonValue("localization"));
         name(undo_, tr("&Undo"), (*state)["undoes"].toString());
         name(redo_, tr("&Redo"), (*state)["redoes"].toString());
+        if ((*state)["place"] == QJsonValue("known")) {
+            confirm_->setEnabled(false);
+            confirm_->setToolTip(tr("The place of the robot in the map is known."));
+        }
     });
 }
 

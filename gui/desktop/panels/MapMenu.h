@@ -27,6 +27,8 @@ Q_SIGNALS:
     void told(const QString &text, bool isError);
     /// The robot is sought in a map that was told of; what holds of it once the robot was found.
     void sought(const QString &text);
+    /// A person has looked: the robot is where it is shown.
+    void confirmed();
 
 private:
     using Then = std::function<void(const QJsonValue &)>;
@@ -41,6 +43,7 @@ private:
     void exportAs();
     void bringBack();
     void bringForth();
+    void confirm();
     void undo(bool again);
     void setMode(const QString &mode);
     /// Asks for the name of a file on the robot.
@@ -53,7 +56,7 @@ private:
     QPointer<DaemonLink> matcher_;
     OneDialog question_;                                 ///< two would mean different maps
     std::vector<std::pair<QAction *, QString>> actions_; ///< with the method that each needs
-    QAction *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr, *mapping_ = nullptr,
+    QAction *save_ = nullptr, *undo_ = nullptr, *redo_ = nullptr, *confirm_ = nullptr, *mapping_ = nullptr,
             *localization_ = nullptr;
     QString path_; ///< of the map, as it was opened or saved last
 };

@@ -78,6 +78,11 @@ void MapPanel::addMap(QToolBar &bar) {
     connect(map_, &MapMenu::sought, this, [this](const QString &text) {
         sought_ = {message_->text(), text};
     });
+    connect(map_, &MapMenu::confirmed, this, [this] {
+        if (const std::optional<Pose2D> pose = model_.pose())
+            ask("pose.set", {{"x", pose->x}, {"y", pose->y}, {"theta", pose->theta}, {"confirm", true}},
+                tr("The place is confirmed. Map, Undo takes it back."));
+    });
     connect(&model_, &MapModel::changed, this, &MapPanel::tellFound);
 }
 

@@ -2,12 +2,6 @@
 
 #include "gui/desktop/model/Macro.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/PatientClient.h"
-#include "tests/support/ReleaseStop.h"
-
-#include <QJsonDocument>
-#include <QLabel>
-#include <QListWidget>
 
 namespace hermes {
 
@@ -19,7 +13,6 @@ protected:
         robot_ = std::make_unique<RobotProcesses>();
         robot_->startMotors();
     }
-    void endRobot() { robot_.reset(); }
     void begin() {
         file_ = robot_->path("gui.json");
         QFile::remove(file_);

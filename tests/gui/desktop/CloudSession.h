@@ -3,11 +3,6 @@
 #include "gui/desktop/panels/CloudPanel.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 
-#include <QImage>
-#include <QLabel>
-#include <QtTest>
-#include <cmath>
-
 namespace hermes {
 
 using namespace desktop;

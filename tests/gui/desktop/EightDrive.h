@@ -1,8 +1,6 @@
 #pragma once
 
-#include <QByteArray>
 #include <QPointF>
-#include <cmath>
 
 namespace hermes {
 

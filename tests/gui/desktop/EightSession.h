@@ -4,10 +4,6 @@
 #include "tests/gui/desktop/EightDrive.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 
-#include <QFile>
-#include <QTemporaryDir>
-#include <QtTest>
-
 namespace hermes {
 
 using namespace desktop;

@@ -7,14 +7,9 @@
 #include <QJsonObject>
 #include <QMap>
 #include <QPointer>
-#include <QTcpServer>
-#include <QTcpSocket>
 #include <QThread>
-#include <QTimer>
 #include <QVector>
 #include <mutex>
-#include <utility>
-#include <vector>
 
 namespace hermes {
 

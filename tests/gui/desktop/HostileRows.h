@@ -2,8 +2,6 @@
 
 #include "tests/gui/desktop/FakeDaemon.h"
 
-#include <QtTest>
-
 namespace hermes {
 
 /// A list of so many elements, in which %1 counts.

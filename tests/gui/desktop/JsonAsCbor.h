@@ -1,9 +1,6 @@
 #pragma once
 
-#include <QByteArray>
 #include <QCborStreamWriter>
-#include <QJsonArray>
-#include <QJsonDocument>
 #include <QtEndian>
 
 namespace hermes {

@@ -4,15 +4,7 @@
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 
-#include <QAction>
-#include <QDockWidget>
 #include <QInputDialog>
-#include <QJsonArray>
-#include <QLabel>
-#include <QPushButton>
-#include <QToolBar>
-#include <QtTest>
-#include <memory>
 
 namespace hermes {
 

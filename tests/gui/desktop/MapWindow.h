@@ -3,14 +3,9 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QAction>
-#include <QLabel>
 #include <QMouseEvent>
-#include <QToolBar>
 
 namespace hermes {
-
-using namespace desktop;
 
 /// For tests of the map: a window on a robot that stands in a simulated hall.
 class MapWindow {
@@ -21,10 +16,6 @@ protected:
         window_ = std::make_unique<OpenWindow>(*robot_);
         QVERIFY(window_->show());
         QTRY_VERIFY_WITH_TIMEOUT(model().pose() && model().edges().size() > 10, 20000);
-    }
-    void close() {
-        window_.reset();
-        robot_.reset();
     }
     MapPanel *panel() const { return window_->window.findChild<MapPanel *>(); }
     MapView &view() const { return panel()->view(); }

@@ -2,17 +2,6 @@
 
 #include "gui/desktop/widgets/SchemaForm.h"
 
-#include <QComboBox>
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QLabel>
-#include <QLineEdit>
-#include <QMenu>
-#include <QPlainTextEdit>
-#include <QPushButton>
-#include <QScrollArea>
-#include <QtTest>
-
 namespace hermes {
 
 using namespace desktop;

@@ -5,14 +5,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 
-#include <QDockWidget>
-#include <QLineEdit>
-#include <QPushButton>
-#include <QTreeWidget>
-
 namespace hermes {
-
-using namespace desktop;
 
 /// The operator's window on the daemons of a robot, and hands that click and type in it.
 class OpenWindow {

@@ -4,7 +4,6 @@
 #include "gui/desktop/panels/TopicTree.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/Patience.h"
 
 namespace hermes {
 

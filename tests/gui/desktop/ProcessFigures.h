@@ -1,7 +1,5 @@
 #pragma once
 
-#include <QByteArray>
-#include <QFile>
 #include <QList>
 #include <malloc.h>
 

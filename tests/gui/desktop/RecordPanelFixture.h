@@ -4,10 +4,6 @@
 #include "gui/desktop/panels/RecordPanel.h"
 #include "tests/gui/FakeLogger.h"
 
-#include <QLabel>
-#include <QPushButton>
-#include <QtTest>
-
 namespace hermes {
 
 using namespace desktop;

@@ -2,20 +2,12 @@
 
 #include "tests/daemons/FarNetwork.h"
 
-#include <QProcess>
-#include <atomic>
-#include <chrono>
 #include <deque>
-#include <fcntl.h>
 #include <linux/if_tun.h>
 #include <net/if.h>
 #include <poll.h>
-#include <random>
 #include <sched.h>
 #include <sys/ioctl.h>
-#include <thread>
-#include <unistd.h>
-#include <vector>
 
 /// A second way to the far computer, which holds up packets and loses some, as netem would, which not every
 /// kernel has: a TUN device at either end and a thread that carries the packets between them.

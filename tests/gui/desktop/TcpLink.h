@@ -1,10 +1,5 @@
 #pragma once
 
-#include <QTcpServer>
-#include <QTcpSocket>
-#include <QTimer>
-#include <chrono>
-
 namespace hermes {
 
 /// A way to a daemon of this computer on which everything takes a while, and which can be cut: what is under

@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Nothing that came from a robot looks live for longer than it is: daemons that freeze, and devices that
 /// fall silent.
@@ -18,29 +17,21 @@ private Q_SLOTS:
         QTRY_COMPARE(label("measured0")->text(), QString("0.00"));
     }
 
-    void cleanupTestCase() {
-        open_.reset();
-        robot_.reset();
-    }
-
     void motorControlFrozen() {
         QTest::keyPress(&open_->window, Qt::Key_W);
         QTRY_VERIFY(label("measured0")->text().toDouble() > 0.2);
         QTRY_COMPARE(label("lease")->text(), QString("control: you"));
         QVERIFY(label("measured0")->isEnabled());
         robot_->signal("motorcontrol", SIGSTOP);
-        QElapsedTimer frozen;
-        frozen.start();
+        auto frozen = runningTimer();
         QTRY_VERIFY_WITH_TIMEOUT(!label("measured0")->isEnabled(), 1000);
         QTRY_VERIFY_WITH_TIMEOUT(badge("motorcontrol").startsWith("no answer for "), 2500);
         QCOMPARE(daemon("motorcontrol")->condition(), Condition::Unreachable);
-        QTRY_VERIFY2(label("link")->text().contains("motorcontrol: no answer for "),
-                     qPrintable(label("link")->text()));
+        TRY_CONTAINS(label("link")->text(), "motorcontrol: no answer for ");
         QTRY_VERIFY_WITH_TIMEOUT(!label("lease")->isEnabled(), 2500);
-        QVERIFY2(frozen.elapsed() < 3000, qPrintable(QString::number(frozen.elapsed())));
+        QVERIFY2(frozen.elapsed() < 3000, saying(frozen.elapsed()));
         QTRY_VERIFY_WITH_TIMEOUT(label("measured0")->font().strikeOut(), 4000);
-        QTRY_VERIFY2(label("measuredName")->text().startsWith("no data for "),
-                     qPrintable(label("measuredName")->text()));
+        TRY_STARTS(label("measuredName")->text(), "no data for ");
         QTRY_VERIFY_WITH_TIMEOUT(label("lease")->text().contains("no data for "), 5000);
         const auto silence_s = [this] { return badge("motorcontrol").section(' ', 3, 3).toInt(); };
         QTRY_VERIFY_WITH_TIMEOUT(silence_s() >= 7, 8000); // a call has ended meanwhile
@@ -49,7 +40,7 @@ private Q_SLOTS:
         QTRY_VERIFY(label("measured0")->isEnabled() && !label("measured0")->font().strikeOut());
         QTRY_COMPARE(label("measuredName")->text(), QString("measured"));
         QTRY_VERIFY(daemon("motorcontrol")->condition() != Condition::Unreachable);
-        QTRY_VERIFY2(label("link")->text().startsWith("link "), qPrintable(label("link")->text()));
+        TRY_STARTS(label("link")->text(), "link ");
     }
 
     void sourceOfThePoseSilent_data() {
@@ -90,6 +81,3 @@ private:
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> open_;
 };
-
-QTEST_MAIN(TestAgeing)
-#include "TestAgeing.moc"

@@ -2,11 +2,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/gui/desktop/SlowLink.h"
 
-#include "tests/support/LoopWatch.h"
-#include <sys/resource.h>
-
 using namespace hermes;
-using namespace hermes::desktop;
 using namespace hermes::simulator;
 
 /// The window on a robot behind a link with 300 ms delay either way and 5 % loss: the motor control is a
@@ -117,6 +113,3 @@ private:
     FarNetwork network_;
     SlowLink link_;
 };
-
-QTEST_MAIN(TestBadLink)
-#include "TestBadLink.moc"

@@ -1,7 +1,6 @@
 #include "tests/gui/desktop/ButtonsWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The operator's own buttons run, ask and end.
 class TestButtons : public QObject, protected ButtonsWindow {
@@ -10,14 +9,12 @@ private Q_SLOTS:
     void initTestCase() { startRobot(); }
     void init() { begin(); }
     void cleanup() { close(); }
-    void cleanupTestCase() { endRobot(); }
 
     void stepsRunOneAfterTheOther() {
         open({macro("Tour", {place(0.1, 0.4), place(0.2, 0.4), place(0.3)})});
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         press(0);
-        QTRY_VERIFY2(text().contains("step 2 of 3"), qPrintable(text()));
+        TRY_CONTAINS(text(), "step 2 of 3");
         QTRY_COMPARE(x(), 0.2);
         QTRY_COMPARE(text(), QString("Tour: done"));
         QVERIFY(clock.elapsed() >= 800);
@@ -28,8 +25,7 @@ private Q_SLOTS:
     void endsAtTheFirstError() {
         open({macro("Drive", {place(0.1), step("motorcontrol", "motor.drive", {{"vx", 0.1}}), place(0.9)})});
         press(0);
-        QTRY_VERIFY2(text().startsWith("Drive ended at step 2 of 3, motorcontrol, motor.drive: "),
-                     qPrintable(text()));
+        TRY_STARTS(text(), "Drive ended at step 2 of 3, motorcontrol, motor.drive: ");
         QCOMPARE(x(), 0.1);
         QVERIFY(!ask("control.state")["held"].toBool(true));
         QVERIFY(button(0)->isEnabled());
@@ -42,8 +38,7 @@ private Q_SLOTS:
                     step("simulator", "settings.reset", {{"paths", QJsonArray{"log.level"}}}), place(0.6)})});
         const double before = x();
         press(0);
-        QVERIFY2(text().startsWith("Press Fresh once more: it replaces or forgets the settings"),
-                 qPrintable(text()));
+        VERIFY_STARTS(text(), "Press Fresh once more: it replaces or forgets the settings");
         QTest::mouseClick(button(0), Qt::LeftButton); // a double click
         QTest::qWait(600);
         QVERIFY(text().startsWith("Press"));
@@ -85,23 +80,19 @@ private Q_SLOTS:
         press(0);
         QTRY_COMPARE(x(), 0.1);
         click("endMacro");
-        QVERIFY2(text().startsWith("Slow ended before step 2 of 2, "), qPrintable(text()));
+        VERIFY_STARTS(text(), "Slow ended before step 2 of 2, ");
         QVERIFY(!find<QPushButton>("endMacro")->isEnabled());
         QCOMPARE(x(), 0.1);
     }
 
-    void stopEndsIt_data() {
-        const Rows<QString> row("by");
-        for (const char *const by : {"button", "F12", "another client"})
-            row(by, QString(by));
-    }
+    void stopEndsIt_data() { rowsOf("by", {"button", "F12", "another client"}); }
 
     void stopEndsIt() {
         QFETCH(QString, by);
         open({macro("Slow", {place(0.1, 30), place(0.9)})});
         press(0);
         QTRY_COMPARE(x(), 0.1);
-        QTRY_VERIFY2(text().startsWith("Slow: waits 30 s before step 2 of 2, "), qPrintable(text()));
+        TRY_STARTS(text(), "Slow: waits 30 s before step 2 of 2, ");
         if (by == "button")
             QTest::mouseClick(find<QPushButton>("stop"), Qt::LeftButton);
         else if (by == "F12")
@@ -113,6 +104,3 @@ private Q_SLOTS:
         QVERIFY(!find<QPushButton>("endMacro")->isEnabled());
     }
 };
-
-QTEST_MAIN(TestButtons)
-#include "TestButtons.moc"

@@ -1,9 +1,6 @@
 #include "tests/gui/desktop/ButtonsWindow.h"
 
-#include <QToolBar>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 Q_DECLARE_METATYPE(hermes::desktop::MacroStep)
 
@@ -14,7 +11,6 @@ private Q_SLOTS:
     void initTestCase() { startRobot(); }
     void init() { begin(); }
     void cleanup() { close(); }
-    void cleanupTestCase() { endRobot(); }
 
     void commandBecomesAButton() {
         open();
@@ -52,9 +48,7 @@ private Q_SLOTS:
     }
 
     void whatCannotBeKeptIsNotTaken_data() {
-        const Rows<QString> row("letter"); // of one, two and three bytes
-        for (const char *const letter : {"x", "ä", "字"})
-            row(letter, QString::fromUtf8(letter));
+        rowsOf("letter", {"x", "ä", "字"}); // of one, two and three bytes
     }
 
     void whatCannotBeKeptIsNotTaken() {
@@ -81,7 +75,7 @@ private Q_SLOTS:
         auto *const notKept = find<QLabel>("stepNotKept");
         paste(notKept->parentWidget(), "path", large);
         QTRY_VERIFY(notKept->isVisible());
-        QVERIFY2(notKept->text().contains(found), qPrintable(notKept->text()));
+        VERIFY_CONTAINS(notKept->text(), found);
         find<QListWidget>("buttonSteps")->setCurrentRow(-1); // away from it, and back
         find<QListWidget>("buttonSteps")->setCurrentRow(0);
         QVERIFY(!notKept->isVisible());
@@ -103,7 +97,7 @@ private Q_SLOTS:
         chooseMethod("motorcontrol", "settings.get");
         paste(callForm(), "path", most);
         find<QPushButton>("addStep")->menu()->actions()[0]->trigger();
-        QVERIFY2(answer().startsWith("Added to"), qPrintable(answer()));
+        VERIFY_STARTS(answer(), "Added to");
         click("addButton");
         QTRY_VERIFY(button(1));
         QTRY_COMPARE(kept(1).steps.size(), std::size_t(1));
@@ -172,8 +166,7 @@ private Q_SLOTS:
         QCOMPARE(field->text(), QString("0.2"));
         OpenWindow::type(field, "wrong");
         OpenWindow::type(field, "0.45");
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         press(1);
         QTRY_COMPARE(text(), QString("First: done"));
         QVERIFY(clock.elapsed() >= 500);
@@ -207,8 +200,7 @@ private Q_SLOTS:
         QTRY_COMPARE(title(0), QString("Kept && fine"));
         QVERIFY(!button(0)->isEnabled());
         const int width = button(0)->sizeHint().width();
-        QVERIFY2(button(0)->toolTip().contains("simulator of 127.0.0.1 is away"),
-                 qPrintable(button(0)->toolTip()));
+        VERIFY_CONTAINS(button(0)->toolTip(), "simulator of 127.0.0.1 is away");
         robot_->connectTo(*fleet_);
         QTRY_VERIFY(button(0)->isEnabled());
         QCOMPARE(button(0)->sizeHint().width(), width); // what is beside it does not move
@@ -288,6 +280,3 @@ private:
         return place < int(buttons.all().size()) ? buttons.all()[std::size_t(place)] : Macro();
     }
 };
-
-QTEST_MAIN(TestButtonsMade)
-#include "TestButtonsMade.moc"

@@ -4,7 +4,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// What is shown of a robot goes with it: no panel shows it of another one.
 class TestChosenRobot : public QObject {
@@ -120,6 +119,3 @@ private:
         return all;
     }
 };
-
-QTEST_MAIN(TestChosenRobot)
-#include "TestChosenRobot.moc"

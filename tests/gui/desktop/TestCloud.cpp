@@ -2,12 +2,8 @@
 #include "tests/gui/desktop/CloudSession.h"
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/LoopWatch.h"
-
-#include <QWheelEvent>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 static void drag(QWidget &view, Qt::MouseButton button, QPoint way) {
     const QPoint from = view.rect().center();
@@ -29,7 +25,7 @@ private Q_SLOTS:
         auto *const panel = open.panel<CloudPanel>("cloud");
         const CloudModel &model = panel->model();
         QTRY_VERIFY_WITH_TIMEOUT(model.points().size() > 3000, 20000);
-        QVERIFY2(std::abs(model.lowest_m() + 0.5) < 0.35, qPrintable(QString::number(model.lowest_m())));
+        QVERIFY2(std::abs(model.lowest_m() + 0.5) < 0.35, saying(model.lowest_m()));
         for (const CloudPoint &point : model.points()) // of a hall of 9.4 m x 7.5 m
             QVERIFY(std::hypot(point.x, point.y) < 13 && point.z > -0.7F);
         const QString summary = panel->findChild<QLabel *>("cloudSummary")->text();
@@ -164,10 +160,10 @@ private Q_SLOTS:
         } else {
             DaemonLink *const link = s.fleet.robot()->daemons().front();
             QTRY_VERIFY_WITH_TIMEOUT(link->client().rejected().unreadable > 0, 20000);
-            QVERIFY2(link->reason().contains("could not be read"), qPrintable(link->reason()));
+            VERIFY_CONTAINS(link->reason(), "could not be read");
         }
         s.panel.view().repaint();
-        QVERIFY2(watch.longestCpu_ms() < 50 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
+        QVERIFY2(watch.longestCpu_ms() < 50 * slowness, saying(watch.longestCpu_ms()));
         for (const CloudVertex &vertex : s.panel.view().scene().vertices())
             QVERIFY(std::abs(vertex.x) <= CloudModel::farthest_m);
     }
@@ -215,11 +211,8 @@ private Q_SLOTS:
         QVERIFY(!isGrey());
         QTRY_VERIFY_WITH_TIMEOUT(isGrey() && !summary->isEnabled(), 2000);
         QTRY_VERIFY_WITH_TIMEOUT(summary->font().strikeOut(), 5000);
-        QVERIFY2(s.summary().contains("no data for "), qPrintable(s.summary()));
+        VERIFY_CONTAINS(s.summary(), "no data for ");
         s.daemon.say("cloud", cloudOf("[1]", "[2]", "[3]", "[1]", "[0]"));
         QTRY_VERIFY(!isGrey() && summary->isEnabled() && !summary->font().strikeOut());
     }
 };
-
-QTEST_MAIN(TestCloud)
-#include "TestCloud.moc"

@@ -4,7 +4,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// As a driver that has lost its device.
 class FailingRenderer : public PointRenderer {
@@ -60,8 +59,7 @@ private Q_SLOTS:
     // The same picture, whatever draws it.
     void openGlDrawsAlike() {
         QVERIFY(!openGl("off"));
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         if (const auto loading = PointOpenGl::load()) {
             loading->start();
             QVERIFY(loading->wait(20000));
@@ -93,8 +91,7 @@ private Q_SLOTS:
                     points += isPoint;
                     unlike += isPoint != (qAlpha(other->pixel(x, y)) > 0);
                 }
-            QVERIFY2(points > 1000 && unlike < points / 5,
-                     qPrintable(QString("%1 of %2 pixels differ").arg(unlike).arg(points)));
+            QVERIFY2(points > 1000 && unlike < points / 5, saying("%1 of %2 pixels differ", unlike, points));
         }
     }
 
@@ -133,11 +130,7 @@ private Q_SLOTS:
         }
     }
 
-    void framesOfAWholeTurn_data() {
-        const Rows<bool> row("isByOpenGl");
-        row("without OpenGL", false);
-        row("by OpenGL", true);
-    }
+    void framesOfAWholeTurn_data() { falseAndTrue("isByOpenGl", "without OpenGL", "by OpenGL"); }
 
     void framesOfAWholeTurn() {
         QFETCH(bool, isByOpenGl);
@@ -171,7 +164,7 @@ private Q_SLOTS:
         figure(name + ", a turn is taken and coloured, median", median(message_ms), "ms");
         figure(name + ", a frame, median", median(frame_ms), "ms");
         figure(name + ", turns taken and shown", rate, "a second");
-        QVERIFY2(rate > 10.0 / slowness, qPrintable(QString::number(rate)));
+        QVERIFY2(rate > 10.0 / slowness, saying(rate));
     }
 
 private:
@@ -189,6 +182,3 @@ private:
         return values[values.size() / 2];
     }
 };
-
-QTEST_MAIN(TestCloudDrawing)
-#include "TestCloudDrawing.moc"

@@ -5,7 +5,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The console, the log and the plots of a robot in the simulator.
 class TestConsolePanels : public QObject {
@@ -17,11 +16,6 @@ private Q_SLOTS:
         window_ = std::make_unique<OpenWindow>(*robot_);
         QVERIFY(window_->show());
         QVERIFY(window_->choose(daemon("simulator")));
-    }
-
-    void cleanupTestCase() {
-        window_.reset();
-        robot_.reset();
     }
 
     void commandWithParameters() {
@@ -46,7 +40,7 @@ private Q_SLOTS:
         QVERIFY(window_->choose(daemon("motorcontrol")));
         chooseMethod("motor.drive"); // without the control
         OpenWindow::click(commands(), "call");
-        QTRY_VERIFY2(answer().contains("Error -3200"), qPrintable(answer()));
+        TRY_CONTAINS(answer(), "Error -3200");
         QVERIFY(window_->choose(daemon("simulator")));
     }
 
@@ -84,7 +78,7 @@ private Q_SLOTS:
         QTest::qWait(600);
         QCOMPARE(answer(), before);
         OpenWindow::click(commands(), "call");
-        QTRY_VERIFY2(answer().startsWith("settings.reset: "), qPrintable(answer()));
+        TRY_STARTS(answer(), "settings.reset: ");
         QCOMPARE(run->text(), QString("Ru&n"));
         QVERIFY(window_->choose(daemon("simulator")));
     }
@@ -227,6 +221,3 @@ private:
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> window_;
 };
-
-QTEST_MAIN(TestConsolePanels)
-#include "TestConsolePanels.moc"

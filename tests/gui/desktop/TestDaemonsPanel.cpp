@@ -5,10 +5,7 @@
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <csignal>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A supervisor with two daemons, one of them in Python, which the window has never heard of.
 class TestDaemonsPanel : public QObject {
@@ -138,7 +135,7 @@ private Q_SLOTS:
             OpenWindow::type(field, address);
             OpenWindow::click(panel(), "add");
             QVERIFY2(message()->isVisible(), address);
-            QVERIFY2(message()->text().contains(address), qPrintable(message()->text()));
+            VERIFY_CONTAINS(message()->text(), address);
             QCOMPARE(field->text(), QString(address)); // to be mended
             QCOMPARE(window_->fleet.robots().size(), size_t(1));
         }
@@ -190,6 +187,3 @@ private:
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> window_;
 };
-
-QTEST_MAIN(TestDaemonsPanel)
-#include "TestDaemonsPanel.moc"

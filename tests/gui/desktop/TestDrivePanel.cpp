@@ -2,8 +2,6 @@
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/drive/Stick.h"
 #include "tests/support/FakeRobot.h"
-#include "tests/support/PatientClient.h"
-#include "tests/support/ReleaseStop.h"
 
 #include <QSlider>
 
@@ -77,18 +75,13 @@ private Q_SLOTS:
     // A menu or a list has the keys: the release of the drive key goes there.
     void openingAMenuStops() {
         QMenu *const menu = find<QToolButton>("mapMenu")->menu();
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         menu->popup(window_->mapToGlobal(QPoint(300, 300)));
         QTRY_COMPARE(commanded("vx"), 0.0);
         QTest::keyRelease(menu, Qt::Key_W);
         menu->hide();
-        for (int i = 0; i < 10; ++i) {
-            QTest::qWait(50);
-            QCOMPARE(commanded("vx"), 0.0);
-        }
-        QTest::keyPress(window_.get(), Qt::Key_W); // was let go meanwhile
-        awaitMotion();
+        isLeftAlone(10);
+        hold(); // was let go meanwhile
         menu->popup(window_->mapToGlobal(QPoint(300, 300)));
         QTRY_COMPARE(commanded("vx"), 0.0);
         menu->hide();
@@ -131,8 +124,7 @@ private Q_SLOTS:
         field->show();
         window_->centralWidget()->setFocus();
         QTest::qWait(1200); // who has paused sees what has the focus
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         QTest::keyRelease(window_.get(), Qt::Key_W);
     }
 
@@ -163,8 +155,7 @@ private Q_SLOTS:
     }
 
     void afterAReleaseTheStickMustBeCentred() {
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         drive_->stop();
         QVERIFY(drive_->isStopped());
         QTRY_COMPARE(int(drive_->stopping().phase()), int(StopPhase::Confirmed));
@@ -195,8 +186,7 @@ private Q_SLOTS:
     }
 
     void stoppedIsToldWhenItStands() {
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         const auto *const problem = find<QLabel>("problem");
         QStringList untrue;
         connect(drive_.get(), &DriveControl::changed, this, [&] {
@@ -205,7 +195,7 @@ private Q_SLOTS:
                 untrue.append(QString("%1 beside %2").arg(problem->text()).arg(shown));
         });
         QVERIFY(client_->callAndWait("motor.estop", QJsonObject{{"client", "anna"}}).ok());
-        QTRY_VERIFY2(problem->text().startsWith("Stopped"), qPrintable(problem->text()));
+        TRY_STARTS(problem->text(), "Stopped");
         disconnect(drive_.get(), &DriveControl::changed, this, nullptr);
         QVERIFY2(untrue.isEmpty(), qPrintable(untrue.join('\n')));
         QTest::keyRelease(window_.get(), Qt::Key_W);
@@ -246,8 +236,7 @@ private Q_SLOTS:
     }
 
     void losingTheFocusStops() {
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         QWidget other;
         other.show();
         other.activateWindow();
@@ -281,8 +270,7 @@ private Q_SLOTS:
 
     void whoTakesOverKeepsTheControl() {
         ConnectedClient owner(asOwner(robot_->address())); // who may
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         const QJsonObject request{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}};
         const auto taken = owner.callAndWait("control.acquire", request);
         QVERIFY2(taken, taken ? "" : qPrintable(taken.error().message));
@@ -352,10 +340,7 @@ private Q_SLOTS:
         }
         QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
         QTRY_VERIFY(!drive_->isDriving());
-        for (int i = 0; i < 20; ++i) {
-            QTest::qWait(50);
-            QCOMPARE(commanded("vx"), 0.0);
-        }
+        isLeftAlone(20);
         repeating_.reset();
         QTest::keyRelease(window_.get(), Qt::Key_W);
         awaitRest();
@@ -380,8 +365,7 @@ private Q_SLOTS:
         repeating_.reset();
         QTest::keyRelease(window_.get(), Qt::Key_W);
         QTest::qWait(300); // let go
-        QTest::keyPress(window_.get(), Qt::Key_W);
-        awaitMotion();
+        hold();
         QTest::keyRelease(window_.get(), Qt::Key_W);
     }
 
@@ -496,7 +480,7 @@ private Q_SLOTS:
         const auto *const power = find<QLabel>("power");
         const QRegularExpression full("^battery 25\\.4 V   100 %   1?[0-9] h [0-9]+ min   [0-9.]+ A   ");
         QTRY_VERIFY2_WITH_TIMEOUT(full.match(power->text()).hasMatch(), qPrintable(power->text()), 20000);
-        QVERIFY2(power->toolTip().contains("Charge 100 %"), qPrintable(power->toolTip()));
+        VERIFY_CONTAINS(power->toolTip(), "Charge 100 %");
     }
 
     // With its source and its end. Texts of forms are those of their values.
@@ -544,6 +528,17 @@ private:
     /// The velocity that motorcontrol has measured.
     double speed() const { return std::hypot(drive_->measured().vx, drive_->measured().vy); }
     void awaitMotion() { QTRY_VERIFY2(speed() > 0.2, qPrintable(drive_->problem())); }
+    void hold() {
+        QTest::keyPress(window_.get(), Qt::Key_W);
+        awaitMotion();
+    }
+    /// So many times, 50 ms apart.
+    void isLeftAlone(int times) {
+        for (int i = 0; i < times; ++i) {
+            QTest::qWait(50);
+            QCOMPARE(commanded("vx"), 0.0);
+        }
+    }
     QJsonObject state() {
         const auto result = client_->callAndWait("motor.state");
         return result ? result->toObject() : QJsonObject();
@@ -611,6 +606,3 @@ private:
     std::unique_ptr<MainWindow> window_;
     std::unique_ptr<Client> client_; // an independent eye
 };
-
-QTEST_MAIN(TestDrivePanel)
-#include "TestDrivePanel.moc"

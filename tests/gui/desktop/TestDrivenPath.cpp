@@ -3,10 +3,7 @@
 #include "tests/gui/desktop/EightSession.h"
 #include "tests/support/ThreadTime.h"
 
-#include <QPainter>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The path that was driven: fixed to key scans, and broken at jumps.
 class TestDrivenPath : public QObject {
@@ -103,7 +100,7 @@ private Q_SLOTS:
         QCOMPARE(pieces[1].back(), path[504]);
         QCOMPARE(pieces[1].front(), path.front());
         for (const QPolygonF &piece : pieces)
-            QVERIFY2(piece.size() > 20 && piece.size() < 30, qPrintable(QString::number(piece.size())));
+            QVERIFY2(piece.size() > 20 && piece.size() < 30, saying(piece.size()));
     }
 
     // 700 m of circles, one upon the other: such ways are drawn ten times a second, in far less time than Qt
@@ -133,12 +130,9 @@ private Q_SLOTS:
             plain += draw_ms([&] { painter.drawPolyline(place.map(way)); });
         }
         qInfo("figure three ways of 700 m: %.1f ms of the processor, by Qt alone %.1f ms", ours, plain);
-        QVERIFY2(ours < 0.7 * plain, qPrintable(QString("%1 of %2").arg(ours).arg(plain)));
+        QVERIFY2(ours < 0.7 * plain, saying("%1 of %2", ours, plain));
         painter.end();
         const QColor drawn = image.pixelColor(640 + 54, 360);
         QVERIFY2(drawn.red() > 200 && drawn.green() < 200, qPrintable(drawn.name()));
     }
 };
-
-QTEST_MAIN(TestDrivenPath)
-#include "TestDrivenPath.moc"

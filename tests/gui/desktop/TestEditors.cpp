@@ -1,7 +1,6 @@
 #include "tests/gui/desktop/OpenForm.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 static const char *const triggers = R"({"type":"array","maxItems":3,"items":{"type":"object",
     "required":["id","when"],"additionalProperties":false,"properties":{
@@ -47,7 +46,7 @@ private Q_SLOTS:
         QVERIFY(open_->note().isEmpty());
         open_->click("remove", 0);
         QVERIFY(!form_->isValid());
-        QVERIFY2(open_->note().contains("at least 1"), qPrintable(open_->note()));
+        VERIFY_CONTAINS(open_->note(), "at least 1");
         form_->revert();
         QCOMPARE(open_->value(), QByteArray(R"(["/"])"));
     }
@@ -63,7 +62,7 @@ private Q_SLOTS:
         open_->addField("period", 1);
         OpenForm::type(open_->seen<QLineEdit>(1), "100");
         QVERIFY(!form_->isValid());
-        QVERIFY2(open_->note().startsWith("row 1, when, period_s: expected"), qPrintable(open_->note()));
+        VERIFY_STARTS(open_->note(), "row 1, when, period_s: expected");
         OpenForm::type(open_->seen<QLineEdit>(1), "2.5");
         QVERIFY2(form_->isValid(), qPrintable(open_->note()));
         QCOMPARE(open_->value(), QByteArray(R"([{"id":"door","when":{"kind":"period","period_s":2.5}}])"));
@@ -201,13 +200,12 @@ private Q_SLOTS:
             values[QString("list%1").arg(i)] = rows;
         }
         open_->show();
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         form_->setSchema({{"type", "object"}, {"properties", properties}}, values);
         qInfo("the form took %lld ms", clock.elapsed());
         QCOMPARE(form_->values(), values);
         const int rows = form_->findChildren<QToolButton *>("up").size();
-        QVERIFY2(rows >= 100 && rows <= 200, qPrintable(QString::number(rows)));
+        QVERIFY2(rows >= 100 && rows <= 200, saying(rows));
         QVERIFY(!form_->findChildren<QPlainTextEdit *>().isEmpty()); // the rest
     }
 
@@ -215,6 +213,3 @@ private:
     std::unique_ptr<OpenForm> open_;
     SchemaForm *form_ = nullptr;
 };
-
-QTEST_MAIN(TestEditors)
-#include "TestEditors.moc"

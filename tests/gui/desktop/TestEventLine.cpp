@@ -2,12 +2,8 @@
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
-#include "tests/support/PatientClient.h"
-
-#include <QTreeView>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// What the line at the foot says, and how much of it is seen.
 class TestEventLine : public QObject {
@@ -23,8 +19,7 @@ private Q_SLOTS:
         robot.kill("scanmatcher");
         QTRY_VERIFY_WITH_TIMEOUT(line(window)->text().contains("No connection"), 10000);
         QVERIFY2(!line(window)->text().contains("127.0.0.1:"), qPrintable(line(window)->text()));
-        QVERIFY2(line(window)->shownText().contains("scanmatcher: No connection: "),
-                 qPrintable(line(window)->shownText()));
+        VERIFY_CONTAINS(line(window)->shownText(), "scanmatcher: No connection: ");
         QCOMPARE(line(window)->shownText(), line(window)->text()); // all of it
         PlainLabel label;
         label.letElide(Qt::ElideMiddle);
@@ -79,6 +74,3 @@ private:
         return cells;
     }
 };
-
-QTEST_MAIN(TestEventLine)
-#include "TestEventLine.moc"

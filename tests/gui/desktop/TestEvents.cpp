@@ -2,14 +2,8 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
-#include "tests/support/PatientClient.h"
-#include "tests/support/ReleaseStop.h"
-
-#include <QSignalSpy>
-#include <QTreeView>
 
 using namespace hermes;
-using namespace hermes::desktop;
 using Level = Event::Level;
 
 /// What is told of, and for how long: the list alone, then in the window with real daemons.
@@ -103,11 +97,10 @@ private Q_SLOTS:
         Events events;
         events.happened(Level::Error, "motors", "the one that matters");
         events.goesOn("held", Level::Error, "motors", "goes on");
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         for (int i = 0; i < 20000; ++i)
             events.happened(Level::Warning, "noise", QString::number(i));
-        QVERIFY2(timer.elapsed() < 5000, qPrintable(QString::number(timer.elapsed())));
+        QVERIFY2(timer.elapsed() < 5000, saying(timer.elapsed()));
         QCOMPARE(events.all().size(), Events::most);
         QCOMPARE(events.forgotten(), quint64(20002 - Events::most));
         QCOMPARE(events.all().front().text, QString("the one that matters"));
@@ -188,8 +181,7 @@ private Q_SLOTS:
             return R"({"state":"running","health":[)" + items + "]}";
         };
         QTRY_VERIFY(window.fleet.robot()->withTopic("status"));
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         const auto isTold = [&] { // once the connection is old enough
             daemon.say("status", status(R"({"name":"disk","level":"warn","message":"nearly full"})"));
             return textOf(window).contains("disk: nearly full");
@@ -244,14 +236,13 @@ private Q_SLOTS:
         robot.signal("simulator", SIGSTOP);
         QTRY_VERIFY2_WITH_TIMEOUT(!rowsOf(window).filter(frozen + "goes on").isEmpty(),
                                   qPrintable(rowsOf(window).join('\n')), 10000);
-        QTRY_VERIFY2(line->text().contains("simulator: It is connected, but does not"),
-                     qPrintable(line->text()));
+        TRY_CONTAINS(line->text(), "simulator: It is connected, but does not");
         QVERIFY(line->styleSheet().contains("#d0100c"));
         robot.signal("simulator", SIGCONT);
         QTRY_VERIFY2_WITH_TIMEOUT(!rowsOf(window).filter(frozen + "over").isEmpty(),
                                   qPrintable(rowsOf(window).join('\n')), 10000);
         const QRegularExpression over("OVER after \\d+ s: simulator: It is connected");
-        QTRY_VERIFY2(line->text().contains(over), qPrintable(line->text()));
+        TRY_CONTAINS(line->text(), over);
         QVERIFY(!line->styleSheet().contains("#d0100c"));
         robot.kill("simulator");
         QTRY_VERIFY2_WITH_TIMEOUT(!rowsOf(window).filter("error | simulator | No connection").isEmpty(),
@@ -268,7 +259,7 @@ private Q_SLOTS:
         daemon.say(
             "log",
             QByteArray(R"({"stamp":1e300,"level":"error","source":"s","text":"%1"})").replace("%1", text));
-        QTRY_VERIFY2(textOf(window).contains("<b>bold</b>"), qPrintable(textOf(window)));
+        TRY_CONTAINS(textOf(window), "<b>bold</b>");
         QVERIFY(textOf(window).size() < 500);
         QCOMPARE(window.window.findChild<QLabel *>("eventText")->textFormat(), Qt::PlainText);
         daemon.say("log", R"({"level":7})");
@@ -315,6 +306,3 @@ private:
         return rows;
     }
 };
-
-QTEST_MAIN(TestEvents)
-#include "TestEvents.moc"

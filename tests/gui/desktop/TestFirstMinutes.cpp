@@ -5,11 +5,7 @@
 
 #include "common/client/DaemonAddress.h"
 
-#include <QMenuBar>
-#include <QTabBar>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The first minutes of somebody who has never seen the window, with a real mouse and real keys on a display
 /// with a window manager: how many actions (a click, a double click, a key) it takes to come to something.
@@ -40,7 +36,7 @@ private Q_SLOTS:
         QTRY_VERIFY_WITH_TIMEOUT(std::hypot(model.pose()->x - begin.x, model.pose()->y - begin.y) > 0.2,
                                  10000);
         QTRY_VERIFY(!open_->drive.isDriving());
-        QVERIFY2(actions_ <= 3, qPrintable(QString::number(actions_)));
+        QVERIFY2(actions_ <= 3, saying(actions_));
     }
 
     void plotInTwo() {
@@ -57,8 +53,7 @@ private Q_SLOTS:
         QTRY_VERIFY(panel->board().curves() > 0);
         const PlotPane *const pane = panel->board().panes()[0];
         QTRY_VERIFY(!pane->visibleRegion().isEmpty());
-        QTRY_VERIFY2(pane->valueText(0).contains(QRegularExpression("[0-9]")),
-                     qPrintable(pane->valueText(0)));
+        TRY_CONTAINS(pane->valueText(0), QRegularExpression("[0-9]"));
         QCOMPARE(actions_, 2);
     }
 
@@ -87,7 +82,7 @@ private Q_SLOTS:
         };
         QTRY_VERIFY(isTold());
         const auto *const amount = open_->window.findChild<QLabel *>("amount");
-        QTRY_VERIFY2(amount->text().contains(QRegularExpression(": [2-9] s")), qPrintable(amount->text()));
+        TRY_CONTAINS(amount->text(), QRegularExpression(": [2-9] s"));
         logger->call("record.stop", {}, this, answered);
         QTRY_COMPARE_WITH_TIMEOUT(answers, 2, 10000);
 
@@ -101,7 +96,7 @@ private Q_SLOTS:
         click(list->viewport()->mapToGlobal(list->visualItemRect(list->topLevelItem(0)).center()),
               "click --repeat 2 --delay 80 1");
         QTRY_VERIFY_WITH_TIMEOUT(isReplaying(), 10000);
-        QVERIFY2(actions_ <= 3, qPrintable(QString::number(actions_)));
+        QVERIFY2(actions_ <= 3, saying(actions_));
     }
 
 private:
@@ -130,6 +125,3 @@ private:
     std::unique_ptr<OpenWindow> open_;
     int actions_ = 0;
 };
-
-QTEST_MAIN(TestFirstMinutes)
-#include "TestFirstMinutes.moc"

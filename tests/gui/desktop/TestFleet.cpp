@@ -1,8 +1,6 @@
 #include "gui/desktop/model/Fleet.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 
-#include <QSignalSpy>
-
 using namespace hermes;
 using namespace hermes::desktop;
 
@@ -186,7 +184,7 @@ private Q_SLOTS:
         const auto problems = [&] {
             return fleet.robotAt(addressOf(one))->problem() + fleet.robotAt(addressOf(other))->problem();
         };
-        QTRY_VERIFY2(problems().startsWith("The same as the robot rover"), qPrintable(problems()));
+        TRY_STARTS(problems(), "The same as the robot rover");
     }
 
     void robotsOfOneNameAreToldApart() {
@@ -348,6 +346,3 @@ private:
         return {};
     }
 };
-
-QTEST_MAIN(TestFleet)
-#include "TestFleet.moc"

@@ -2,10 +2,7 @@
 #include "gui/desktop/view/CloudView.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QHeaderView>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// No value of a daemon that is frozen looks alive for longer than a second, in whichever panel it stands:
 /// what had changed again and again, and does not any more, is grey or struck out.
@@ -37,16 +34,9 @@ private Q_SLOTS:
             tree->expandAll();
     }
 
-    void cleanupTestCase() {
-        open_.reset();
-        robot_.reset();
-    }
-
     void oneInTurn_data() {
-        const Rows<QString> row("who");
-        for (const char *who : {"motorcontrol", "scanmatcher", "velodynelogger", "seriallogger", "simulator",
-                                "softwaretrigger", "supervisor"})
-            row(who, QString(who));
+        rowsOf("who", {"motorcontrol", "scanmatcher", "velodynelogger", "seriallogger", "simulator",
+                       "softwaretrigger", "supervisor"});
     }
 
     void oneInTurn() {
@@ -64,8 +54,7 @@ private Q_SLOTS:
             last = now;
         }
         robot_->signal(who, SIGSTOP);
-        QElapsedTimer frozen;
-        frozen.start();
+        auto frozen = runningTimer();
         QTest::qWait(1000);
         const Values atOnce = values();
         grabAll(who);
@@ -168,6 +157,3 @@ private:
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> open_;
 };
-
-QTEST_MAIN(TestFrozenDaemons)
-#include "TestFrozenDaemons.moc"

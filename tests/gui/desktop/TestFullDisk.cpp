@@ -2,11 +2,6 @@
 #include "gui/desktop/model/CurveTable.h"
 #include "gui/desktop/widgets/WrittenFile.h"
 
-#include <QPainter>
-
-#include <csignal>
-#include <sys/resource.h>
-
 using namespace hermes;
 using namespace hermes::desktop;
 
@@ -53,7 +48,7 @@ private Q_SLOTS:
         const Result<void> done = write(path);
         ::setrlimit(RLIMIT_FSIZE, &before);
         QVERIFY(!done.ok());
-        QVERIFY2(done.error().message.contains(path), qPrintable(done.error().message));
+        VERIFY_CONTAINS(done.error().message, path);
         QCOMPARE(contentOf(path), QByteArray("before"));
         QCOMPARE(QDir(folder.path()).entryList(QDir::Files), QStringList(name));
     }
@@ -61,6 +56,3 @@ private Q_SLOTS:
 private:
     static constexpr int room_bytes = 1000;
 };
-
-QTEST_MAIN(TestFullDisk)
-#include "TestFullDisk.moc"

@@ -5,7 +5,6 @@
 #include "tests/support/FakeRobot.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A gamepad that SDL makes up drives the motors of a robot.
 class TestGamepad : public QObject {
@@ -15,11 +14,6 @@ private Q_SLOTS:
         robot_ = std::make_unique<FakeRobot>();
         window_ = std::make_unique<OpenWindow>(robot_->address());
         QVERIFY(window_->show());
-    }
-
-    void cleanupTestCase() {
-        window_.reset();
-        robot_.reset();
     }
 
     void cleanup() {
@@ -33,7 +27,7 @@ private Q_SLOTS:
         QVERIFY(!isSeen());
         VirtualGamepad pad;
         QVERIFY2(pad.isThere(), SDL_GetError());
-        QTRY_VERIFY2(shown().contains("hold the left shoulder button to drive"), qPrintable(shown()));
+        TRY_CONTAINS(shown(), "hold the left shoulder button to drive");
         pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, true);
         QTRY_VERIFY2(shown().endsWith("drives"), qPrintable(shown()));
     }
@@ -181,7 +175,7 @@ private Q_SLOTS:
         };
         QCOMPARE(calibrated(0), 0.0);
         const double half = calibrated(0.5);
-        QVERIFY2(half > 0.4 && half < 0.5, qPrintable(QString::number(half)));
+        QVERIFY2(half > 0.4 && half < 0.5, saying(half));
     }
 
 private:
@@ -193,6 +187,3 @@ private:
     std::unique_ptr<FakeRobot> robot_;
     std::unique_ptr<OpenWindow> window_;
 };
-
-QTEST_MAIN(TestGamepad)
-#include "TestGamepad.moc"

@@ -1,13 +1,11 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
-#include "tests/support/PatientClient.h"
 
 #include <QAbstractNativeEventFilter>
 #include <QLibrary>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A key that stays held while the keyboard repeats it drives only once: with real keys (xdotool) on a
 /// display (with_display), whose releases between repeats are not always told to be repeats.
@@ -120,8 +118,7 @@ private Q_SLOTS:
         disconnect(counting);
         QCOMPARE(stops, 0);
         letGo();
-        QElapsedTimer sinceRelease;
-        sinceRelease.start();
+        auto sinceRelease = runningTimer();
         QTRY_VERIFY(!open_->drive.isDriving());
         qInfo("figure stopped %lld ms after the key", sinceRelease.elapsed());
     }
@@ -166,7 +163,7 @@ private Q_SLOTS:
             letGo();
         }
         QTRY_VERIFY(!open_->drive.isDriving());
-        QVERIFY2(open_->drive.problem().contains(reason), qPrintable(open_->drive.problem()));
+        VERIFY_CONTAINS(open_->drive.problem(), reason);
     }
 
     void closesByCtrlQ() {
@@ -196,7 +193,7 @@ private:
     void staysAtRest(int time_ms) {
         QElapsedTimer time;
         for (time.start(); time.elapsed() < time_ms; QTest::qWait(5)) {
-            QVERIFY2(!open_->drive.isDriving(), qPrintable(QString("after %1 ms").arg(time.elapsed())));
+            QVERIFY2(!open_->drive.isDriving(), saying("after %1 ms", time.elapsed()));
             QCOMPARE(open_->drive.commanded().vx, 0.0);
         }
         QTRY_VERIFY(speed() < 0.02);
@@ -216,6 +213,3 @@ private:
     std::unique_ptr<OpenWindow> open_;
     QString held_;
 };
-
-QTEST_MAIN(TestHeldKeys)
-#include "TestHeldKeys.moc"

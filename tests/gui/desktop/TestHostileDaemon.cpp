@@ -1,10 +1,8 @@
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/HostileRows.h"
-#include "tests/support/LoopWatch.h"
 
 #include <QCborValue>
-#include <QPainter>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -70,8 +68,7 @@ private Q_SLOTS:
         QPushButton *const stop = stopButton(window);
         QVERIFY(window.isVisible() && stop->isVisible() && stop->isEnabled());
         const QRect place(stop->mapTo(&window, QPoint()), stop->size());
-        QVERIFY2(window.width() == 1280 && window.rect().contains(place),
-                 qPrintable(QString::number(window.width())));
+        QVERIFY2(window.width() == 1280 && window.rect().contains(place), saying(window.width()));
         fleet.choose(fleet.robotOf(add(fleet, good))); // those that name processes are robots of their own
         const int stopsBefore = good.calls("motor.estop");
         QTest::mouseClick(stop, Qt::LeftButton);
@@ -83,10 +80,9 @@ private Q_SLOTS:
         for (auto *const tree : window.findChildren<QTreeWidget *>())
             for (QTreeWidgetItemIterator i(tree); *i; ++i)
                 QVERIFY2(isPlain((*i)->toolTip(0)), qPrintable((*i)->toolTip(0).left(200)));
-        QVERIFY2(resident_mb() - before_mb < 60 * slowness,
-                 qPrintable(QString::number(resident_mb() - before_mb)));
+        QVERIFY2(resident_mb() - before_mb < 60 * slowness, saying(resident_mb() - before_mb));
         qInfo("busy %.1f ms, %.1f MB", busy_ms, resident_mb() - before_mb);
-        QVERIFY2(busy_ms < busyMost_ms, qPrintable(QString::number(busy_ms)));
+        QVERIFY2(busy_ms < busyMost_ms, saying(busy_ms));
     }
 
     void whatCannotBeReadIsNamed() {
@@ -101,11 +97,10 @@ private Q_SLOTS:
         MainWindow window(fleet, drive, {});
         add(fleet, daemon);
         auto *const power = window.findChild<QLabel *>("power");
-        QTRY_VERIFY2(power->text().contains("controllers.0.battery_v"), qPrintable(power->text()));
-        QTRY_VERIFY2(drive.problem().contains("member control.holder: found 7"), qPrintable(drive.problem()));
+        TRY_CONTAINS(power->text(), "controllers.0.battery_v");
+        TRY_CONTAINS(drive.problem(), "member control.holder: found 7");
         QVERIFY(drive.holder().isEmpty());
-        QTRY_VERIFY2(fleet.robot()->problem().contains("processes.0.port"),
-                     qPrintable(fleet.robot()->problem()));
+        TRY_CONTAINS(fleet.robot()->problem(), "processes.0.port");
     }
 
     void whoDoesNotAnswerIsNamed() {
@@ -114,7 +109,7 @@ private Q_SLOTS:
         const DaemonLink *const link = add(fleet, daemon);
         QSignalSpy changed(link, &DaemonLink::changed);
         QTRY_VERIFY(changed.count() > 0 && link->reason().contains("Messages that could not be read: 1"));
-        QVERIFY2(link->reason().contains(": no answer yet"), qPrintable(link->reason()));
+        VERIFY_CONTAINS(link->reason(), ": no answer yet");
         QCOMPARE(link->condition(), Condition::Unreachable);
     }
 
@@ -128,15 +123,13 @@ private:
         QImage image(1280, 720, QImage::Format_ARGB32_Premultiplied);
         QPainter painter(&image);
         painter.setPen(QPen(Qt::black, 2));
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         painter.drawLines(QVector<QLineF>(2000, QLineF(0, 0, 1280, 720)));
         return double(clock.nsecsElapsed()) * 1e-6;
     }
 
     static double readingTime_ms() {
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         QCborValue::fromCbor(manyEmptyLists()).toJsonValue();
         return double(clock.nsecsElapsed()) * 1e-6;
     }
@@ -183,6 +176,3 @@ private:
         return !toolTip.contains('<');
     }
 };
-
-QTEST_MAIN(TestHostileDaemon)
-#include "TestHostileDaemon.moc"

@@ -6,11 +6,7 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <csignal>
-#include <sys/stat.h>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 using Set = std::function<void(LayoutWindow &)>;
 using IsKept = std::function<bool(const QString &file)>;
@@ -151,8 +147,7 @@ private Q_SLOTS:
         layouts.setValue("buttons", QString(3 << 19, 'x'));
         const auto saved = layouts.save();
         QVERIFY(!saved);
-        QVERIFY2(saved.error().message.contains("it has 1.5 MiB, and may have 1.0 MiB"),
-                 qPrintable(saved.error().message));
+        VERIFY_CONTAINS(saved.error().message, "it has 1.5 MiB, and may have 1.0 MiB");
         QCOMPARE(Layouts(file_).value("buttons"), before);
     }
 
@@ -201,6 +196,3 @@ private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-QTEST_MAIN(TestKept)
-#include "TestKept.moc"

@@ -3,10 +3,7 @@
 
 #include <QAbstractButton>
 #include <QAbstractItemView>
-#include <QAction>
-#include <QScrollArea>
 #include <QSplitter>
-#include <QToolTip>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -119,7 +116,7 @@ private Q_SLOTS:
                          qPrintable(focus ? focus->metaObject()->className() + focus->objectName() : "none"));
                 QVERIFY(++count < 500);
             } while (QApplication::focusWidget() != first);
-            QVERIFY2(count > 10, qPrintable(QString::number(count)));
+            QVERIFY2(count > 10, saying(count));
         }
     }
 
@@ -157,7 +154,7 @@ private Q_SLOTS:
         for (int number = 1; number <= docks.size(); ++number) {
             QTest::keyClick(window_.get(), Qt::Key(Qt::Key_0 + number % 10), Qt::ControlModifier);
             QWidget *const focus = QApplication::focusWidget();
-            QVERIFY2(focus, qPrintable(QString::number(number)));
+            QVERIFY2(focus, saying(number));
             for (const QDockWidget *dock : docks)
                 if (dock->isAncestorOf(focus) && !dock->visibleRegion().isEmpty()) {
                     seen.insert(dock->objectName());
@@ -193,7 +190,7 @@ private Q_SLOTS:
         QTest::keyClick(QApplication::focusWidget(), Qt::Key_Down);     // is for it
         QVERIFY(!QToolTip::text().contains("Ctrl+6"));
         QTest::keyClick(QApplication::focusWidget(), Qt::Key_W);
-        QVERIFY2(QToolTip::text().contains("Ctrl+6"), qPrintable(QToolTip::text()));
+        VERIFY_CONTAINS(QToolTip::text(), "Ctrl+6");
     }
 
     void enterPressesAndTicks() {
@@ -236,7 +233,7 @@ private Q_SLOTS:
             banner->tell(QString("Words and more words. ").repeated(6), {});
             QTRY_VERIFY(banner->isVisible() && banner->width() > 900);
             QTest::qWait(100); // the window may answer later
-            QVERIFY2(window_->height() == 600, qPrintable(QString::number(window_->height())));
+            QVERIFY2(window_->height() == 600, saying(window_->height()));
             QCOMPARE(places(), before);
         }
     }
@@ -246,6 +243,3 @@ private:
     std::unique_ptr<DriveControl> drive_;
     std::unique_ptr<MainWindow> window_;
 };
-
-QTEST_MAIN(TestKeyboard)
-#include "TestKeyboard.moc"

@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/TwoRobots.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The control of a robot that is given when another one is chosen already drives nobody.
 class TestLateControl : public QObject, TwoRobots {
@@ -20,11 +19,7 @@ private Q_SLOTS:
 
     void cleanup() { close(); }
 
-    void drivesNobody_data() {
-        const Rows<bool> row("takesOver");
-        row("asked for by driving", false);
-        row("taken over", true);
-    }
+    void drivesNobody_data() { falseAndTrue("takesOver", "asked for by driving", "taken over"); }
 
     void drivesNobody() {
         QFETCH(bool, takesOver);
@@ -138,6 +133,3 @@ private:
         QTRY_VERIFY(blue_->calls("motor.state") > asked + 1); // twice a second
     }
 };
-
-QTEST_MAIN(TestLateControl)
-#include "TestLateControl.moc"

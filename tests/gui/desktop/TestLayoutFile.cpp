@@ -1,11 +1,9 @@
 #include "tests/gui/desktop/LayoutWindow.h"
-#include "tests/support/FileSizeLimit.h"
 
 #include <QJsonDocument>
 #include <QRandomGenerator>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The file of layouts and robots, which may be anything, or nothing that can be written.
 class TestLayoutFile : public QObject {
@@ -64,8 +62,7 @@ private Q_SLOTS:
         FETCH(QByteArray, bytes, bool, isOurs);
         QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
         write(bytes);
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         {
             LayoutWindow one(file_);
             QVERIFY(one.isWhole());
@@ -102,7 +99,7 @@ private Q_SLOTS:
             write(QJsonDocument(damaged).toJson());
             LayoutWindow one(file_, {"127.0.0.1:1"});
             QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
-            QVERIFY2(one.notice().contains("damaged"), qPrintable(one.notice()));
+            VERIFY_CONTAINS(one.notice(), "damaged");
         }
     }
 
@@ -133,8 +130,7 @@ private Q_SLOTS:
     }
 
     void anyValue_data() {
-        QTest::addColumn<QString>("key");
-        QTest::addColumn<QByteArray>("value");
+        Rows<QString, QByteArray>("key", "value");
         QByteArray deep = "1";
         for (int i = 0; i < 900; ++i)
             deep = "{\"a\":[" + deep + "]}";
@@ -183,7 +179,7 @@ private Q_SLOTS:
     void whatCannotBeWrittenIsTold() {
         {
             LayoutWindow folder(folder_->path(), {"127.0.0.1:1"}); // which is no file
-            QVERIFY2(folder.notice().contains("is no file"), qPrintable(folder.notice()));
+            VERIFY_CONTAINS(folder.notice(), "is no file");
             QVERIFY(folder.isWhole());
         }
         {
@@ -196,7 +192,7 @@ private Q_SLOTS:
         write({});
         {
             LayoutWindow below(file_ + "/gui.json", {"127.0.0.1:1"}); // where no folder can be
-            QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
+            TRY_CONTAINS(below.notice(), "could not be written");
         }
         LayoutWindow full(file_, {"127.0.0.1:1"});
         std::optional<FileSizeLimit> disk(0);
@@ -252,6 +248,3 @@ private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-QTEST_MAIN(TestLayoutFile)
-#include "TestLayoutFile.moc"

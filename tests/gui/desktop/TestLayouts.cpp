@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Layouts of the window and robots, kept in a file.
 class TestLayouts : public QObject {
@@ -54,7 +53,7 @@ private Q_SLOTS:
             one.saveAs(QString("%1\n\u202e").arg(i) + QString(10000, 'x'));
         QCOMPARE(one.window->layouts().names().size(), Layouts::most);
         one.saveAs("one more");
-        QVERIFY2(one.notice().startsWith("There are 50 layouts"), qPrintable(one.notice()));
+        VERIFY_STARTS(one.notice(), "There are 50 layouts");
         for (const QString &name : one.window->layouts().names())
             QVERIFY(name.size() <= Layouts::longestName && !name.contains('\n'));
     }
@@ -112,7 +111,7 @@ private Q_SLOTS:
         const QPoint docked = dock->mapToGlobal(QPoint());
         dock->setFloating(true); // as its button does
         const QPoint moved = dock->pos() - docked;
-        QVERIFY2(moved.manhattanLength() >= 40, qPrintable(QString("%1, %2").arg(moved.x()).arg(moved.y())));
+        QVERIFY2(moved.manhattanLength() >= 40, saying("%1, %2", moved.x(), moved.y()));
         const QPoint place = dock->pos();
         dock->setFloating(false);
         dock->setFloating(true);
@@ -127,6 +126,3 @@ private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-QTEST_MAIN(TestLayouts)
-#include "TestLayouts.moc"

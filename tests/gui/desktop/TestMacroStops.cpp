@@ -1,7 +1,6 @@
 #include "tests/gui/desktop/TwoRobots.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A button that moves a robot ends at any stop of that robot, whoever pressed it and whichever robot is
 /// chosen, and at any STOP of the window.
@@ -52,9 +51,7 @@ private Q_SLOTS:
     }
 
     void stopOfTheWindow_data() {
-        const Rows<bool> row("goesToTheChosenOne");
-        row("of the chosen robot", true);
-        row("of another robot", false);
+        falseAndTrue("goesToTheChosenOne", "of another robot", "of the chosen robot");
     }
 
     void stopOfTheWindow() {
@@ -101,8 +98,7 @@ private Q_SLOTS:
         blue_->holdBack("motor.state");
         run({call(*blue_)});
         QTRY_VERIFY_WITH_TIMEOUT(!runner_->isRunning(), 10000);
-        QVERIFY2(runner_->text().contains("does not tell whether the robot is stopped"),
-                 qPrintable(runner_->text()));
+        VERIFY_CONTAINS(runner_->text(), "does not tell whether the robot is stopped");
         QCOMPARE(blue_->calls("fake.call"), 0);
     }
 
@@ -134,6 +130,3 @@ private:
 
     std::unique_ptr<MacroRunner> runner_;
 };
-
-QTEST_MAIN(TestMacroStops)
-#include "TestMacroStops.moc"

@@ -1,17 +1,12 @@
 #include "tests/gui/desktop/EightSession.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A map that is corrected while the operator looks at it.
 class TestMapCorrection : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void correctionGlides_data() {
-        const Rows<QByteArray> row("order");
-        for (const char *const order : {"mgp", "mpg", "gmp", "gpm", "pmg", "pgm"})
-            row(order, QByteArray(order));
-    }
+    void correctionGlides_data() { rowsOf<QByteArray>("order", {"mgp", "mpg", "gmp", "gpm", "pmg", "pgm"}); }
 
     // Whatever comes first, the picture stands until the lastKeyScan is here, then everything moves at once.
     void correctionGlides() {
@@ -31,8 +26,7 @@ private Q_SLOTS:
         int seen = 0;
         double latest = 0;
         const QLineF wall = before.last();
-        QElapsedTimer clock;
-        clock.start();
+        auto clock = runningTimer();
         while (s.model.isGliding() || seen == 0) {
             QVERIFY(clock.elapsed() < 5000 * slowness);
             QTest::qWait(5);
@@ -45,7 +39,7 @@ private Q_SLOTS:
             const double path = s.part(s.model.matchedPath().back());
             const double keyScan = s.part(pointOf(s.model.graph().poses.last()));
             QVERIFY2(std::abs(path - robot) < 0.1 && std::abs(keyScan - robot) < 0.1,
-                     qPrintable(QString("%1 %2 %3").arg(robot).arg(path).arg(keyScan)));
+                     saying("%1 %2 %3", robot, path, keyScan));
             const QLineF now = s.model.edges().last();
             QVERIFY2(robot < 0.1 || QLineF(now.center(), wall.center()).length() > 1e-3,
                      "the walls move too");
@@ -90,7 +84,7 @@ private Q_SLOTS:
         for (const char what : {'p', 'g', 'm'})
             s.sayCorrected(what);
         QTRY_VERIFY(EightSession::isAt(middle(), to));
-        QVERIFY2(way > 0.1 && longest < 0.7 * way, qPrintable(QString("%1 of %2 m").arg(longest).arg(way)));
+        QVERIFY2(way > 0.1 && longest < 0.7 * way, saying("%1 of %2 m", longest, way));
     }
 
     void fittedViewShowsWhatGrows() {
@@ -134,15 +128,11 @@ private Q_SLOTS:
         QTRY_VERIFY(!s.model.isGliding() &&
                     EightSession::isAt(s.model.graph().poses.last(), other.pose(lastKeyScan)));
         const double way = QLineF(before, pointOf(s.model.graph().poses.last())).length();
-        QVERIFY2(longest < 0.7 * way, qPrintable(QString("%1 of %2 m").arg(longest).arg(way)));
+        QVERIFY2(longest < 0.7 * way, saying("%1 of %2 m", longest, way));
         QVERIFY(EightSession::isAt(s.model.matchedPath().back(), other.pose(lastKeyScan)));
     }
 
-    void correctionOfWhichNotAllComes_data() {
-        const Rows<QByteArray> row("what");
-        for (const char *const what : {"g", "m", "mg", "pg"})
-            row(what, QByteArray(what));
-    }
+    void correctionOfWhichNotAllComes_data() { rowsOf<QByteArray>("what", {"g", "m", "mg", "pg"}); }
 
     // The picture waits, but not for ever, and the path goes on.
     void correctionOfWhichNotAllComes() {
@@ -211,6 +201,3 @@ private Q_SLOTS:
         QCOMPARE(s.model.matchedPath(), path);
     }
 };
-
-QTEST_MAIN(TestMapCorrection)
-#include "TestMapCorrection.moc"

@@ -1,9 +1,6 @@
 #include "tests/gui/desktop/EightSession.h"
 
-#include <QAction>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 Q_DECLARE_METATYPE(hermes::GraphMessage)
 
@@ -63,11 +60,8 @@ private Q_SLOTS:
     }
 
     void graphWithoutSense_data() {
-        QTest::addColumn<std::vector<GraphMessage>>("messages");
-        QTest::addColumn<int>("ignored");
-        QTest::addColumn<int>("size");
-        QTest::addColumn<int>("loops");
-        QTest::addColumn<bool>("isNext"); // after the lastKeyScan
+        Rows<std::vector<GraphMessage>, int, int, int, bool>("messages", "ignored", "size", "loops",
+                                                             "isNext"); // isNext: after the lastKeyScan
         const double nan = std::nan(""), huge = 1e300;
         using Messages = std::vector<GraphMessage>;
         const GraphMessage good{1, true, 0, {{0, 0, 0}, {1, 0, 0}}, {1, 1}, {{0, 1, 1}}, 2};
@@ -132,6 +126,3 @@ private Q_SLOTS:
         QVERIFY(!s.model.correction_m());
     }
 };
-
-QTEST_MAIN(TestMapGraph)
-#include "TestMapGraph.moc"

@@ -1,21 +1,17 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "tests/gui/desktop/MapWindow.h"
-#include "tests/support/PatientClient.h"
 
 #include <QDialog>
 #include <QFileInfo>
-#include <QImage>
 #include <QXmlStreamReader>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The tools of the map: measured, placed, exported, saved and opened.
 class TestMapPanel : public QObject, protected MapWindow {
     Q_OBJECT
 private Q_SLOTS:
     void initTestCase() { open(); }
-    void cleanupTestCase() { close(); }
 
     void measured() {
         tool("fit");
@@ -39,7 +35,7 @@ private Q_SLOTS:
         const double reach = 40 / scale();
         tool("place");
         drag(pixel(at.x, at.y), pixel(at.x + reach * std::cos(at.theta), at.y + reach * std::sin(at.theta)));
-        QTRY_VERIFY2(message().startsWith("Placed at"), qPrintable(message()));
+        TRY_STARTS(message(), "Placed at");
         QVERIFY(view().tool() == MapView::Tool::Pan);
         QTRY_COMPARE(model().outcome(), QString("matched"));
         QVERIFY(std::hypot(model().pose()->x - at.x, model().pose()->y - at.y) < 0.2);
@@ -104,8 +100,7 @@ private Q_SLOTS:
         });
         second.start(50);
         QTest::mouseClick(button, Qt::LeftButton); // returns when the menu is closed
-        QTRY_VERIFY2(message().contains(QRegularExpression("walls to .*/map-20[0-9-]*\\.csv on the robot")),
-                     qPrintable(message()));
+        TRY_CONTAINS(message(), QRegularExpression("walls to .*/map-20[0-9-]*\\.csv on the robot"));
     }
 
     void mapsByTheMenu() {
@@ -128,16 +123,16 @@ private Q_SLOTS:
         panel()->findChild<QLabel *>("message")->clear();
         trigger("saveMap"); // of the last case: asks whether to replace it
         accept();
-        QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
+        TRY_CONTAINS(message(), ".csv on the robot");
         const int walls = QRegularExpression("(\\d+) walls").match(message()).captured(1).toInt();
         QVERIFY2(walls > 0, qPrintable(message()));
         trigger("newMap");
         QTest::qWait(100);
         QVERIFY(!model().edges().isEmpty()); // it asks
         accept();
-        QTRY_VERIFY2(message().startsWith("A new map has begun"), qPrintable(message()));
+        TRY_STARTS(message(), "A new map has begun");
         trigger("undoMap");
-        QTRY_VERIFY2(message().startsWith("Undone: New map. The map has "), qPrintable(message()));
+        TRY_STARTS(message(), "Undone: New map. The map has ");
         QTRY_COMPARE(panel()->findChild<QAction *>("redoMap")->text(), QString("&Redo New map"));
         QTRY_VERIFY(model().edges().size() >= walls);
         trigger("localization");
@@ -145,14 +140,27 @@ private Q_SLOTS:
         QTRY_VERIFY(panel()->findChild<QAction *>("localization")->isChecked());
         trigger("openMap");
         accept(); // the newest
-        QTRY_VERIFY2(message().startsWith("Opened map-20"), qPrintable(message()));
+        TRY_STARTS(message(), "Opened map-20");
         QTRY_COMPARE(model().edges().size(), walls);
         trigger("saveMapAs");
         accept();
         accept(); // it exists: asks whether to replace it
-        QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
+        TRY_CONTAINS(message(), ".csv on the robot");
         trigger("mapping");
         QTRY_COMPARE(message(), QString("The map grows."));
+
+        const Pose2D at = *model().pose();
+        Q_EMIT view().placed({at.x + 3, at.y, at.theta + 1}); // where the scans do not agree
+        QTRY_VERIFY2(message().startsWith("Placed at"), qPrintable(message()));
+        auto *const menu = panel()->findChild<QToolButton *>("mapMenu")->menu();
+        Q_EMIT menu->aboutToShow();
+        trigger("confirmPlace");
+        accept();
+        QTRY_VERIFY2(message().startsWith("The place is confirmed."), qPrintable(message()));
+        Q_EMIT menu->aboutToShow();
+        QTRY_VERIFY(!panel()->findChild<QAction *>("confirmPlace")->isEnabled()); // it is known
+        trigger("undoMap");
+        QTRY_VERIFY2(message().startsWith("Undone: Place."), qPrintable(message()));
     }
 
     void matcherGoneAndBack() {
@@ -172,10 +180,6 @@ private Q_SLOTS:
             shown = int(model().edges().size());
             return there == shown;
         };
-        QTRY_VERIFY2_WITH_TIMEOUT(areAlike(), qPrintable(QString("%1 shown of %2").arg(shown).arg(there)),
-                                  10000);
+        QTRY_VERIFY2_WITH_TIMEOUT(areAlike(), saying("%1 shown of %2", shown, there), 10000);
     }
 };
-
-QTEST_MAIN(TestMapPanel)
-#include "TestMapPanel.moc"

@@ -1,17 +1,12 @@
 #include "tests/gui/desktop/MapWindow.h"
 
-#include <QImage>
-#include <QWheelEvent>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// What the map shows of a robot that stands in a simulated hall, and how one looks around in it.
 class TestMapView : public QObject, protected MapWindow {
     Q_OBJECT
 private Q_SLOTS:
     void initTestCase() { open(); }
-    void cleanupTestCase() { close(); }
 
     void mapScanAndRobotAreShown() {
         QTRY_VERIFY(model().scan().size() > 500);
@@ -31,7 +26,7 @@ private Q_SLOTS:
                     break;
                 }
             }
-        QVERIFY2(near > 0.8 * model().scan().size(), qPrintable(QString::number(near)));
+        QVERIFY2(near > 0.8 * model().scan().size(), saying(near));
     }
 
     void panZoomFitFollow() {
@@ -172,7 +167,7 @@ private Q_SLOTS:
                 found.append(action->text());
         QCOMPARE(found.size(), names.size());
         for (int i = 0; i < names.size(); ++i)
-            QVERIFY2(found[i].startsWith(names[i]), qPrintable(found[i]));
+            VERIFY_STARTS(found[i], names[i]);
         // The picture stands still without scans.
         robot_->signal("scanmatcher", SIGSTOP);
         robot_->signal("velodynelogger", SIGSTOP);
@@ -223,10 +218,7 @@ private Q_SLOTS:
             matcher->call("pose.set", pose, this, [](const Result<QJsonValue> &) {});
             QTRY_VERIFY(std::abs(model().pose()->x - at.x - shift) < 1);
         }
-        QVERIFY2(breaks() >= before + 2, qPrintable(QString::number(breaks())));
+        QVERIFY2(breaks() >= before + 2, saying(breaks()));
         QTRY_COMPARE(model().outcome(), QString("matched"));
     }
 };
-
-QTEST_MAIN(TestMapView)
-#include "TestMapView.moc"

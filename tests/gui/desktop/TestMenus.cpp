@@ -8,7 +8,6 @@
 #include <QTextBrowser>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// All actions of the menu bar, those of menus in menus too.
 static QList<QAction *> actionsOf(const QList<QAction *> &actions) {
@@ -146,7 +145,7 @@ private Q_SLOTS:
                 for (auto *const dialog : open.window.findChildren<QDialog *>())
                     if (dialog->isVisible())
                         seen.append(dialog);
-                QVERIFY2(seen.size() == 1, qPrintable(QString("%1: %2").arg(name).arg(seen.size())));
+                QVERIFY2(seen.size() == 1, saying("%1: %2", name, seen.size()));
                 QVERIFY(seen[0] != first);
                 QVERIFY(!seen[0]->isModal());
                 first = seen[0];
@@ -155,6 +154,3 @@ private Q_SLOTS:
         }
     }
 };
-
-QTEST_MAIN(TestMenus)
-#include "TestMenus.moc"

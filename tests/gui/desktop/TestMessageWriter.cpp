@@ -1,8 +1,5 @@
 #include "gui/desktop/MessageWriter.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 using namespace hermes::desktop;
 
 /// A terminal that takes nothing any more holds nobody up.
@@ -20,8 +17,7 @@ private Q_SLOTS:
         QVERIFY(::fcntl(ends[1], F_SETFL, flags) == 0);
         const int real = ::dup(2);
         ::dup2(ends[1], 2);
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         {
             const MessageWriter writer;
             for (int i = 0; i < 5000; ++i)
@@ -39,10 +35,7 @@ private Q_SLOTS:
         });
         reader.join();
         ::dup2(real, 2);
-        QVERIFY2(took_ms < 1000 * slowness, qPrintable(QString::number(took_ms)));
+        QVERIFY2(took_ms < 1000 * slowness, saying(took_ms));
         QVERIFY(read.contains("message 0\n") && !read.contains("message 4000\n"));
     }
 };
-
-QTEST_GUILESS_MAIN(TestMessageWriter)
-#include "TestMessageWriter.moc"

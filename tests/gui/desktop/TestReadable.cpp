@@ -2,20 +2,13 @@
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/ReleaseStop.h"
 
 #include <QDirIterator>
-#include <QHeaderView>
 #include <QHelpEvent>
 #include <QLayout>
-#include <QScrollArea>
 #include <QStyleOptionComboBox>
-#include <QTabBar>
-#include <QToolBar>
-#include <QToolTip>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 static const QRegularExpression &foreignWords() {
     static const QRegularExpression words(
@@ -174,7 +167,7 @@ private Q_SLOTS:
             found += tooNarrow(open.window) + overlapping(open.window);
         }
         found.removeDuplicates();
-        QVERIFY2(open.window.size() == size, qPrintable(QString("%1").arg(open.window.height())));
+        QVERIFY2(open.window.size() == size, saying("%1", open.window.height()));
         QVERIFY2(found.isEmpty(), qPrintable(found.join('\n')));
     }
 
@@ -240,7 +233,7 @@ private Q_SLOTS:
         for (int x = 0; x < picture.width(); ++x)
             for (int y = 0; y < picture.height(); ++y)
                 best = std::max(best, contrast(picture.pixelColor(x, y), picture.pixelColor(0, 0)));
-        QVERIFY2(best >= 3.5, qPrintable(QString::number(best)));
+        QVERIFY2(best >= 3.5, saying(best));
     }
 
     /// All that the sources give to tr(), with what the window shows at first.
@@ -256,7 +249,7 @@ private Q_SLOTS:
                 if (const QString text = all.next().captured(1); text.contains(foreignWords()))
                     found.append(files.fileName() + ": " + text);
         }
-        QVERIFY2(texts > 400, qPrintable(QString::number(texts)));
+        QVERIFY2(texts > 400, saying(texts));
         OpenWindow open;
         for (const QWidget *widget : open.window.findChildren<QWidget *>())
             for (const QString &text : {widget->toolTip(), widget->property("text").toString(),
@@ -276,6 +269,3 @@ private Q_SLOTS:
 private:
     std::unique_ptr<RobotProcesses> robot_;
 };
-
-QTEST_MAIN(TestReadable)
-#include "TestReadable.moc"

@@ -6,14 +6,12 @@
 #include "tests/gui/desktop/RobotProcesses.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Every setting and parameter of every daemon can be shown and changed, and comes out as it went in.
 class TestRealForms : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void initTestCase();
-    void cleanupTestCase() { robot_.reset(); }
     void settings_data() { addDaemons(); }
     void settings();
     void parameters_data() { addDaemons(); }
@@ -164,6 +162,3 @@ void TestRealForms::parameters() {
     qInfo("%d parameters, %d examples", count, examples);
     QVERIFY(count > 15);
 }
-
-QTEST_MAIN(TestRealForms)
-#include "TestRealForms.moc"

@@ -3,12 +3,8 @@
 #include "gui/desktop/panels/SessionTable.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/gui/desktop/RecordPanelFixture.h"
-#include "tests/support/PatientClient.h"
-
-#include <QHeaderView>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Records what the simulated lidar sends, with a serial logger beside it, and replays it.
 class TestRecordPanel : public QObject, RecordPanelFixture {
@@ -31,13 +27,13 @@ private Q_SLOTS:
         QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
         Q_EMIT find<QTreeWidget>("sessions")
             ->itemActivated(find<QTreeWidget>("sessions")->topLevelItem(0), 0);
-        QVERIFY2(message().contains("nothing is replayed"), qPrintable(message()));
+        VERIFY_CONTAINS(message(), "nothing is replayed");
         find<QLineEdit>("markText")->setText("at the door");
         click("mark");
         QTRY_COMPARE(message(), QString("Marked: at the door"));
         click("record");
         QTRY_COMPARE(button("record"), QString("Re&cord"));
-        QTRY_VERIFY2(message().contains("nothing missing"), qPrintable(message()));
+        TRY_CONTAINS(message(), "nothing missing");
         QVERIFY(!find<QPushButton>("mark")->isVisible());
         QVERIFY(contentOf(robot.path("recordings") + "/first/seriallogger-events.jsonl")
                     .contains("\"text\":\"at the door\""));
@@ -101,7 +97,7 @@ private Q_SLOTS:
         QVERIFY(!robot.isRecording());
         const auto *const sessions = find<QTreeWidget>("sessions");
         QTRY_VERIFY(sessions->topLevelItemCount() == 1 && sessions->topLevelItem(0)->text(2) != "goes on");
-        QVERIFY2(message().contains("late had begun and was stopped"), qPrintable(message()));
+        VERIFY_CONTAINS(message(), "late had begun and was stopped");
     }
 
     // Begun by somebody else: the window says so all the same.
@@ -138,15 +134,13 @@ private Q_SLOTS:
         QVERIFY2(drives(), qPrintable(open.drive.problem()));
         QVERIFY(somebody.callAndWait("source.open", QJsonObject{{"recording", "once"}, {"loop", true}}).ok());
         QTRY_VERIFY_WITH_TIMEOUT(label("replayBanner")->isVisible(), 1000);
-        QTRY_VERIFY2(label("replayBanner")->text().contains("velodynelogger replays"),
-                     qPrintable(label("replayBanner")->text()));
+        TRY_CONTAINS(label("replayBanner")->text(), "velodynelogger replays");
         QTRY_COMPARE(speed(), 0.0); // the drive that was under way has ended
         QTest::keyRelease(&open.window, Qt::Key_W);
         QTest::keyPress(&open.window, Qt::Key_W);
         QTest::qWait(300);
         QCOMPARE(speed(), 0.0);
-        QTRY_VERIFY2(label("problem")->text().contains("A replay is shown"),
-                     qPrintable(label("problem")->text()));
+        TRY_CONTAINS(label("problem")->text(), "A replay is shown");
         QTest::keyRelease(&open.window, Qt::Key_W);
         OpenWindow::click(&open.window, "driveBlindly");
         QTRY_VERIFY(!open.drive.mustLetGo());
@@ -188,11 +182,9 @@ private Q_SLOTS:
         robot.signal("seriallogger", SIGSTOP);
         click("record"); // before anybody knows that it is frozen
         QTRY_VERIFY_WITH_TIMEOUT(!records(lidar), 2000);
-        QTRY_VERIFY2(message().startsWith("seriallogger does not answer, and may go on recording."),
-                     qPrintable(message()));
+        TRY_STARTS(message(), "seriallogger does not answer, and may go on recording.");
         QTest::qWait(6000); // longer than calls are usually waited for
-        QVERIFY2(message().startsWith("seriallogger does not answer, and may go on recording."),
-                 qPrintable(message()));
+        VERIFY_STARTS(message(), "seriallogger does not answer, and may go on recording.");
         robot.signal("seriallogger", SIGCONT);
         QTRY_VERIFY_WITH_TIMEOUT(!records(serial), 10000);
         QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
@@ -219,8 +211,7 @@ private Q_SLOTS:
         QVERIFY(lost->palette().color(QPalette::WindowText) != panel_->palette().color(QPalette::WindowText));
         QCOMPARE(button("record"), QString("S&top")); // the other goes on
         robot.kill("velodynelogger");
-        QTRY_VERIFY2(lost->text().contains("velodynelogger was recording run1 and is gone."),
-                     qPrintable(lost->text()));
+        TRY_CONTAINS(lost->text(), "velodynelogger was recording run1 and is gone.");
         QCOMPARE(text("amount"), QString("No logger is connected."));
         QVERIFY2(!find<QLabel>("message")->isVisible(), qPrintable(message())); // "Recording run1." of nobody
         robot.start("seriallogger", settings);
@@ -317,8 +308,7 @@ private Q_SLOTS:
         RecordingState state;
         state.losses = {{"missing", 3}, {"kernel", 3}, {"too_long", 0}, {"disk_bytes", 7}};
         logger.writer.setState(state);
-        QTRY_VERIFY2(text("amount").contains("; lidar lost: disk bytes 7, kernel 3, missing 3"),
-                     qPrintable(text("amount")));
+        TRY_CONTAINS(text("amount"), "; lidar lost: disk bytes 7, kernel 3, missing 3");
         click("record");
         QTRY_VERIFY(!logger.recording.isActive());
     }
@@ -328,6 +318,3 @@ private Q_SLOTS:
 private:
     QString message() const { return text("message"); }
 };
-
-QTEST_MAIN(TestRecordPanel)
-#include "TestRecordPanel.moc"

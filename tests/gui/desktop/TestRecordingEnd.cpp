@@ -2,12 +2,8 @@
 #include "tests/gui/desktop/RecordPanelFixture.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 #include "tests/gui/desktop/TcpLink.h"
-#include "tests/support/PatientClient.h"
-
-#include <QScrollArea>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A recording ends while another robot is chosen, or by others than the window.
 class TestRecordingEnd : public QObject, RecordPanelFixture {
@@ -50,9 +46,8 @@ private Q_SLOTS:
     }
 
     void aLoggerThatWasAwayIsStoppedToo_data() {
-        const Rows<bool> row("isLater"); // others have begun another recording meanwhile, which goes on
-        row("the same recording", false);
-        row("a later one", true);
+        falseAndTrue("isLater", "the same recording",
+                     "a later one"); // others have begun another recording meanwhile, which goes on
     }
 
     /// Its link was gone as Stop was pressed.
@@ -70,8 +65,7 @@ private Q_SLOTS:
         QTRY_COMPARE(text("lost"), QString("away was recording run1 and is gone."));
         click("record");
         QTRY_VERIFY(!here.recording.isActive());
-        QTRY_VERIFY2(text("message").contains("away: it took part, but does not answer"),
-                     qPrintable(text("message")));
+        TRY_CONTAINS(text("message"), "away: it took part, but does not answer");
         QVERIFY(away.recording.isActive());
         if (isLater) {
             QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
@@ -110,7 +104,7 @@ private Q_SLOTS:
         QTRY_VERIFY_WITH_TIMEOUT(!client.callAndWait("record.status")->toObject()["recording"].toBool(),
                                  15000);
         QTest::qWait(2500); // why it failed stays
-        QVERIFY2(text("message").contains("is not recorded"), qPrintable(text("message")));
+        VERIFY_CONTAINS(text("message"), "is not recorded");
     }
 
     void anotherClientEndsIt() {
@@ -184,7 +178,7 @@ private Q_SLOTS:
         QTRY_COMPARE(record->text(), QString("S&top"));
         QVERIFY(robot.clients.front()->callAndWait("record.stop").ok());
         const auto *const message = area.findChild<QLabel *>("message");
-        QTRY_VERIFY2(message->text().contains("not from here"), qPrintable(message->text()));
+        TRY_CONTAINS(message->text(), "not from here");
         const auto isInView = [&](const QWidget *widget) {
             return area.viewport()->rect().contains(
                 QRect(widget->mapTo(area.viewport(), QPoint()), widget->size()));
@@ -253,6 +247,3 @@ private:
         return QRegularExpression('^' + name + ": ([4-9]|\\d\\d) s").match(text("amount")).hasMatch();
     }
 };
-
-QTEST_MAIN(TestRecordingEnd)
-#include "TestRecordingEnd.moc"

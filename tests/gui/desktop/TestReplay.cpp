@@ -2,13 +2,8 @@
 #include "gui/desktop/widgets/Timeline.h"
 #include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/PatientClient.h"
-
-#include <QTabBar>
-#include <QToolTip>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A session of the simulated lidar and satellites with marks, and its replay in the hands of a person.
 class TestReplay : public QObject {
@@ -22,8 +17,6 @@ private Q_SLOTS:
         panel_ = open_->window.findChild<RecordPanel *>();
     }
 
-    void cleanupTestCase() { open_.reset(); }
-
     void cleanup() {
         if (find("live")->isEnabled())
             find("live")->click();
@@ -35,14 +28,13 @@ private Q_SLOTS:
         auto *const recordings = open_->window.findChild<QDockWidget *>("recordings");
         QVERIFY(recordings->visibleRegion().isEmpty()); // behind another
         QTest::keyClick(&open_->window, Qt::Key_M, Qt::ControlModifier);
-        QTRY_VERIFY2(message().contains("records nothing"), qPrintable(message()));
+        TRY_CONTAINS(message(), "records nothing");
         find<QLineEdit>("name")->setText("run1");
         QTRY_VERIFY(find("record")->isEnabled());
         find("record")->click();
         QTRY_COMPARE(message(), QString("Recording run1."));
         QTRY_VERIFY(!find("mark")->isHidden());
-        QElapsedTimer recorded;
-        recorded.start();
+        auto recorded = runningTimer();
         QTest::qWait(1000);
         open_->window.centralWidget()->setFocus();
         QTest::keyClick(QApplication::focusWidget(), Qt::Key_M, Qt::ControlModifier);
@@ -65,35 +57,6 @@ private Q_SLOTS:
         QCOMPARE(row->text(0), QString("run1"));
         QVERIFY2(row->text(2) == "6 s" || row->text(2) == "7 s", qPrintable(row->text(2)));
         QVERIFY2(row->text(3).endsWith("MiB"), qPrintable(row->text(3)));
-    }
-
-    /// Two here: the tab of the panel, and a double click at the recording; with a real mouse.
-    void threeClicks() {
-        if (QGuiApplication::platformName() != "xcb")
-            QSKIP("needs a display: tests/gui/desktop/with_display");
-        open_->window.findChild<QDockWidget *>("daemons")->raise(); // as the window begins
-        QTabBar *tabs = nullptr;
-        int tab = -1;
-        for (auto *const bar : open_->window.findChildren<QTabBar *>())
-            for (int i = 0; i < bar->count(); ++i)
-                if (bar->tabText(i).startsWith("Recordings")) {
-                    tabs = bar;
-                    tab = i;
-                }
-        QVERIFY(tabs);
-        const auto click = [](const QWidget *widget, const QPoint &place) {
-            const QPoint at = widget->mapToGlobal(place);
-            QProcess::startDetached(
-                "xdotool", {"mousemove", QString::number(at.x()), QString::number(at.y()), "click", "1"});
-        };
-        auto *const sessions = find<QTreeWidget>("sessions");
-        click(tabs, tabs->tabRect(tab).center());
-        QTRY_VERIFY(!sessions->visibleRegion().isEmpty());
-        click(sessions->viewport(), sessions->visualItemRect(sessions->topLevelItem(0)).center());
-        QTest::qWait(50);
-        click(sessions->viewport(), sessions->visualItemRect(sessions->topLevelItem(0)).center());
-        QTRY_VERIFY(areBoth("state", "replay"));
-        QTRY_VERIFY(line()->isVisible());
     }
 
     void aDragSeeksInAllLoggers() {
@@ -139,11 +102,11 @@ private Q_SLOTS:
         QCOMPARE(marks[1].text, QString("mark 2"));
         QCOMPARE(marks[2].text, QString("at the door"));
         QVERIFY2(marks[0].t_s > 0.9 && marks[2].t_s > marks[1].t_s + 1.3 && marks[2].t_s < length_s,
-                 qPrintable(QString::number(marks[2].t_s)));
+                 saying(marks[2].t_s));
         auto *const after = find<QAbstractButton>("markAfter"), *const before =
                                                                     find<QAbstractButton>("markBefore");
         QVERIFY(!before->isEnabled());
-        QTRY_VERIFY2(after->toolTip().contains("mark 1"), qPrintable(after->toolTip()));
+        TRY_CONTAINS(after->toolTip(), "mark 1");
         after->click();
         QTRY_VERIFY(std::abs(position_s("velodynelogger") - marks[0].t_s) < 0.1);
         after->click();
@@ -175,8 +138,7 @@ private Q_SLOTS:
         QTRY_VERIFY(areBoth("speed", 10.0));
         double last_s = 0;
         int loops = 0;
-        QElapsedTimer timer;
-        timer.start();
+        auto timer = runningTimer();
         while (loops < 2 && timer.elapsed() < 20000) {
             QTest::qWait(20);
             loops += line()->position_s() < last_s;
@@ -266,8 +228,7 @@ private Q_SLOTS:
         open_->window.close();
         QVERIFY(open_->window.isVisible());
         const QString notice = open_->window.findChild<QLabel *>("noticeBanner")->text();
-        QVERIFY2(notice.startsWith("127.0.0.1 still shows a recording; closing ends that replay."),
-                 qPrintable(notice));
+        VERIFY_STARTS(notice, "127.0.0.1 still shows a recording; closing ends that replay.");
         robot_->signal("motorcontrol", SIGSTOP);
         open_->drive.stop();
         open_->window.close(); // something else is to be said now
@@ -298,8 +259,7 @@ private Q_SLOTS:
             longest_ms = std::max(longest_ms, turn.elapsed());
             QTest::qWait(5);
         }
-        QVERIFY2(longest_ms < 200,
-                 qPrintable(QString::number(longest_ms))); // a loaded machine; nothing waits
+        QVERIFY2(longest_ms < 200, saying(longest_ms)); // a loaded machine; nothing waits
         QTRY_VERIFY_WITH_TIMEOUT(!line()->isVisible(), 20000);
         QVERIFY2(message().contains("velodynelogger") && message().contains("no reply"),
                  qPrintable(message()));
@@ -318,7 +278,7 @@ private Q_SLOTS:
         robot_->kill("seriallogger");
         moveTo(3);
         QTRY_VERIFY_WITH_TIMEOUT(!find("live")->isEnabled(), 10000);
-        QVERIFY2(message().contains("seriallogger"), qPrintable(message()));
+        VERIFY_CONTAINS(message(), "seriallogger");
         QVERIFY(!line()->isVisible());
         moveTo(4);
         QTest::mouseRelease(line(), Qt::LeftButton);
@@ -424,6 +384,3 @@ private:
     std::unique_ptr<OpenWindow> open_;
     RecordPanel *panel_ = nullptr;
 };
-
-QTEST_MAIN(TestReplay)
-#include "TestReplay.moc"

@@ -4,7 +4,6 @@
 #include "tests/gui/desktop/TcpLink.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Replays of several robots, of this window and of others, and what becomes of them when it is closed.
 class TestReplayEnds : public QObject {
@@ -50,7 +49,7 @@ private Q_SLOTS:
         QVERIFY(!watch().isReplaying() && !banner->isVisible()); // the chosen one does not
         QVERIFY(!open_->drive.refusesForReplay());
         QVERIFY(!closes());
-        QVERIFY2(notice().contains("What others replay goes on: " + title("far")), qPrintable(notice()));
+        VERIFY_CONTAINS(notice(), "What others replay goes on: " + title("far"));
         open_->fleet.choose(robotOf("far"));
         QVERIFY(watch().isReplaying() && open_->drive.refusesForReplay()); // at once
         QTRY_VERIFY(banner->isVisible());
@@ -72,7 +71,7 @@ private Q_SLOTS:
         const int before = seldom, beforeChosen = often;
         QTRY_VERIFY_WITH_TIMEOUT(often - beforeChosen >= 20 && seldom > before, 30000);
         QVERIFY2(seldom - before <= (often - beforeChosen) / 4,
-                 qPrintable(QString("%1, %2").arg(seldom - before).arg(often - beforeChosen)));
+                 saying("%1, %2", seldom - before, often - beforeChosen));
     }
 
     void ownEndsWhicheverIsChosen() {
@@ -90,9 +89,8 @@ private Q_SLOTS:
         QTRY_VERIFY(watch().isReplaying());
         fakes_->asked.clear();
         QVERIFY(!closes());
-        QVERIFY2(notice().startsWith(title("near") + " still shows a recording; closing ends that replay."),
-                 qPrintable(notice()));
-        QVERIFY2(notice().contains("goes on: " + title("far")), qPrintable(notice()));
+        VERIFY_STARTS(notice(), title("near") + " still shows a recording; closing ends that replay.");
+        VERIFY_CONTAINS(notice(), "goes on: " + title("far"));
         if (!closes())
             QVERIFY(closes());
         QTRY_VERIFY(fakes_->asked.contains("near: live"));
@@ -196,8 +194,7 @@ private Q_SLOTS:
         const QString comeForward =
             QString("search --onlyvisible --pid %1 --name Hermes windowactivate").arg(program.processId());
         QTRY_VERIFY_WITH_TIMEOUT(xdotool(comeForward), 20000);
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         bool plays = false;
         while (!plays && time.elapsed() < 30000) { // as soon as the list is there
             QVERIFY(xdotool(comeForward) && xdotool("key ctrl+7 Return"));
@@ -254,6 +251,3 @@ private:
     std::unique_ptr<TcpLink> link_; ///< to the first
     std::unique_ptr<OpenWindow> open_;
 };
-
-QTEST_MAIN(TestReplayEnds)
-#include "TestReplayEnds.moc"

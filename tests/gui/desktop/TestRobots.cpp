@@ -7,7 +7,6 @@
 #include <QAbstractItemView>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Two robots on one host, each with a supervisor and motors, in one window.
 class TestRobots : public QObject {
@@ -61,7 +60,7 @@ private Q_SLOTS:
         QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
         QVERIFY(isStopped(*blue_));
         QVERIFY(!isStopped(*red_));
-        QTRY_VERIFY2(banner().contains("motorcontrol of blue"), qPrintable(banner()));
+        TRY_CONTAINS(banner(), "motorcontrol of blue");
         choose(*red_);
         QCOMPARE(open_->drive.stopping().phase(), StopPhase::None);
         QVERIFY(!isStopped(*red_));
@@ -141,7 +140,7 @@ private Q_SLOTS:
                                  20000);
         QCOMPARE(open_->fleet.robot(), robot(*red_)); // who would be driven
         QTRY_VERIFY(open_->drive.stopping().isLate());
-        QTRY_VERIFY2(banner().contains("motorcontrol of red"), qPrintable(banner()));
+        TRY_CONTAINS(banner(), "motorcontrol of red");
         QVERIFY(open_->drive.isStopped());
         OpenWindow::click(&open_->window, "release"); // of a robot that does not answer: it is not lost
         QTest::qWait(300);
@@ -162,7 +161,7 @@ private Q_SLOTS:
         late.supervisor = QString("127.0.0.1:%1").arg(late.processes.port("supervisor"));
         QVERIFY(open_->fleet.add(late.supervisor));
         pressStop();
-        QTRY_VERIFY2(banner().contains("REACHES NOBODY"), qPrintable(banner()));
+        TRY_CONTAINS(banner(), "REACHES NOBODY");
         late.processes.signal("supervisor", SIGCONT);
         QTRY_VERIFY_WITH_TIMEOUT(robot(late), 20000);
         QTRY_VERIFY_WITH_TIMEOUT(isStopped(late), 20000);
@@ -367,6 +366,3 @@ private:
     std::unique_ptr<One> red_, blue_;
     std::unique_ptr<OpenWindow> open_;
 };
-
-QTEST_MAIN(TestRobots)
-#include "TestRobots.moc"

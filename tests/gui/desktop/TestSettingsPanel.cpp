@@ -1,15 +1,11 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/PatientClient.h"
 
-#include <QScrollArea>
 #include <QScrollBar>
 #include <QSlider>
-#include <QWheelEvent>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Changes the settings of a motor control without motors, as an operator does.
 class TestSettingsPanel : public QObject {
@@ -53,7 +49,7 @@ private Q_SLOTS:
             QVERIFY2(note("motion.vx").startsWith("expected"), wrong);
             QVERIFY2(!isEnabled("apply"), wrong);
             QVERIFY2(isEnabled("revert"), wrong);
-            QVERIFY2(message().contains("motion.vx"), qPrintable(message())); // which may be out of sight
+            VERIFY_CONTAINS(message(), "motion.vx"); // which may be out of sight
         }
         OpenWindow::click(panel_, "revert");
         QCOMPARE(note("motion.vx"), limits);
@@ -156,7 +152,7 @@ private Q_SLOTS:
         OpenWindow::type(field("motion.vx"), "0.31");
         QVERIFY(window_->choose(matcher));
         QTRY_VERIFY(panel_->findChild<QWidget *>("source.queue"));
-        QVERIFY2(message().contains("motorcontrol keeps 1 change"), qPrintable(message()));
+        VERIFY_CONTAINS(message(), "motorcontrol keeps 1 change");
         OpenWindow::type(field("source.queue"), "7");
         QVERIFY(window_->choose(motors));
         QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
@@ -195,8 +191,7 @@ private Q_SLOTS:
         window_->window.close();
         QVERIFY(window_->window.isVisible());
         const QString notice = window_->window.findChild<QLabel *>("noticeBanner")->text();
-        QVERIFY2(notice.contains("Settings were changed and are not applied: motorcontrol (1)."),
-                 qPrintable(notice));
+        VERIFY_CONTAINS(notice, "Settings were changed and are not applied: motorcontrol (1).");
         window_->window.close();
         QVERIFY(!window_->window.isVisible());
     }
@@ -206,7 +201,7 @@ private Q_SLOTS:
         QVERIFY(!isEnabled("save"));
         OpenWindow::type(field("motion.vx"), "0.31");
         OpenWindow::click(panel_, "save");
-        QTRY_VERIFY2(message().startsWith("Applied. Saved"), qPrintable(message()));
+        TRY_STARTS(message(), "Applied. Saved");
         QCOMPARE(setting("motion.vx"), QJsonValue(0.31));
         QCOMPARE(QJsonDocument::fromJson(contentOf(robot_->path("motors.json")))
                      .object()["motion"]
@@ -215,7 +210,7 @@ private Q_SLOTS:
         const double warning = setting("faults.battery_warning_v").toDouble();
         OpenWindow::type(field("faults.battery_v"), QString::number(warning + 1));
         OpenWindow::click(panel_, "save");
-        QTRY_VERIFY2(message().contains("faults.battery_v"), qPrintable(message())); // refused, and not saved
+        TRY_CONTAINS(message(), "faults.battery_v"); // refused, and not saved
     }
 
     void theWheelChangesNothing() {
@@ -275,7 +270,7 @@ private Q_SLOTS:
         QTest::keyClicks(QApplication::focusWidget(), second);
         QCOMPARE(note("listen"), QString("changed, needs a restart"));
         OpenWindow::click(panel_, "apply");
-        QTRY_VERIFY2(message().startsWith("Applied."), qPrintable(message()));
+        TRY_STARTS(message(), "Applied.");
         QCOMPARE(setting("listen"), QJsonValue(QJsonArray{first, second}));
     }
 
@@ -325,7 +320,7 @@ private Q_SLOTS:
         const auto headings = panel_->findChildren<QLabel *>("heading");
         const auto shown = std::count_if(headings.begin(), headings.end(),
                                          [](const QLabel *heading) { return heading->isVisible(); });
-        QVERIFY2(shown > 0 && shown < headings.size(), qPrintable(QString::number(shown)));
+        QVERIFY2(shown > 0 && shown < headings.size(), saying(shown));
     }
 
 private:
@@ -347,6 +342,3 @@ private:
     std::unique_ptr<Client> client_; // an independent eye
     SettingsPanel *panel_ = nullptr;
 };
-
-QTEST_MAIN(TestSettingsPanel)
-#include "TestSettingsPanel.moc"

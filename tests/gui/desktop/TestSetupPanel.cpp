@@ -1,10 +1,8 @@
 #include "gui/desktop/panels/SetupPanel.h"
 #include "gui/setup/WheelTurn.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/PatientClient.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The first contact through the window: a supervisor, and a simulated robot at the far end of a real line.
 class TestSetupPanel : public QObject {
@@ -39,9 +37,9 @@ private Q_SLOTS:
         QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
         OpenWindow::click(panel(), "undoSetup");
         QTRY_VERIFY(file("motorcontrol").toObject().isEmpty());
-        QTRY_VERIFY2(message().startsWith("Written: "), qPrintable(message()));
+        TRY_STARTS(message(), "Written: ");
         OpenWindow::click(panel(), "undoSetup");
-        QTRY_VERIFY2(message().contains("nothing to undo"), qPrintable(message()));
+        TRY_CONTAINS(message(), "nothing to undo");
     }
 
     void sampleIsWritten() {
@@ -87,7 +85,7 @@ private Q_SLOTS:
         OpenWindow::click(panel(), "lifted"); // it is set down
         QTRY_VERIFY(areStanding());
         QTRY_VERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
-        QVERIFY2(wheelMessage().contains("not lifted"), qPrintable(wheelMessage()));
+        VERIFY_CONTAINS(wheelMessage(), "not lifted");
         QVERIFY(!test->isEnabled());
     }
 
@@ -120,16 +118,13 @@ private Q_SLOTS:
         awaitTurning();
         QTest::keyClick(panel(), Qt::Key_Space);
         QTRY_VERIFY(areStanding());
-        QTRY_VERIFY2(wheelMessage().startsWith("The test of the wheels has ended"),
-                     qPrintable(wheelMessage()));
+        TRY_STARTS(wheelMessage(), "The test of the wheels has ended");
         QVERIFY(ask("motorcontrol", "motor.state")["estop"].toBool());
         QVERIFY(!find<QCheckBox>("lifted")->isChecked());
     }
 
     void outOfSightNoWheelTurns_data() {
-        const Rows<bool> row("isClosed");
-        row("its dock is closed", true);
-        row("another tab is over it", false);
+        falseAndTrue("isClosed", "another tab is over it", "its dock is closed");
     }
 
     void outOfSightNoWheelTurns() {
@@ -144,7 +139,7 @@ private Q_SLOTS:
             window_->window.findChild<QDockWidget *>("settings")->raise();
         QTRY_VERIFY(!lifted->isChecked());
         QTRY_VERIFY(areStanding());
-        QVERIFY2(wheelMessage().contains("not in sight"), qPrintable(wheelMessage()));
+        VERIFY_CONTAINS(wheelMessage(), "not in sight");
     }
 
     /// While the control is asked for.
@@ -240,6 +235,3 @@ private:
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> window_;
 };
-
-QTEST_MAIN(TestSetupPanel)
-#include "TestSetupPanel.moc"

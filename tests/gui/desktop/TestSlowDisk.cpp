@@ -1,15 +1,12 @@
 #include "gui/desktop/model/Macro.h"
 #include "tests/gui/desktop/LayoutWindow.h"
 
-#include <QFileDialog>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 static std::atomic<int> syncs{0};
 static std::atomic<bool> isSlow{false}; // whoever writes waits until it is not, for two seconds at most
 
-static int sync() {
+static int syncSlowly() {
     ++syncs;
     for (int i = 0; i < 400 && isSlow; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -18,10 +15,10 @@ static int sync() {
 
 // In the place of those of the C library.
 extern "C" int fsync(int) {
-    return sync();
+    return syncSlowly();
 }
 extern "C" int fdatasync(int) {
-    return sync();
+    return syncSlowly();
 }
 
 /// How long the event loop stood at most.
@@ -87,7 +84,7 @@ private Q_SLOTS:
         QTRY_VERIFY(syncs > before);
         QTest::qWait(300); // in the middle of it
         isSlow = false;
-        QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+        QVERIFY2(standing.most_ms() < limit_ms, saying(standing.most_ms()));
     }
 
     void exports_data() {
@@ -115,7 +112,7 @@ private Q_SLOTS:
         QTest::qWait(300);
         isSlow = false;
         QTRY_VERIFY_WITH_TIMEOUT(QFileInfo(path).size() > 0, 20000);
-        QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+        QVERIFY2(standing.most_ms() < limit_ms, saying(standing.most_ms()));
     }
 
     void closing() {
@@ -127,10 +124,10 @@ private Q_SLOTS:
         one.window->findChild<QAction *>("trustLayer")->trigger();
         one.window->close();
         QVERIFY(one.window->isVisible() && one.isWhole()); // STOP is in reach
-        QVERIFY2(one.notice().contains("still being written"), qPrintable(one.notice()));
+        VERIFY_CONTAINS(one.notice(), "still being written");
         isSlow = false;
         QTRY_VERIFY_WITH_TIMEOUT(!one.window->isVisible(), 20000); // by itself
-        QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+        QVERIFY2(standing.most_ms() < limit_ms, saying(standing.most_ms()));
         QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true"));
     }
 
@@ -155,6 +152,3 @@ private:
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
-
-QTEST_MAIN(TestSlowDisk)
-#include "TestSlowDisk.moc"

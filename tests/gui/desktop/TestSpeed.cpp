@@ -2,15 +2,9 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/LoopWatch.h"
-#include "tests/support/PatientClient.h"
 #include "tests/support/ThreadTime.h"
 
-#include <QTcpServer>
-#include <csignal>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The topic graph in parts, along a spiral; corrected: turned a little.
 static std::vector<QByteArray> longDrive(int revision, int keyScans, double turn) {
@@ -21,27 +15,15 @@ static std::vector<QByteArray> longDrive(int revision, int keyScans, double turn
         for (int i = first; i < first + part; ++i) {
             const char *const comma = i > first ? "," : "";
             const double angle = 0.02 * i + turn, radius = 5 + 45.0 * i / keyScans;
-            poses += QString("%1[%2,%3,%4]")
-                         .arg(comma)
-                         .arg(radius * std::cos(angle))
-                         .arg(radius * std::sin(angle))
-                         .arg(std::remainder(angle, 2 * M_PI))
-                         .toLatin1();
+            poses += saying("%1[%2,%3,%4]", comma, radius * std::cos(angle), radius * std::sin(angle),
+                            std::remainder(angle, 2 * M_PI));
             trust += comma + QByteArray::number(1 - double(i) / keyScans);
             if (i % 10 == 0 && i > 1000)
-                loops += QString("%1{\"from\":%2,\"to\":%3,\"weight\":%4}")
-                             .arg(loops.isEmpty() ? "" : ",")
-                             .arg(i - 314)
-                             .arg(i)
-                             .arg(i % 100 == 0 ? 0.1 : 0.9)
-                             .toLatin1();
+                loops += saying("%1{\"from\":%2,\"to\":%3,\"weight\":%4}", loops.isEmpty() ? "" : ",",
+                                i - 314, i, i % 100 == 0 ? 0.1 : 0.9);
         }
-        messages.push_back(QString("{\"revision\":%1,\"cleared\":%2,\"first\":%3,\"size\":%4,\"poses\":[")
-                               .arg(revision)
-                               .arg(first == 0 ? "true" : "false")
-                               .arg(first)
-                               .arg(keyScans)
-                               .toLatin1() +
+        messages.push_back(saying("{\"revision\":%1,\"cleared\":%2,\"first\":%3,\"size\":%4,\"poses\":[",
+                                  revision, first == 0 ? "true" : "false", first, keyScans) +
                            poses + "],\"trust\":[" + trust + "],\"loops\":[" + loops + "]}");
     }
     return messages;
@@ -55,20 +37,11 @@ static std::vector<QByteArray> manyWalls(int revision, int edges) {
         QByteArray list;
         for (int i = first; i < first + part; ++i) {
             const double x = std::fmod(i * 61.803398875, 100) - 50, y = std::fmod(i * 7.548776662, 100) - 50;
-            list += QString("%1{\"id\":%2,\"x1\":%3,\"y1\":%4,\"x2\":%5,\"y2\":%6}")
-                        .arg(i > first ? "," : "")
-                        .arg(i)
-                        .arg(x)
-                        .arg(y)
-                        .arg(x + std::cos(i))
-                        .arg(y + std::sin(i))
-                        .toLatin1();
+            list += saying("%1{\"id\":%2,\"x1\":%3,\"y1\":%4,\"x2\":%5,\"y2\":%6}", i > first ? "," : "", i,
+                           x, y, x + std::cos(i), y + std::sin(i));
         }
-        messages.push_back(QString("{\"revision\":%1,\"cleared\":%2,\"removed\":[],\"size\":%3,\"edges\":[")
-                               .arg(revision)
-                               .arg(first == 0 ? "true" : "false")
-                               .arg(edges)
-                               .toLatin1() +
+        messages.push_back(saying("{\"revision\":%1,\"cleared\":%2,\"removed\":[],\"size\":%3,\"edges\":[",
+                                  revision, first == 0 ? "true" : "false", edges) +
                            list + "]}");
     }
     return messages;
@@ -101,7 +74,7 @@ private Q_SLOTS:
         const double rate = painted / (double(whole.elapsed()) / 1000);
         figure("frames, 20,000 edges and 2,000 points at 10 Hz", rate, "a second");
         figure("a frame of it, median", median(frames_ms), "ms");
-        QVERIFY2(rate > 15, qPrintable(QString::number(rate)));
+        QVERIFY2(rate > 15, saying(rate));
     }
 
     void framesOfALongDrive() {
@@ -146,7 +119,7 @@ private Q_SLOTS:
         view.layers().loops = view.layers().graph = view.layers().trust = true;
         const double all = frame_ms();
         figure("a frame, 20,000 edges, 50,000 key scans, graph, loops and trust", all, "ms of the processor");
-        QVERIFY2(all < 100 * slowness, qPrintable(QString::number(all)));
+        QVERIFY2(all < 100 * slowness, saying(all));
 
         // The largest map that moves.
         sayAll(fewer, bent, R"({"x":50,"y":0,"theta":0,"covariance":null,"outcome":"matched","trust":1})");
@@ -162,7 +135,7 @@ private Q_SLOTS:
         QTRY_VERIFY_WITH_TIMEOUT(model.correction_m() && !model.isGliding(), 20000);
         figure("a corrected map, 10,000 edges and 20,000 key scans, moves in", pictures, "pictures");
         figure("event loop busy at most, it arrives and moves", watch.longestCpu_ms(), "ms of the processor");
-        QVERIFY2(watch.longestCpu_ms() < 100 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
+        QVERIFY2(watch.longestCpu_ms() < 100 * slowness, saying(watch.longestCpu_ms()));
     }
 
     void largeMapArrivesWhole() {
@@ -185,7 +158,7 @@ private Q_SLOTS:
             frames_ms.push_back(threadTime_ms() - before);
         }
         figure("a frame, 100,000 edges, median", median(frames_ms), "ms of the processor");
-        QVERIFY2(median(frames_ms) < 50 * slowness, qPrintable(QString::number(median(frames_ms))));
+        QVERIFY2(median(frames_ms) < 50 * slowness, saying(median(frames_ms)));
     }
 
     void daemonThatDoesNotAnswer() {
@@ -208,8 +181,8 @@ private Q_SLOTS:
                "ms of the processor");
         figure("the same on the clock", watch.longest_ms(), "ms");
         robot.signal("scanmatcher", SIGCONT);
-        QVERIFY2(watch.longestCpu_ms() < 50, qPrintable(QString::number(watch.longestCpu_ms())));
-        QVERIFY2(watch.longest_ms() < 1000, qPrintable(QString::number(watch.longest_ms())));
+        QVERIFY2(watch.longestCpu_ms() < 50, saying(watch.longestCpu_ms()));
+        QVERIFY2(watch.longest_ms() < 1000, saying(watch.longest_ms()));
     }
 
     void daemonThatFloods() {
@@ -224,7 +197,7 @@ private Q_SLOTS:
         figure("event loop busy at most, a daemon floods log, map and poses", watch.longestCpu_ms(),
                "ms of the processor");
         figure("the same on the clock", watch.longest_ms(), "ms");
-        QVERIFY2(watch.longestCpu_ms() < 50, qPrintable(QString::number(watch.longestCpu_ms())));
+        QVERIFY2(watch.longestCpu_ms() < 50, saying(watch.longestCpu_ms()));
     }
 
     // Usable: the event loop runs, which is when the first request goes out; the window was shown before.
@@ -235,8 +208,7 @@ private Q_SLOTS:
             QVERIFY(daemon.listen(QHostAddress::LocalHost));
             ChildProcess program;
             QTemporaryDir folder;
-            QElapsedTimer time;
-            time.start();
+            auto time = runningTimer();
             program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
                           {"--connect", QString("127.0.0.1:%1").arg(daemon.serverPort()), "--layout",
                            folder.filePath("gui.json")});
@@ -249,7 +221,7 @@ private Q_SLOTS:
         }
         figure("start to usable window", median(times_s), "s");
         const double least = *std::min_element(times_s.begin(), times_s.end());
-        QVERIFY2(least < 1, qPrintable(QString::number(least)));
+        QVERIFY2(least < 1, saying(least));
     }
 
     // As many poses and changes of the map as in an hour at 10 Hz, as fast as they come.
@@ -274,7 +246,7 @@ private Q_SLOTS:
         figure(messages == 36000 ? "memory at most, an hour of a map at 10 Hz"
                                  : "memory at most, six minutes",
                resident_mb, "MB");
-        QVERIFY2(resident_mb > 10 && resident_mb < 150 * slowness, qPrintable(QString::number(resident_mb)));
+        QVERIFY2(resident_mb > 10 && resident_mb < 150 * slowness, saying(resident_mb));
         program.terminate();
         QVERIFY(program.waitForFinished());
     }
@@ -288,6 +260,3 @@ private:
         return values[values.size() / 2];
     }
 };
-
-QTEST_MAIN(TestSpeed)
-#include "TestSpeed.moc"

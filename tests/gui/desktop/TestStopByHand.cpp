@@ -4,14 +4,9 @@
 #include "tests/support/FakeRobot.h"
 
 #include <QDialog>
-#include <QFileDialog>
-#include <QMenuBar>
 #include <QMessageBox>
-#include <QSignalSpy>
-#include <QToolTip>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// STOP acts at once, whatever lies open in the window: with real keys and a real mouse (xdotool) on a
 /// display with a window manager (with_display).
@@ -304,8 +299,7 @@ private:
         QTRY_VERIFY2_WITH_TIMEOUT(open_->drive.isStopped(),
                                   qPrintable(what + (wasOpen ? " is open" : " did not open")), 6000);
         QVERIFY2(wasOpen, qPrintable(what + " did not open"));
-        QVERIFY2(sinceStop.elapsed() < 2000,
-                 qPrintable(QString("%1: %2 ms").arg(what).arg(sinceStop.elapsed())));
+        QVERIFY2(sinceStop.elapsed() < 2000, saying("%1: %2 ms", what, sinceStop.elapsed()));
         release();
     }
 
@@ -333,6 +327,3 @@ private:
     std::unique_ptr<OpenWindow> open_;
     QPushButton *stop_ = nullptr;
 };
-
-QTEST_MAIN(TestStopByHand)
-#include "TestStopByHand.moc"

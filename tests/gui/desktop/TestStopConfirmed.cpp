@@ -1,12 +1,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
-#include "tests/support/PatientClient.h"
-#include "tests/support/ReleaseStop.h"
-
-#include <QTcpServer>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Forwards to a port; what has been forwarded so far can be made to carry nothing any more, as behind a
 /// router that has forgotten it.
@@ -73,7 +68,7 @@ private Q_SLOTS:
         const QString who = state()["latched"].toObject()["estop"].toString();
         QVERIFY2(who.startsWith("emergency stop by hermes-gui ") && who.contains(" on "), qPrintable(who));
         QTRY_COMPARE(button(), QString("STOPPED"));
-        QVERIFY2(banner().contains("measured that the robot stands"), qPrintable(banner()));
+        VERIFY_CONTAINS(banner(), "measured that the robot stands");
         const std::vector<StopPhase> all{StopPhase::Pressed, StopPhase::Sent, StopPhase::Taken,
                                          StopPhase::Confirmed};
         QVERIFY(seen == all);
@@ -91,7 +86,7 @@ private Q_SLOTS:
         QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
         for (const char *part : {"NOT CONFIRMED by motorcontrol", "does not answer",
                                  "stops by itself after 1 s", "its motor controllers", "switch on the robot"})
-            QTRY_VERIFY2(banner().contains(part), qPrintable(banner()));
+            TRY_CONTAINS(banner(), part);
         QTest::qWait(4000); // it goes on for longer than a call waits
         QVERIFY2(open_->drive.stopping().isLate(), qPrintable(banner()));
         robot_->thaw();
@@ -111,7 +106,7 @@ private Q_SLOTS:
         open_->window.close();
         QVERIFY(open_->window.isVisible());
         const auto *const notice = open_->window.findChild<QLabel *>("noticeBanner");
-        QVERIFY2(notice->text().startsWith("STOP is not confirmed"), qPrintable(notice->text()));
+        VERIFY_STARTS(notice->text(), "STOP is not confirmed");
         robot_->thaw();
         QTRY_COMPARE_WITH_TIMEOUT(phase(), StopPhase::Confirmed, 10000);
         open_->window.close();
@@ -133,7 +128,7 @@ private Q_SLOTS:
         QTRY_VERIFY(!open_->drive.isPossible());
         press();
         QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
-        QTRY_VERIFY2(banner().contains("no connection"), qPrintable(banner()));
+        TRY_CONTAINS(banner(), "no connection");
         QCOMPARE(button(), QString("STOP pressed"));
         robot_->start();
         QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 20000);
@@ -154,7 +149,7 @@ private Q_SLOTS:
     void goesOutWhenARobotIsFound() {
         openWindow(0);
         press();
-        QVERIFY2(banner().contains("REACHES NOBODY"), qPrintable(banner()));
+        VERIFY_CONTAINS(banner(), "REACHES NOBODY");
         QVERIFY(open_->fleet.add(robot_->address()).ok());
         QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
         QVERIFY(state()["estop"].toBool());
@@ -170,7 +165,7 @@ private Q_SLOTS:
         QTRY_COMPARE(button(), QString("STOP"));
         QVERIFY(client_->callAndWait("motor.estop").ok()); // by somebody else
         QTRY_COMPARE(button(), QString("STOPPED"));
-        QTRY_VERIFY2(banner().startsWith("STOPPED"), qPrintable(banner()));
+        TRY_STARTS(banner(), "STOPPED");
     }
 
     void theStopOfAnotherIsWatched() {
@@ -180,12 +175,12 @@ private Q_SLOTS:
         QVERIFY(client_->callAndWait("motor.estop").ok());
         QTest::keyRelease(&open_->window, Qt::Key_W);
         QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 4000);
-        QTRY_VERIFY2(banner().contains("NOT KNOWN TO STAND"), qPrintable(banner()));
+        TRY_CONTAINS(banner(), "NOT KNOWN TO STAND");
         robot_->setSilent(false);
         QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
-        QTRY_VERIFY2(banner().startsWith("STOPPED: emergency stop by"), qPrintable(banner()));
+        TRY_STARTS(banner(), "STOPPED: emergency stop by");
         OpenWindow::click(&open_->window, "release");
-        QTRY_VERIFY2(banner().startsWith("Not stopped from here"), qPrintable(banner()));
+        TRY_STARTS(banner(), "Not stopped from here");
         QTest::qWait(600); // as a person, who reads it
         QVERIFY(state()["estop"].toBool());
         OpenWindow::click(&open_->window, "release");
@@ -230,7 +225,7 @@ private Q_SLOTS:
         QTRY_VERIFY(phase() == StopPhase::Confirmed);
         OpenWindow::click(&open_->window, "release");
         QTRY_VERIFY(phase() == StopPhase::None);
-        QTRY_VERIFY2(banner().contains("NOT CONFIRMED"), qPrintable(banner())); // the first one still is not
+        TRY_CONTAINS(banner(), "NOT CONFIRMED"); // the first one still is not
         robot_->start();
         QVERIFY(client_->waitConnected(std::chrono::milliseconds(10000)).ok());
         QTRY_VERIFY_WITH_TIMEOUT(state()["estop"].toBool(), 10000);
@@ -285,6 +280,3 @@ private:
     std::unique_ptr<OpenWindow> open_;
     std::unique_ptr<Client> client_; // an independent eye
 };
-
-QTEST_MAIN(TestStopConfirmed)
-#include "TestStopConfirmed.moc"

@@ -2,7 +2,6 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// "STOPPED" is never said of a robot that is not known to stand, whatever has stopped it.
 class TestStopTold : public QObject {
@@ -45,13 +44,9 @@ private Q_SLOTS:
         QVERIFY(!isSaid);
         daemon.setResult("motor.state", state(R"({"confirmed":true,"text":""})"));
         QTRY_COMPARE(button->text(), QString("STOPPED"));
-        QTRY_VERIFY2(banner->text().startsWith("STOPPED: controller 1 kept turning"),
-                     qPrintable(banner->text()));
+        TRY_STARTS(banner->text(), "STOPPED: controller 1 kept turning");
         daemon.setResult("motor.state", R"({"latched":{},"control":{"held":false}})");
         QTRY_COMPARE(button->text(), QString("STOP"));
         QTRY_VERIFY(!banner->isVisible());
     }
 };
-
-QTEST_MAIN(TestStopTold)
-#include "TestStopTold.moc"

@@ -2,11 +2,7 @@
 #include "tests/daemons/RoboClawRig.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QMenuBar>
-#include <sys/resource.h>
-
 using namespace hermes;
-using namespace hermes::desktop;
 using namespace hermes::simulator;
 
 /// From the hand to the wire: a STOP is pressed while the robot drives, under a map of 100,000 edges, beside
@@ -123,6 +119,3 @@ private:
                             window.windowHandle()->mapFromGlobal(middle));
     }
 };
-
-QTEST_MAIN(TestStopWire)
-#include "TestStopWire.moc"

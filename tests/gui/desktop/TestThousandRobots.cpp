@@ -1,11 +1,7 @@
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
-#include "tests/support/LoopWatch.h"
-
-#include <QMenuBar>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// A thousand robots in one window: it goes on, and STOP is of the chosen one.
 class TestThousandRobots : public QObject {
@@ -49,7 +45,7 @@ private Q_SLOTS:
         qInfo("figure they are there, event loop busy at most: %.1f ms of the processor",
               watch.longestCpu_ms());
         // 20 to 35 on a quiet machine.
-        QVERIFY2(watch.longestCpu_ms() < 100 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
+        QVERIFY2(watch.longestCpu_ms() < 100 * slowness, saying(watch.longestCpu_ms()));
         watch.restart();
         auto *const robots = open.window.findChild<QComboBox *>("robots");
         QCOMPARE(robots->count(), count);
@@ -67,16 +63,12 @@ private Q_SLOTS:
         QVERIFY(all.calls("source.status") > 0); // whether they replay
         const QSize least = open.window.minimumSizeHint();
         QVERIFY2(least.width() <= 1024 && least.height() <= 600,
-                 qPrintable(QString("%1 x %2").arg(least.width()).arg(least.height())));
+                 saying("%1 x %2", least.width(), least.height()));
         QTRY_VERIFY_WITH_TIMEOUT(open.drive.isPossible(), 60000); // who was too busy to say so before
         const int before = all.calls("motor.estop");
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         QTest::mouseClick(open.window.findChild<QPushButton *>("stop"), Qt::LeftButton);
         QTRY_VERIFY_WITH_TIMEOUT(all.calls("motor.estop") > before, 1000);
         qInfo("figure STOP was there after: %lld ms", time.elapsed());
     }
 };
-
-QTEST_MAIN(TestThousandRobots)
-#include "TestThousandRobots.moc"

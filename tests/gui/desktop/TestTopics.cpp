@@ -5,10 +5,8 @@
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/FakeRobot.h"
-#include "tests/support/LoopWatch.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Topics of a robot: their rate and age, their newest message, and what is plotted of them.
 class TestTopics : public QObject {
@@ -90,13 +88,13 @@ private Q_SLOTS:
         int rows = 0;
         for (QTreeWidgetItemIterator i(message()); *i; ++i)
             ++rows;
-        QVERIFY2(rows < 600, qPrintable(QString::number(rows)));
+        QVERIFY2(rows < 600, saying(rows));
         LoopWatch watch;
         const QString count = at({"count"}).value(0);
         QTest::qWait(1500);
         QVERIFY(at({"count"}).value(0) != count);
         qInfo("busy %.1f ms", watch.longestCpu_ms());
-        QVERIFY2(watch.longestCpu_ms() < 40 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
+        QVERIFY2(watch.longestCpu_ms() < 40 * slowness, saying(watch.longestCpu_ms()));
     }
 
 private:
@@ -129,6 +127,3 @@ private:
     std::unique_ptr<OpenWindow> window_;
     PlotsPanel *panel_ = nullptr;
 };
-
-QTEST_MAIN(TestTopics)
-#include "TestTopics.moc"

@@ -1,7 +1,6 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// Two windows, or a window and another program, with the same file: nothing that one keeps is lost by the
 /// other.
@@ -27,7 +26,7 @@ private Q_SLOTS:
         const auto first = opened();
         QCOMPARE(first->notice(), QString());
         auto second = opened();
-        QVERIFY2(second->notice().contains("Another window keeps the layouts"), qPrintable(second->notice()));
+        VERIFY_CONTAINS(second->notice(), "Another window keeps the layouts");
         QVERIFY(noteOf(*second).contains("Another window keeps the layouts") && noteOf(*first).isEmpty());
         first->saveAs("Precious");
         second->saveAs("Other");
@@ -73,7 +72,7 @@ private Q_SLOTS:
         Layouts other(file_);
         QVERIFY(other.saveAs("By hand").ok() && other.save().ok());
         one->saveAs("Mine");
-        QTRY_VERIFY2(one->notice().contains("were changed by another"), qPrintable(one->notice()));
+        TRY_CONTAINS(one->notice(), "were changed by another");
         QVERIFY(noteOf(*one).contains("were changed by another"));
         one.reset();
         QCOMPARE(kept(), QStringList({"Usual", "By hand"}));
@@ -94,6 +93,3 @@ private:
     QString file_;
     QByteArray usual_; // what is kept as a window begins
 };
-
-QTEST_MAIN(TestTwoWindows)
-#include "TestTwoWindows.moc"

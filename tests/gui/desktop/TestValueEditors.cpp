@@ -1,10 +1,7 @@
 #include "gui/desktop/widgets/WheelGuard.h"
 #include "tests/gui/desktop/OpenForm.h"
 
-#include <QWheelEvent>
-
 using namespace hermes;
-using namespace hermes::desktop;
 
 /// The inputs for single values: numbers, texts, choices, and any value.
 class TestValueEditors : public QObject {
@@ -26,7 +23,7 @@ private Q_SLOTS:
         QVERIFY(form_->isValid());
         OpenForm::type(open_->seen<QLineEdit>(), "3, 40");
         QVERIFY(!form_->isValid());
-        QVERIFY2(open_->note().contains("at most 10"), qPrintable(open_->note()));
+        VERIFY_CONTAINS(open_->note(), "at most 10");
         OpenForm::type(open_->seen<QLineEdit>(), "3, x");
         QVERIFY(!form_->isValid());
         OpenForm::type(open_->seen<QLineEdit>(), "");
@@ -88,7 +85,7 @@ private Q_SLOTS:
         open_->showOne(schema);
         OpenForm::type(open_->seen<QLineEdit>(), text);
         QVERIFY2(!form_->isValid(), open_->value());
-        QVERIFY2(open_->note().contains("15 digits"), qPrintable(open_->note()));
+        VERIFY_CONTAINS(open_->note(), "15 digits");
         OpenForm::type(open_->seen<QLineEdit>(), QString(text).replace(QRegularExpression("\\d{16,}"),
                                                                        "9007199254740992")); // 2^53
         QVERIFY2(form_->isValid(), qPrintable(open_->note()));
@@ -122,9 +119,9 @@ private Q_SLOTS:
             R"({"type":"integer","unit":"B","minimum":1024,"maximum":67108864,"default":1048576})");
         QCOMPARE(open_->note(), QString("1.0 MiB (1.0 KiB to 64.0 MiB)"));
         OpenForm::type(open_->seen<QLineEdit>(), "6764573491");
-        QVERIFY2(open_->note().startsWith("6.3 GiB (expected"), qPrintable(open_->note()));
+        VERIFY_STARTS(open_->note(), "6.3 GiB (expected");
         open_->showOne(R"({"type":"number","unit":"s","default":200})");
-        QVERIFY2(open_->note().startsWith("3 min 20 s"), qPrintable(open_->note()));
+        VERIFY_STARTS(open_->note(), "3 min 20 s");
     }
 
     void patternsAndFormats_data() {
@@ -146,7 +143,7 @@ private Q_SLOTS:
         open_->showOne(schema);
         OpenForm::type(open_->seen<QLineEdit>(), bad);
         QVERIFY(!form_->isValid());
-        QVERIFY2(open_->note().startsWith("expected"), qPrintable(open_->note()));
+        VERIFY_STARTS(open_->note(), "expected");
         OpenForm::type(open_->seen<QLineEdit>(), good);
         QVERIFY2(form_->isValid(), qPrintable(open_->note()));
         QCOMPARE(form_->values()["a"], QJsonValue(good));
@@ -166,7 +163,7 @@ private Q_SLOTS:
                  qPrintable(open_->note()));
         QTest::keyClicks(text, "]");
         QVERIFY(!form_->isValid()); // 5 is no text
-        QVERIFY2(open_->note().startsWith("row 2: expected a string"), qPrintable(open_->note()));
+        VERIFY_STARTS(open_->note(), "row 2: expected a string");
         QTest::keyClick(text, Qt::Key_Backspace);
         QTest::keyClick(text, Qt::Key_Backspace);
         QTest::keyClicks(text, "\"y\"]");
@@ -214,6 +211,3 @@ private:
     std::unique_ptr<OpenForm> open_;
     SchemaForm *form_ = nullptr;
 };
-
-QTEST_MAIN(TestValueEditors)
-#include "TestValueEditors.moc"

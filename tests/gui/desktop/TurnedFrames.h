@@ -1,8 +1,6 @@
 #pragma once
 
-#include <QElapsedTimer>
 #include <QMouseEvent>
-#include <QWidget>
 
 namespace hermes {
 

@@ -3,9 +3,7 @@
 #include "tests/support/ThreadTime.h"
 
 #include <QApplication>
-#include <QElapsedTimer>
 #include <QEvent>
-#include <QWidget>
 
 namespace hermes {
 
@@ -22,8 +20,7 @@ public:
         const QByteArray name = QByteArray(receiver->metaObject()->className()) + ' ' +
                                 receiver->objectName().toUtf8() + ", event " +
                                 QByteArray::number(event->type()); // it may be gone afterwards
-        QElapsedTimer time;
-        time.start();
+        auto time = runningTimer();
         const double before_ms = threadTime_ms();
         ++depth_;
         const bool done = QApplication::notify(receiver, event);

@@ -15,7 +15,6 @@
 #include <cstdio>
 
 using namespace hermes;
-using namespace hermes::desktop;
 
 class Screenshots : public QObject {
     Q_OBJECT

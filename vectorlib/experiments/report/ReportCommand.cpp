@@ -9,6 +9,7 @@
 namespace hermes::experiments {
 
 using vector::aboveZero;
+using vector::addOption;
 using vector::between;
 using vector::example;
 using vector::hasExtension;
@@ -109,37 +110,25 @@ void addReportCommand(CLI::App &app) {
     sub->add_option("WORLD", command->in,
                     "World: JSON with edges and poses, or pillars, quadratic, cutsquare or oblique")
         ->required();
-    sub->add_option("--case", command->number, "Scans N and N + 1 with all solutions")
-        ->transform(wholeNumber(0, 1e6))
-        ->type_name("N");
+    addOption(*sub, "--case N", command->number, wholeNumber(0, 1e6), "Scans N and N + 1 with all solutions");
     sub->add_flag("--overall", command->overall, "All consecutive scans with their accepted solutions");
     sub->add_flag("--all", command->all, "The case reports of all consecutive scans");
-    sub->add_flag(
-        "--all-combinations", command->everyCombination,
-        "Every reliable, unambiguous combination by the published rules; accepted are permitted ones "
-        "of little discrepancy");
-    sub->add_option("--most", command->most, "With --all-combinations: the N longest of a case (100)")
-        ->transform(wholeNumber(1, 10000))
-        ->type_name("N");
-    sub->add_option("--format", command->format,
-                    "json, csv, svg or latex; else by the extension of --out, else json")
-        ->check(CLI::IsMember({"json", "csv", "svg", "latex"}))
-        ->type_name("KIND");
+    sub->add_flag("--all-combinations", command->everyCombination,
+                  "Every reliable, unambiguous combination by the published rules; accepted are permitted "
+                  "ones of little discrepancy");
+    addOption(*sub, "--most N", command->most, wholeNumber(1, 10000),
+              "With --all-combinations: the N longest of a case (100)");
+    addOption(*sub, "--format KIND", command->format, CLI::IsMember({"json", "csv", "svg", "latex"}),
+              "json, csv, svg or latex; else by the extension of --out, else json");
     constexpr const char *scans = "Scans";
-    sub->add_option("--rays", command->rays, "Rays of a scan (2000)")
-        ->transform(wholeNumber(3, 1e6))
-        ->type_name("N")
+    addOption(*sub, "--rays N", command->rays, wholeNumber(3, 1e6), "Rays of a scan (2000)")->group(scans);
+    addOption(*sub, "--noise M", command->noise, between(0, 1e3),
+              "Standard deviation of the range, metres (0.01)")
         ->group(scans);
-    sub->add_option("--noise", command->noise, "Standard deviation of the range, metres (0.01)")
-        ->check(between(0, 1e3))
-        ->type_name("M")
+    addOption(*sub, "--sigma M", command->sigma, aboveZero(),
+              "Largest error of the vectorization, metres (0.03)")
         ->group(scans);
-    sub->add_option("--sigma", command->sigma, "Largest error of the vectorization, metres (0.03)")
-        ->check(aboveZero())
-        ->type_name("M")
-        ->group(scans);
-    sub->add_option("--seed", command->seed, "The same seed gives the same scans")
-        ->type_name("I")
+    addOption(*sub, "--seed I", command->seed, "The same seed gives the same scans")
         ->capture_default_str()
         ->group(scans);
     command->search.addTo(*sub, "0.2; quadratic 0.5");

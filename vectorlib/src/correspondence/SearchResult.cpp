@@ -18,8 +18,8 @@ VECTORLIB_BODY const char *describe(SearchOutcome outcome) {
     static constexpr const char *texts[] = {
         "every combination was considered",
         "the bound on combinations ended the search: there may be better solutions",
-        "the expected transformation, a threshold or a bound is negative, zero where it must not be, or not "
-        "finite",
+        ("the expected transformation, a threshold or a bound is negative, zero where it must not be, or "
+         "not finite"), // one text
         "no usable segment in the static set within reach",
         "no usable segment in the dynamic set",
         "no permitted transformation brings any two segments together",

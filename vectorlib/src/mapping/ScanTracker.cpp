@@ -160,17 +160,19 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     builder.placed();
 }
 
+VECTORLIB_BODY void ScanTracker::find(const Pose2D &pose, double against) {
+    const Transformation2D expected(builder.report().pose);
+    place(pose, against);
+    if (grows_)
+        place_.find(Transformation2D(pose), expected);
+}
+
 VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
     if (counts_.scans == 0)
         return {};
-    const Transformation2D expected(builder.report().pose);
     const Relocalized &result = search_(builder.map.slots(), builder.edges(), points_);
-    if (!apply || !result.isFound())
-        return result;
-    place(result.places.front().pose, result.places.front().against);
-    if (!grows_)
-        return result;
-    place_.find(Transformation2D(result.places.front().pose), expected);
+    if (apply && result.isFound())
+        find(result.places.front().pose, result.places.front().against);
     return result;
 }
 

@@ -98,6 +98,8 @@ public:
     void place(const Pose2D &pose, double against = 0);
     /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree.
     void claim(const Pose2D &pose);
+    /// The same for a place that a search found; in a map that grows it is to be confirmed.
+    void find(const Pose2D &pose, double against = 0);
     /// The place may be wrong: nothing is mapped until five scans in a row agree with it.
     void doubt() {
         if (grows_ && !builder.map.isEmpty())

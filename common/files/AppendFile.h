@@ -2,7 +2,7 @@
 
 #include <QString>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 /// A new file that only grows, written without buffers of its own, so that what was written survives the end
 /// of the process. Blocks.
@@ -13,11 +13,15 @@ public:
     AppendFile(const AppendFile &) = delete;
     AppendFile &operator=(const AppendFile &) = delete;
 
-    /// Fails on an existing file.
+    /// Fails on an existing file, with errno EEXIST.
     bool create(const QString &path);
     /// False when not all of it could be written; size() tells how much was.
     bool append(const void *bytes, std::size_t size);
     bool truncate(quint64 size);
+    /// Everything that was written is on the disk.
+    bool sync();
+    /// Its name is gone: nobody can find any more what is written.
+    bool isRemoved() const;
     void close();
 
     bool isOpen() const { return file_ >= 0; }
@@ -34,4 +38,4 @@ private:
     quint64 size_ = 0;
 };
 
-} // namespace hermes::seriallogger
+} // namespace hermes

@@ -1,12 +1,13 @@
-#include "daemons/seriallogger/AppendFile.h"
+#include "common/files/AppendFile.h"
 
 #include <QFile>
 
 #include <cerrno>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 bool AppendFile::create(const QString &path) {
     close();
@@ -39,6 +40,15 @@ bool AppendFile::truncate(quint64 size) {
     return true;
 }
 
+bool AppendFile::sync() {
+    return ::fdatasync(file_) == 0 || fail("cannot be written");
+}
+
+bool AppendFile::isRemoved() const {
+    struct stat status {};
+    return ::fstat(file_, &status) != 0 || status.st_nlink == 0;
+}
+
 void AppendFile::close() {
     if (file_ >= 0)
         ::close(file_);
@@ -46,8 +56,10 @@ void AppendFile::close() {
 }
 
 bool AppendFile::fail(const char *what) {
-    error_ = QStringLiteral("%1: %2: %3").arg(path_, QLatin1String(what), qt_error_string());
+    const int code = errno;
+    error_ = QStringLiteral("%1: %2: %3").arg(path_, QLatin1String(what), qt_error_string(code));
+    errno = code;
     return false;
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes
