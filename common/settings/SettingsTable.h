@@ -59,10 +59,10 @@ public:
         if (!isFine)
             refuse(&member, expected);
     }
-    void atMost(const double &member, const double &limit) {
+    void notAbove(const double &member, const double &limit) {
         require(member <= limit, member, QStringLiteral("at most ") + nameOf(&limit));
     }
-    void atLeast(const double &member, const double &limit) {
+    void notBelow(const double &member, const double &limit) {
         require(member >= limit, member, QStringLiteral("at least ") + nameOf(&limit));
     }
     const std::vector<SchemaViolation> &violations() const { return violations_; }

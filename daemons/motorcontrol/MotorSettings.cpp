@@ -154,12 +154,12 @@ void MotorTable::check() {
                                  return other.controller == wheel->controller && other.motor == wheel->motor;
                              }),
                 wheel->motor, "a motor that turns no other wheel");
-    atMost(s.battery.fault, s.battery.warning);
+    notAbove(s.battery.fault, s.battery.warning);
     require(s.gauge.full_v - s.gauge.empty_v >= 0.1 - rounding_v, s.gauge.full_v,
             "at least 0.1 V more than battery.empty_v");
-    atLeast(s.current.fault, s.current.warning);
-    atLeast(s.temperature.fault, s.temperature.warning);
-    atMost(s.encoder.moving, s.encoder.commanded);
+    notBelow(s.current.fault, s.current.warning);
+    notBelow(s.temperature.fault, s.temperature.warning);
+    notAbove(s.encoder.moving, s.encoder.commanded);
     checkWatch();
 }
 

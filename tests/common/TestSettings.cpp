@@ -91,8 +91,8 @@ private Q_SLOTS:
         table.read(declared.inForce());
         QVERIFY(table.low_v == 26.5 && table.full_v == 25 && table.name == "right" && table.port == 65535 &&
                 !table.on);
-        table.atMost(table.low_v, table.full_v);
-        table.atLeast(table.low_v, table.full_v);
+        table.notAbove(table.low_v, table.full_v);
+        table.notBelow(table.low_v, table.full_v);
         table.require(false, table.name, "left");
         QCOMPARE(toString(table.violations()),
                  QString("battery.low_v is 26.5, expected at most battery.full_v; "
