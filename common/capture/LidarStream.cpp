@@ -28,8 +28,8 @@ bool SensorChoice::takes(const Datagram &packet) {
             lastTaken_ns_ = packet.stamp_ns;
         const bool mayBeginAnew =
             sensors_[*taken_].address == packet.source && sensors_[*taken_].port == packet.destinationPort;
-        const auto patience_ns = options_.patience_ns || !mayBeginAnew ? options_.patience_ns : anew_ns;
-        if (!patience_ns || std::abs(packet.stamp_ns - *lastTaken_ns_) <= *patience_ns)
+        const auto timeout_ns = options_.timeout_ns || !mayBeginAnew ? options_.timeout_ns : anew_ns;
+        if (!timeout_ns || std::abs(packet.stamp_ns - *lastTaken_ns_) <= *timeout_ns)
             return false;
     }
     taken_ = found;

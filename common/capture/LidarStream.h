@@ -20,7 +20,7 @@ public:
         std::optional<std::uint32_t> address; ///< only the sensor that has it
         /// Another takes the place of one that has been silent for longer; never without, unless it only
         /// sends from another port: a sensor that began anew may.
-        std::optional<std::int64_t> patience_ns;
+        std::optional<std::int64_t> timeout_ns;
     };
     struct Sensor {
         std::uint32_t address = 0;

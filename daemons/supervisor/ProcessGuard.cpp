@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t maxGroups = 256;
 constexpr int maxDescriptors = 4096;
-constexpr timespec guardPatience{2, 0};
+constexpr timespec guardTimeout{2, 0};
 
 /// Runs in the forked process: calls of the system only, for other threads may have held any lock.
 [[noreturn]] void watch(int changes) {
@@ -38,7 +38,7 @@ constexpr timespec guardPatience{2, 0};
             *place = std::max<pid_t>(change, 0);
     }
     if (std::any_of(groups.begin(), groups.end(), [](pid_t group) { return group > 1; }))
-        ::nanosleep(&guardPatience, nullptr);
+        ::nanosleep(&guardTimeout, nullptr);
     for (const pid_t group : groups)
         if (group > 1)
             ::kill(-group, SIGKILL);

@@ -179,7 +179,7 @@ void SerialProbe::ask() {
 
 /// True: there are controllers. One that answers late spoils the answer of the next: then all are asked
 /// again, more patiently.
-bool SerialProbe::askAt(int baud, int patience_ms) {
+bool SerialProbe::askAt(int baud, int timeout_ms) {
     setBaud(baud);
     bool isSpoilt = false;
     for (int address = roboclaw::firstAddress; address <= roboclaw::lastAddress && !isCancelled_; ++address) {
@@ -189,7 +189,7 @@ bool SerialProbe::askAt(int baud, int patience_ms) {
         if (isGone_)
             return false;
         QString version;
-        const QByteArray answer = receive(patience_ms, [&](const QByteArray &bytes) {
+        const QByteArray answer = receive(timeout_ms, [&](const QByteArray &bytes) {
             version = versionIn(*request, bytes);
             return !version.isEmpty();
         });
@@ -199,7 +199,7 @@ bool SerialProbe::askAt(int baud, int patience_ms) {
         }
         isSpoilt = isSpoilt || (version.isEmpty() && !answer.isEmpty());
     }
-    if (isSpoilt && patience_ms < patientAnswer_ms) {
+    if (isSpoilt && timeout_ms < patientAnswer_ms) {
         found_.addresses.clear();
         found_.text.clear();
         return askAt(baud, patientAnswer_ms);

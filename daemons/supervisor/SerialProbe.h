@@ -34,7 +34,7 @@ private:
     /// True: somebody talks by themselves, and found_ says who.
     bool listen();
     void ask();
-    bool askAt(int baud, int patience_ms);
+    bool askAt(int baud, int timeout_ms);
 
     const SerialCandidate candidate_;
     const bool mayAsk_;

@@ -107,11 +107,11 @@ SupervisedProcess::~SupervisedProcess() {
         return;
     // Of those that were told together none waits for another.
     const bool isTold = state_ == State::Stopping && process_.state() == QProcess::Running;
-    const int patience_ms = isTold ? std::max(kill_.remainingTime(), 1) : int(killAfter.count());
+    const int timeout_ms = isTold ? std::max(kill_.remainingTime(), 1) : int(killAfter.count());
     process_.waitForStarted(int(killAfter.count()));
     if (!isTold)
         process_.terminate();
-    if (!process_.waitForFinished(patience_ms))
+    if (!process_.waitForFinished(timeout_ms))
         process_.kill();
     process_.waitForFinished(1000);
     endFamily();

@@ -7,7 +7,7 @@ namespace hermes::velodynelogger {
 namespace {
 
 /// So long may a sensor be silent before another is decoded.
-constexpr std::int64_t patience_ns = 1000000000;
+constexpr std::int64_t streamTimeout_ns = 1000000000;
 
 /// Of the beams of a turn. The floor alone returns some of every sensor that stands upright and is not
 /// covered.
@@ -57,7 +57,7 @@ void LidarFeed::begin(const Options &options, bool replays) {
     options_ = options;
     replays_ = replays;
     LidarStream::Options stream;
-    stream.sensor = {options.onlyPort, options.sender, patience_ns};
+    stream.sensor = {options.onlyPort, options.sender, streamTimeout_ns};
     stream.model = options.model;
     stream.dataPort = options.dataPort;
     stream_ = LidarStream(stream);

@@ -14,8 +14,8 @@ namespace hermes::velodynelogger {
 namespace {
 
 constexpr int retry_ms = 2;
-constexpr qint64 patience_ms = 5000;
-constexpr qint64 capturePatience_ms = 10000;
+constexpr qint64 roomTimeout_ms = 5000;
+constexpr qint64 captureTimeout_ms = 10000;
 
 Playback::Options replayOptions(const Call &call) {
     return {call.number("speed"), call.flag("loop"), call.flag("paused")};
@@ -268,7 +268,7 @@ bool VelodyneLogger::mayPublish() {
     const bool hasRoomNow = !patient || (hasRoom("scan2d") && hasRoom("cloud"));
     if (hasRoomNow)
         sinceRoom_.start();
-    return hasRoomNow || sinceRoom_.elapsed() >= patience_ms;
+    return hasRoomNow || sinceRoom_.elapsed() >= roomTimeout_ms;
 }
 
 /// One turn, and the next after whatever else waits in the event loop: on a slow machine a message may take
@@ -312,7 +312,7 @@ void VelodyneLogger::tick() {
         double(packets - packetsAtTick_) * 1e9 / double(std::max<qint64>(1, sinceTick_.nsecsElapsed()));
     sinceTick_.start();
     packetsAtTick_ = packets;
-    if (sinceCapture_.isValid() && sinceCapture_.elapsed() > capturePatience_ms) {
+    if (sinceCapture_.isValid() && sinceCapture_.elapsed() > captureTimeout_ms) {
         feed_.cancelCaptures();
         sinceCapture_.invalidate();
     }

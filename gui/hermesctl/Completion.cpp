@@ -18,7 +18,7 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr std::chrono::milliseconds promptPatience{400}; // with a connection, and with each reply
+constexpr std::chrono::milliseconds promptTimeout{400}; // with a connection, and with each reply
 
 struct Candidate {
     QString text;
@@ -79,7 +79,7 @@ private:
         if (option == "--out")
             return {{":files", QString()}};
         if (option == "--host")
-            return plain(knownHosts(promptPatience), before);
+            return plain(knownHosts(promptTimeout), before);
         if (option == "--role")
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option != "--daemons")
@@ -136,11 +136,11 @@ private:
             client_ = std::make_unique<Client>();
             const auto address = daemonAddress(line_.arguments.words.value(0), line_.arguments.host);
             if (address)
-                (void)connectOnce(*client_, *address, promptPatience);
+                (void)connectOnce(*client_, *address, promptTimeout);
         }
         if (!client_->isConnected())
             return {};
-        const auto answer = client_->callAndWait(method, QJsonObject(), promptPatience);
+        const auto answer = client_->callAndWait(method, QJsonObject(), promptTimeout);
         return answer ? *answer : QJsonValue();
     }
 
@@ -209,7 +209,7 @@ private:
     }
 
     Candidates sessions() {
-        line_.arguments.timeout = promptPatience;
+        line_.arguments.timeout = promptTimeout;
         const auto loggers = Loggers::find(line_.arguments);
         if (!loggers)
             return {};

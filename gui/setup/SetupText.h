@@ -7,7 +7,7 @@
 namespace hermes {
 
 /// How long a command of the setup may take: processes end, lines are searched, daemons check their settings.
-constexpr std::chrono::seconds setupPatience{60};
+constexpr std::chrono::seconds setupTimeout{60};
 
 /// What was found and what could not be searched, a row each: what it is, where, details. howToAsk: how
 /// somebody has silent lines asked.

@@ -8,7 +8,7 @@ namespace hermes {
 namespace {
 
 constexpr int reportEvery = 4, askFor = 4;
-constexpr double firstPatience_s = 0.25, leastPatience_s = 0.03, longestPause_s = 1;
+constexpr double firstTimeout_s = 0.25, leastTimeout_s = 0.03, longestPause_s = 1;
 constexpr double growth = 1.5; // of the time between two questions
 constexpr int frameBytes = Piece::headerBytes + pieceBytes + 7;
 
@@ -23,7 +23,7 @@ void LinkPace::measured(double seconds) {
 
 double LinkPace::timeout() const {
     const double ofFrames = bytesPerSecond > 0 ? 4 * frameBytes / bytesPerSecond : 0;
-    return leastPatience_s + ofFrames + (roundTrip_s > 0 ? 2 * roundTrip_s : firstPatience_s);
+    return leastTimeout_s + ofFrames + (roundTrip_s > 0 ? 2 * roundTrip_s : firstTimeout_s);
 }
 
 int OutgoingPieces::nextIndex() const {

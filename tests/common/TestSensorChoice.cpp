@@ -21,7 +21,7 @@ class TestSensorChoice : public QObject {
 
     static SensorChoice patient() {
         SensorChoice::Options options;
-        options.patience_ns = second_ns;
+        options.timeout_ns = second_ns;
         return SensorChoice(options);
     }
 

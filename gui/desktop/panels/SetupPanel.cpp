@@ -198,7 +198,7 @@ void SetupPanel::call(const QString &method, const QJsonObject &params, const Th
         const auto message = readMessage<T>(WireValue(*answer), report);
         message ? then(*message) : message_->tell(method + ": " + report.text(), true);
     };
-    supervisor_->client().call(method, params, answered, setupPatience);
+    supervisor_->client().call(method, params, answered, setupTimeout);
 }
 
 void SetupPanel::find() {
