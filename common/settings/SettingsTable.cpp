@@ -30,9 +30,10 @@ void SettingsTable::read(const QJsonObject &settings) {
 }
 
 QString SettingsTable::nameOf(const void *member) const {
-    return std::find_if(entries_.begin(), entries_.end(),
-                        [member](const Entry &entry) { return entry.member == member; })
-        ->field.name();
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [member](const Entry &entry) { return entry.member == member; });
+    Q_ASSERT(found != entries_.end());
+    return found->field.name();
 }
 
 void SettingsTable::refuse(const void *member, const QString &expected) {

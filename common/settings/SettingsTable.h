@@ -53,7 +53,7 @@ public:
     /// Fills the members from settings that suit the schema.
     void read(const QJsonObject &settings);
 
-    // What the settings that were read demand of one another; members name them.
+    // Settings that were read may demand something of one another: a member stands for its setting.
     template <typename T>
     void require(bool isFine, const T &member, const QString &expected) {
         if (!isFine)

@@ -15,10 +15,10 @@ using roboclaw::Request;
 
 namespace {
 
-constexpr double setupPause_s = 0.25;      // between attempts at a controller that cannot be set up
-constexpr double setupTimeout_s = 0.25;    // a set-up waits for slow adapters, to tell how slow they are
-constexpr double shortestTimeout_s = 0.03; // FTDI adapters hold bytes for up to 16 ms
-constexpr double timeoutMargin_s = 0.1;    // of the controllers' own clock
+constexpr double setupPause_s = 0.25;           // between attempts at a controller that cannot be set up
+constexpr double setupTimeout_s = 0.25;         // a set-up waits for slow adapters, to tell how slow they are
+constexpr double shortestReplyTimeout_s = 0.03; // FTDI adapters hold bytes for up to 16 ms
+constexpr double timeoutMargin_s = 0.1;         // of the controllers' own clock
 constexpr double barredSilence_s = 5;
 constexpr double readingPause_s = 0.02; // while it is seen to stand
 constexpr double standMargin_s = 0.2;   // and half of the time of braking more: motors lag behind
@@ -189,10 +189,10 @@ std::optional<MotorController::Ask> MotorController::dueStop(Task task, double n
         return std::nullopt;
     switch (stopStep_) {
     case StopStep::Tell: // with the ramp, and not waiting for long
-        return barred_ ? ask(Command::Duty, shortestTimeout_s, {0, 0})
-                       : ask(Command::SpeedAccel, shortestTimeout_s, {deceleration_, 0, 0});
+        return barred_ ? ask(Command::Duty, shortestReplyTimeout_s, {0, 0})
+                       : ask(Command::SpeedAccel, shortestReplyTimeout_s, {deceleration_, 0, 0});
     case StopStep::SetTimeout:
-        return ask(Command::SetSerialTimeout, shortestTimeout_s, {setup_.timeoutTenths()});
+        return ask(Command::SetSerialTimeout, shortestReplyTimeout_s, {setup_.timeoutTenths()});
     case StopStep::CutPower:
         return ask(Command::Duty, silence_s(), {0, 0});
     case StopStep::Look:
@@ -205,15 +205,15 @@ std::optional<MotorController::Ask> MotorController::dueReady(Task task) const {
     switch (task) {
     case Task::SetPoint:
         if (obeyed_ != commanded_)
-            return ask(Command::SpeedAccel, timeout_s_, {deceleration_, speeds_[0], speeds_[1]});
+            return ask(Command::SpeedAccel, replyTimeout_s_, {deceleration_, speeds_[0], speeds_[1]});
         break;
     case Task::Encoders:
         if (wantsEncoders_)
-            return ask(Command::ReadEncoders, timeout_s_);
+            return ask(Command::ReadEncoders, replyTimeout_s_);
         break;
     case Task::Background:
         if (wantsSlow_)
-            return ask(ControllerReadings::slowCommand(slow_), timeout_s_);
+            return ask(ControllerReadings::slowCommand(slow_), replyTimeout_s_);
         break;
     }
     return std::nullopt;
@@ -310,7 +310,7 @@ void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome
                              .arg(1 / round, 0, 'f', 1)
                              .arg(leastRate_Hz),
                          now);
-    timeout_s_ = std::clamp(3 * reply, shortestTimeout_s, longestDrivingTimeout_s);
+    replyTimeout_s_ = std::clamp(3 * reply, shortestReplyTimeout_s, longestDrivingReplyTimeout_s);
     becomeReady();
 }
 

@@ -35,7 +35,7 @@ public:
     struct Ask {
         roboclaw::Request request;
         double timeout_s;
-        bool isPatient() const { return timeout_s > longestDrivingTimeout_s; }
+        bool isPatient() const { return timeout_s > longestDrivingReplyTimeout_s; }
     };
 
     /// onLine: controllers that share its line.
@@ -96,7 +96,7 @@ private:
         CutPower,   ///< and wait for the answer in silence
         Look,       ///< whether its encoders say that it stands: it has acknowledged that it shall
     };
-    static constexpr double longestDrivingTimeout_s = 0.06;
+    static constexpr double longestDrivingReplyTimeout_s = 0.06;
 
     std::optional<Ask> due(Task task, double now) const;
     std::optional<Ask> dueStop(Task task, double now) const;
@@ -160,7 +160,7 @@ private:
     double lastDuty_ = 0, nextDuty_ = 0; // while it is not known it is asked again then
 
     // Ready.
-    double timeout_s_ = 0;
+    double replyTimeout_s_ = 0;
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted
     bool toldToTurn_ = false;                       // by the last one that was sent

@@ -69,7 +69,7 @@ public:
     void each(std::vector<T> &values, const Row &row, std::optional<std::size_t> count = {}) {
         if (isWriting_)
             return void(std::for_each(values.begin(), values.end(), row));
-        if (count)
+        if (count && isRight_) // else rows that say how many come, and none do, would take all memory
             values.reserve(std::min(*count, left()));
         while (isRight_ && left() > 0 && values.size() != count)
             row(values.emplace_back());

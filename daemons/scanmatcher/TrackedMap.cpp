@@ -281,10 +281,12 @@ Result<BroughtBack> TrackedMap::undo(bool again) {
     history_.put(std::move(back), again);
     tellSteps();
     const bool isSought = !step->isPose || step->place == PlaceState::Sought;
-    if (step->place == PlaceState::Found)
-        tracker_->find(target);
-    else
+    if (step->place == PlaceState::Found) {
+        tracker_->seek(); // a break of before does not tell that it is nearby
+        tracker_->placeFound(target);
+    } else {
         tracker_->claim(target);
+    }
     if (isSought && !tracker_->builder.map.isEmpty())
         seek();
     place_ = tracker_->placeState();
@@ -305,9 +307,11 @@ void TrackedMap::tellMap(bool isSaved) {
     tracker_->grow(grows_);
     place_ = tracker_->placeState();
     tracker_->builder.map.takeChanges(); // the viewer gets it whole
-    const auto edges = std::make_shared<MapMirror::Edges>();
+    auto edges = std::make_shared<MapMirror::Edges>();
     map().forEach([&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
-    tell([edges, number = number_, isSaved](MapViewer &viewer) { viewer.showMap(edges, number, isSaved); });
+    tell([edges = std::move(edges), number = number_, isSaved](MapViewer &viewer) mutable {
+        viewer.showMap(std::move(edges), number, isSaved);
+    });
 }
 
 // That of the live map, which rests while a replay is mapped.

@@ -27,7 +27,7 @@ struct ScanOutcome {
     std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
 };
 
-/// Who shows the map that scans are matched with, in another thread.
+/// A viewer shows the map that scans are matched with, in another thread.
 class MapViewer {
 public:
     using Edges = std::shared_ptr<MapMirror::Edges>;

@@ -10,10 +10,11 @@ namespace {
 constexpr std::chrono::seconds again{5};
 constexpr std::chrono::milliseconds moment{20}; // is enough for most disks
 
-Error keptElsewhere() {
+Error keptElsewhere(const QString &file) {
     return Error(ErrorCode::NotReady,
-                 QObject::tr("Another window keeps the layouts; what is set here is kept only "
-                             "until this window is closed."));
+                 QObject::tr("Another window keeps the layouts; what is set here is kept only until this "
+                             "window is closed. Where there is no other window, remove %1.lock")
+                     .arg(file));
 }
 
 Error changedElsewhere(const QString &file) {
@@ -31,10 +32,10 @@ LayoutKeeper::LayoutKeeper(Layouts &layouts, QObject *parent)
     , layouts_(layouts)
     , lock_(layouts.file() + ".lock")
     , expected_(layouts.fingerprint()) {
-    lock_.setStaleLockTime(0); // it ends with its process, at the earliest
+    lock_.setStaleLockTime(0); // only that of a process that has ended is void
     since_.start();
     if (isKept() && !lock())
-        setOutcome(keptElsewhere());
+        setOutcome(keptElsewhere(layouts_.file()));
 }
 
 LayoutKeeper::~LayoutKeeper() {
@@ -84,7 +85,7 @@ bool LayoutKeeper::lock() {
 /// In the thread that writes.
 Result<void> LayoutKeeper::write(const Layouts &taken) {
     if (!lock())
-        return keptElsewhere();
+        return keptElsewhere(layouts_.file());
     const QByteArray found = Layouts::fingerprintOf(taken.file());
     if (!found.isEmpty() && found != expected_)
         return changedElsewhere(taken.file());

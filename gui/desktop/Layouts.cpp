@@ -139,12 +139,13 @@ void Layouts::read() {
     const QFileInfo info(file_), before(info.path() + '/' + info.completeBaseName() + ".ini");
     if (file_.isEmpty() || !(info.exists() || before.isFile()))
         return;
-    const auto refuse = [this](const QString &why) {
-        problem_ = tr("The layout of the window and the robots are not kept: %1 %2").arg(file_, why);
+    QFile content(info.exists() ? file_ : before.filePath());
+    const auto refuse = [&](const QString &why) {
+        problem_ =
+            tr("The layout of the window and the robots are not kept: %1 %2").arg(content.fileName(), why);
     };
     if (info.exists() && !info.isFile())
         return refuse(tr("is no file"));
-    QFile content(info.exists() ? file_ : before.filePath());
     if (!content.open(QIODevice::ReadOnly))
         return refuse(tr("cannot be read: %1").arg(content.errorString()));
     const QByteArray text = content.read(largestFile + 1);
@@ -250,7 +251,8 @@ Result<void> Layouts::save() const {
     const Result<void> saved = saveFile(file_, text);
     return saved ? saved
                  : Error(ErrorCode::InputOutput,
-                         tr("The layout of the window and the robots could not be written to %1").arg(file_));
+                         tr("The layout of the window and the robots could not be written: %1")
+                             .arg(saved.error().message));
 }
 
 QByteArray Layouts::json() const {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <QtTest>
 #include <cstdint>
+#include <functional>
+#include <malloc.h>
 
 /// Lets a minute of simulated traffic settle the heap; then hours of it ($HERMES_TRAFFIC_HOURS, half of one
 /// where it is not set) must not make it grow. run: makes traffic of so many seconds; bytes: how much it

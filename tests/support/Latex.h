@@ -1,6 +1,8 @@
 #pragma once
 
 #include <QFileInfo>
+#include <QProcess>
+#include <QStandardPaths>
 
 namespace hermes {
 

@@ -1,6 +1,10 @@
 #pragma once
 
 #include "protocol/serial/SerialLink.h"
+#include <array>
+#include <deque>
+#include <functional>
+#include <vector>
 
 namespace hermes {
 

@@ -2,6 +2,8 @@
 
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include <random>
+#include <vector>
 
 /// A room of made-up shape with obstacles, and two poses inside; metres, free space on the left.
 struct RandomRoom {

@@ -285,16 +285,17 @@ void MapMenu::undo(bool again) {
              if (isMap)
                  brought += ' ' + tr("The map has %1 walls.").arg(back["segments"].toDouble());
              if (isPose)
-                 return Q_EMIT told(brought + ' ' + tr("Its place counts once scans agree."), false);
+                 return Q_EMIT told(
+                     brought + ' ' + tr("Its place counts once scans agree, or a second search confirms it."),
+                     false);
              Q_EMIT told(brought + ' ' + tr("The robot is sought in it."), false);
              Q_EMIT sought(brought);
          });
 }
 
 void MapMenu::confirm() {
-    ask(tr("Is the robot really where the map shows it? What it sees is drawn there from now on, whatever "
-           "the "
-           "scans say."),
+    ask(tr("Is the robot really where the map shows it, and does it stand? What it sees is drawn there from "
+           "now on, whatever the scans say."),
         tr("It is there"), [this] { Q_EMIT confirmed(); });
 }
 

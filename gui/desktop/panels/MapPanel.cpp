@@ -82,6 +82,8 @@ void MapPanel::addMap(QToolBar &bar) {
         if (const std::optional<Pose2D> pose = model_.pose())
             ask("pose.set", {{"x", pose->x}, {"y", pose->y}, {"theta", pose->theta}, {"confirm", true}},
                 tr("The place is confirmed. Map, Undo takes it back."));
+        else
+            message_->tell(tr("The scan matcher has told no pose as yet."), true);
     });
     connect(&model_, &MapModel::changed, this, &MapPanel::tellFound);
 }

@@ -79,7 +79,7 @@ VECTORLIB_BODY std::optional<Vector2D<double>> ScanLocator::disputed(MapBuilder 
         if (wall.observations >= knownForLong)
             known.add(wall.segment.normal(), builder.edges()[std::size_t(pair.moving)].segment.length());
     }
-    if (known.isEmpty() || known.reliability() > openReliability)
+    if (known.isEmpty() || known.reliability() > OpenDirection::openReliability)
         return std::nullopt;
     const Vector2D<double> open = known.weakest();
     const double along = open.dot(off);

@@ -160,11 +160,14 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     builder.placed();
 }
 
-VECTORLIB_BODY void ScanTracker::find(const Pose2D &pose, double against) {
+VECTORLIB_BODY void ScanTracker::placeFound(const Pose2D &pose, double against) {
     const Transformation2D expected(builder.report().pose);
+    const PlaceKnowledge before = place_; // it may have broken off
     place(pose, against);
-    if (grows_)
-        place_.find(Transformation2D(pose), expected);
+    if (!grows_)
+        return;
+    place_ = before;
+    place_.find(Transformation2D(pose), expected);
 }
 
 VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
@@ -172,7 +175,7 @@ VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
         return {};
     const Relocalized &result = search_(builder.map.slots(), builder.edges(), points_);
     if (apply && result.isFound())
-        find(result.places.front().pose, result.places.front().against);
+        placeFound(result.places.front().pose, result.places.front().against);
     return result;
 }
 

@@ -25,11 +25,12 @@ public:
     void place() {
         state_ = PlaceState::Known;
         agreed_ = 0;
+        isBent_ = false;
     }
-    /// The place may be wrong: five scans in a row have to agree with it.
-    void doubt() {
+    /// The place may be wrong: five scans in a row have to agree with it, where that matters.
+    void doubt(bool matters) {
         agreed_ = 0;
-        if (isKnown())
+        if (isKnown() && matters)
             state_ = PlaceState::Told;
     }
     /// The place is not known: it is sought everywhere.
@@ -45,6 +46,7 @@ public:
     /// A search found the place at a pose, where another one was expected.
     void find(const Transformation2D &found, const Transformation2D &expected) {
         state_ = PlaceState::Found;
+        agreed_ = 0;
         searchedAt_ = found;
         isBent_ = isBent_ && !(expected.inverse() * found).exceeds(bend_m, bend_rad);
     }
@@ -53,7 +55,7 @@ public:
         agreed_ = agrees ? agreed_ + 1 : 0;
         if ((state_ == PlaceState::Told && agreed_ >= enoughToAgree) ||
             (state_ == PlaceState::Found && isBent_ && agreed_ > 0))
-            state_ = PlaceState::Known;
+            place();
     }
     /// What is found in a map that is not complete may lie outside of it. A second search decides: whether
     /// the sensor is far enough from the first for one.
@@ -69,7 +71,7 @@ public:
         if ((pose.inverse() * *found).exceeds(same_m, same_rad))
             seek();
         else
-            state_ = PlaceState::Known;
+            place();
     }
     /// The map was made anew: what was in it lies elsewhere.
     void move(const Transformation2D &moved) { searchedAt_ = moved * searchedAt_; }

@@ -23,7 +23,7 @@ struct LocatedScan {
     Transformation2D way;         ///< to it from the pose of the scan before
     bool isOdometryKnown = false; ///< the odometry tells that pose
     bool byOdometry = false;      ///< the scan was found from there, and not by the motion so far
-    bool isWellExpected = false;  ///< so, or soon after the scan before
+    bool isWellExpected = false;  ///< by the odometry, or soon after the scan before
     bool isDisputed = false;      ///< the scans tell another way along open walls: the odometry counts
     bool isStraight = true;       ///< else the scan is in doubt, and stays bent
 };
@@ -62,8 +62,6 @@ private:
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int maxTries = 3;
-    // Below that reliability the walls leave a direction open.
-    static constexpr double openReliability = 0.1;
     static constexpr std::int64_t knownForLong = 10;        // scans
     static constexpr double close_m = 0.2, close_rad = 0.2; // between two scans
     static constexpr double odometryErrs = 2, leastErr_m = 0.01,

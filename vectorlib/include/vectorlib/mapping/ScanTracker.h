@@ -98,13 +98,10 @@ public:
     void place(const Pose2D &pose, double against = 0);
     /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree.
     void claim(const Pose2D &pose);
-    /// The same for a place that a search found; in a map that grows it is to be confirmed.
-    void find(const Pose2D &pose, double against = 0);
+    /// Puts the sensor where a search found it; in a map that grows that is to be confirmed.
+    void placeFound(const Pose2D &pose, double against = 0);
     /// The place may be wrong: nothing is mapped until five scans in a row agree with it.
-    void doubt() {
-        if (grows_ && !builder.map.isEmpty())
-            place_.doubt();
-    }
+    void doubt() { place_.doubt(grows_ && !builder.map.isEmpty()); }
     /// The place in the map is not known: scans count as lost until it is found or told.
     void seek();
     /// What is known of the place in the map. Nothing is mapped but where it is Known.
@@ -163,8 +160,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr double claimed = 0.5; // trust of a place that is not known yet, for that of one that is
-    // Below that reliability the walls leave a direction open; that of a pose that the odometry tells there.
-    static constexpr double openReliability = 0.1, coveredReliability = 0.7;
+    static constexpr double openReliability = OpenDirection::openReliability;
+    static constexpr double coveredReliability = 0.7; // of a pose that the odometry tells there
     static constexpr double fewMatched = 0.6; // of the seen length: then the odometry tells nothing more
     // Two scans so close together must show about the same: less than this share of the points is suspicious.
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;

@@ -13,6 +13,9 @@ namespace vectorlib {
 /// by the odometry, or by the motion so far. Learns from the drive by how much the odometry errs.
 class OpenDirection {
 public:
+    /// Below that reliability walls leave a direction open.
+    static constexpr double openReliability = 0.1;
+
     /// A scan was taken at a pose (map frame). `isOpen`: the walls left a direction open, or showed nothing.
     /// The odometry is that of the robot during the scan, where there was any; `mount` the sensor's pose on
     /// it.
