@@ -38,6 +38,9 @@ Result<CommandLine> CommandLine::parse(const QStringList &arguments) {
         if (!inOne && ++i == arguments.size())
             return Error(ErrorCode::InvalidParams, QString("option %1 needs a value").arg(option));
         const QString value = inOne ? word.section('=', 1) : arguments.at(i);
+        if (value.isEmpty())
+            return Error(ErrorCode::InvalidParams,
+                         QString("option %1 needs a value that is not empty").arg(option));
         if (option == "--config") {
             result.config = value;
         } else if (option == "--listen") {

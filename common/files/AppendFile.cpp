@@ -49,6 +49,14 @@ bool AppendFile::isRemoved() const {
     return ::fstat(file_, &status) != 0 || status.st_nlink == 0;
 }
 
+bool AppendFile::isChanged() const {
+    struct stat status {
+    }, named{};
+    return ::fstat(file_, &status) != 0 || quint64(status.st_size) != size_ ||
+           ::stat(QFile::encodeName(path_).constData(), &named) != 0 || named.st_ino != status.st_ino ||
+           named.st_dev != status.st_dev;
+}
+
 void AppendFile::close() {
     if (file_ >= 0)
         ::close(file_);

@@ -22,6 +22,8 @@ public:
     bool sync();
     /// Its name is gone: nobody can find any more what is written.
     bool isRemoved() const;
+    /// The same, or it was moved away, or another program has written to it or cut it.
+    bool isChanged() const;
     void close();
 
     bool isOpen() const { return file_ >= 0; }

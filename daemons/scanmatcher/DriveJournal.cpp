@@ -157,6 +157,10 @@ DriveJournal::Written DriveJournal::File::write(const QByteArray &bytes) {
             return {true, fault};
     if (isRemoved())
         return {false, path() + ": was removed; a new journal begins with the whole drive"};
+    if (isChanged())
+        return {false,
+                path() +
+                    ": was moved or changed by another program; a new journal begins with the whole drive"};
     const quint64 whole = size();
     if (qint64(whole) + bytes.size() > largestJournal)
         return {true, QString("%1: would have more than %2 bytes: the rest of the drive is not in it")

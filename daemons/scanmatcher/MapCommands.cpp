@@ -93,6 +93,12 @@ MapPath ScanMatcher::mapPath(const Call &call) {
 
 // The worker gives a copy of the map as it is after the commands before this one, and goes on matching.
 void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &reply) {
+    if (isDriveJournal(mapPath(call)))
+        return reply.error(
+            {ErrorCode::InvalidParams,
+             QString("path is \"%1\", expected another ending: files that end in .journal hold "
+                     "drives, and a map in one could not be loaded")
+                 .arg(call.text("path"))});
     if (filesUnderWay_ >= maxFiles)
         return reply.error(
             {ErrorCode::NotReady, QString("%1 files are being written already").arg(maxFiles)});

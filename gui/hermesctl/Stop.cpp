@@ -22,11 +22,14 @@ public:
         : arguments_(arguments)
         , method_(method) {}
 
-    void stop(const QString &address) {
+    /// isNamed: whoever asks means this one, so that it is told when it is not there.
+    void stop(const QString &address, bool isNamed = false) {
         if (asked_.contains(address))
             return;
         asked_.insert(address);
         Client *const client = clients_.emplace_back(std::make_unique<Client>()).get();
+        if (isNamed)
+            missing_[client] = {address, "no connection"};
         ++open_;
         QObject::connect(client, &Client::connected, &loop_, [this, client] {
             waiting_.insert(client);
@@ -36,11 +39,15 @@ public:
                 arguments_.timeout, Client::Repeats::AtOnce);
         });
         QObject::connect(client, &Client::disconnected, &loop_, [this, client] {
-            if (!waiting_.contains(client)) // else its call tells
+            if (!waiting_.contains(client)) { // else its call tells
+                miss(client, client->problem());
                 finish(client);
+            }
         });
-        if (!client->connectTo(asOwner(address)))
+        if (const auto begun = client->connectTo(asOwner(address)); !begun) {
+            miss(client, begun.error().message);
             finish(client);
+        }
     }
 
     void wait() {
@@ -50,8 +57,11 @@ public:
     }
 
     Result<void> outcome() {
-        for (const Client *client : qAsConst(waiting_))
-            note(client->address(), false, "does not answer");
+        for (Client *client : qAsConst(waiting_))
+            note(client, false, "does not answer");
+        const bool isNobody = told_.isEmpty();
+        for (const auto &[address, why] : qAsConst(missing_))
+            note(nullptr, false, QString(why).remove("tcp://" + address + ": "), address);
         if (arguments_.json)
             printJson(told_);
         if (told_.isEmpty())
@@ -59,6 +69,8 @@ public:
                          QString("no robot is there: no daemon at %1, or announced on the network, has %2; "
                                  "hermesctl call HOST:PORT %2 calls another one")
                              .arg(arguments_.host, method_));
+        if (isNobody)
+            return Error(ErrorCode::Disconnected, "no robot is there: " + unconfirmed_.join("; "));
         return unconfirmed_.isEmpty() ? Result<void>()
                                       : Error(ErrorCode::DeviceFault, unconfirmed_.join("; "));
     }
@@ -71,15 +83,18 @@ private:
             return client->call(
                 "process.list", QJsonObject(),
                 [this, client](const Result<QJsonValue> &list) {
+                    miss(client, "has no " + method_);
                     for (const QJsonValue &process : list ? (*list)["processes"].toArray() : QJsonArray())
-                        if (const int port = process["port"].toInt(); port != 0)
+                        if (const int port = process["port"].toInt(); port != 0) {
+                            missing_.remove(client);
                             stop(QString("%1:%2").arg(arguments_.host).arg(port));
+                        }
                     finish(client);
                 },
                 arguments_.timeout);
         ReadReport report;
         const auto told = result ? readMessage<StandConfirmation>(WireValue(*result), report) : std::nullopt;
-        note(client->address(), told && told->confirmed,
+        note(client, told && told->confirmed,
              !result           ? result.error().message
              : !told           ? report.text()
              : told->confirmed ? "stands"
@@ -87,7 +102,16 @@ private:
         finish(client);
     }
 
-    void note(const QString &address, bool stands, const QString &text) {
+    void miss(Client *client, const QString &why) {
+        if (missing_.contains(client))
+            missing_[client].second = why;
+    }
+
+    void note(Client *client, bool stands, const QString &text, QString address = QString()) {
+        if (client) {
+            missing_.remove(client);
+            address = client->address();
+        }
         told_.append(QJsonObject{{"address", address}, {"confirmed", stands}, {"text", text}});
         if (!stands)
             unconfirmed_.append(address + ": " + text);
@@ -106,8 +130,9 @@ private:
     const QString method_;
     QEventLoop loop_;
     QSet<QString> asked_;
-    QSet<Client *> waiting_; // for an answer
-    int open_ = 0;           // that may still answer, or be connected
+    QSet<Client *> waiting_;                               // for an answer
+    QHash<Client *, std::pair<QString, QString>> missing_; // that were named: address, and why
+    int open_ = 0;                                         // that may still answer, or be connected
     QJsonArray told_;
     QStringList unconfirmed_;
     std::vector<std::unique_ptr<Client>> clients_; // go first: what ends with them is still told
@@ -119,7 +144,7 @@ Result<void> stopAll(const Arguments &arguments, const QString &method) {
         const auto address = daemonAddress(daemon, arguments.host);
         if (!address)
             return address.error();
-        stopping.stop(*address);
+        stopping.stop(*address, !arguments.words.isEmpty());
     }
     constexpr std::chrono::milliseconds shortly{300};
     if (arguments.words.isEmpty()) {

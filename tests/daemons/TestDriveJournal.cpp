@@ -208,18 +208,44 @@ private Q_SLOTS:
         QVERIFY2(nowhere.state().fault.contains("cannot be made"), qPrintable(nowhere.state().fault));
     }
 
-    void aRemovedFileBeginsAnew() {
+    void aFileThatOthersTouchBeginsAnew_data() {
+        const Rows<QString, QString> row("how", "told");
+        row("removed", "removed", "was removed");
+        row("moved", "moved", "was moved or changed");
+        row("cut", "cut", "was moved or changed");
+        row("added to", "added", "was moved or changed");
+        row("another in its place", "replaced", "was removed");
+    }
+
+    void aFileThatOthersTouchBeginsAnew() {
+        FETCH(QString, how, QString, told);
         MappedDrive memory;
         drive(memory, 0, 50);
         DriveJournal journal(folder->path(), "drive.journal");
         journal.finish(memory, trust);
-        QVERIFY(QFile::remove(journal.state().path));
+        const QString path = journal.state().path;
+        QFile file(path);
+        if (how == "moved")
+            QVERIFY(QFile::rename(path, path + ".kept"));
+        else if (how == "cut")
+            QVERIFY(file.resize(100));
+        else if (how == "added")
+            QVERIFY(file.open(QIODevice::Append) && file.write("other") == 5);
+        else
+            QVERIFY(file.remove());
+        if (how == "replaced")
+            put(path, "other");
+        file.close();
+        const QByteArray theirs = contentOf(path);
         drive(memory, 50, 100);
         journal.finish(memory, trust);
-        QVERIFY(journal.state().fault.contains("removed"));
+        QVERIFY2(journal.state().fault.contains(told), qPrintable(journal.state().fault));
+        QCOMPARE(contentOf(path), theirs);
         journal.finish(memory, trust);
         QCOMPARE(journal.state().fault, QString());
-        QCOMPARE(difference(memory, read().drive), QString());
+        const auto read = readDriveJournal(contentOf(journal.state().path), "drive.journal");
+        QVERIFY(read.ok());
+        QCOMPARE(difference(memory, read->drive), QString());
     }
 
     // Reading and the map made of it; HERMES_JOURNAL_SCANS: how many.

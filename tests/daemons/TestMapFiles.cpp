@@ -82,6 +82,17 @@ private Q_SLOTS:
         QCOMPARE(call("matcher.state")["map_segments"].toInt(), 10);
     }
 
+    void noMapIsWrittenIntoAJournal() {
+        for (const QString format : {"csv", "svg"}) {
+            const auto error =
+                failure("map.export", {{"path", "a.journal"}, {"format", format}, {"force", true}});
+            QVERIFY2(error.is(ErrorCode::InvalidParams), qPrintable(error.message));
+            QVERIFY2(error.message.contains("a.journal"), qPrintable(error.message));
+        }
+        QVERIFY(failure("map.save", {{"path", "a.journal"}}).is(ErrorCode::InvalidParams));
+        QVERIFY(!QFileInfo::exists(folder->filePath("a.journal")));
+    }
+
     void filesAreWrittenInTheOrderOfTheCommands() {
         writeMap(folder->filePath("ten.csv"), 10);
         writeMap(folder->filePath("five.csv"), 5);

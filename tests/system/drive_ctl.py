@@ -298,9 +298,11 @@ class Drive(unittest.TestCase):
             supervisor = Process(BINARIES, "supervisor", free_port(0), folder, {"processes": json.dumps([entry])})
             try:
                 supervisor.connect().close()
-                for words in (("stop", nobody, self.address), ("stop", f"127.0.0.1:{supervisor.port}")):
+                for words, status in ((("stop", nobody, self.address), 1), (("stop", f"127.0.0.1:{supervisor.port}"), 0)):
                     process = self.begun("vx=0.3")
-                    self.assertIn(f"127.0.0.1:{self.motorcontrol.port}: stands", stopped(*words))
+                    said = stopped(*words, status=status)
+                    self.assertIn(f"127.0.0.1:{self.motorcontrol.port}: stands", said)
+                    self.assertEqual(nobody in said, nobody in words)  # who was named and is not there is told
                     self.assertEqual(process.wait(20), 1)  # it has lost the control
                     process.communicate()
                     self.assertFalse(self.motors.call("motor.state")["estop"])
