@@ -3,9 +3,8 @@
 #include "daemons/scanmatcher/MapCorrector.h"
 #include "daemons/scanmatcher/MapFile.h"
 #include "daemons/scanmatcher/MapHistory.h"
-#include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/MatcherMessages.h"
-#include "protocol/messages/Matching.h"
+#include "daemons/scanmatcher/ScanOutcome.h"
 
 #include <QObject>
 #include <atomic>
@@ -13,19 +12,6 @@
 #include <optional>
 
 namespace hermes::scanmatcher {
-
-/// What a scan gave.
-struct ScanOutcome {
-    ScanResult result;
-    MapChanges changes;
-    vectorlib::ScanTrackerCounts counts;
-    vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
-    std::size_t points = 0; ///< of the scan
-    std::optional<vectorlib::OdometryCheck::Ways> contradiction;
-    vectorlib::ScannerCheck scanner;
-    bool replayed = false;
-    std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
-};
 
 /// A viewer shows the map that scans are matched with, in another thread.
 class MapViewer {
