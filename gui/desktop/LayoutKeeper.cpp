@@ -79,7 +79,9 @@ void LayoutKeeper::begin() {
 /// False: another window holds it. Where nothing can be locked, nobody does.
 bool LayoutKeeper::lock() {
     QDir().mkpath(QFileInfo(layouts_.file()).absolutePath());
-    return lock_.isLocked() || lock_.tryLock() || lock_.error() != QLockFile::LockFailedError;
+    // A file of a process that has ended can be removed, whatever is in it.
+    return lock_.isLocked() || lock_.tryLock() || (lock_.removeStaleLockFile() && lock_.tryLock()) ||
+           lock_.error() != QLockFile::LockFailedError;
 }
 
 /// In the thread that writes.

@@ -210,6 +210,34 @@ private Q_SLOTS:
         QVERIFY(Layouts(file_).names().contains("more")); // the window had it
     }
 
+    void aLockOfNobodyHoldsNothingUp_data() {
+        const Rows<QByteArray> row("lock");
+        row("empty", QByteArray());
+        row("no lock", QByteArray(10000, 'x'));
+        row("of another host", QByteArray("1\nhermes-gui\nelsewhere\n\n\n"));
+        row("of a program that was killed", QByteArray("hermes-gui"));
+    }
+
+    void aLockOfNobodyHoldsNothingUp() {
+        QFETCH(QByteArray, lock);
+        QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
+        if (lock == "hermes-gui") {
+            QProcess program;
+            program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
+                          {"--connect", "127.0.0.1:1", "--layout", file_});
+            QTRY_VERIFY_WITH_TIMEOUT(QFileInfo::exists(file_), 20000);
+            program.kill();
+            QVERIFY(program.waitForFinished());
+            QVERIFY(QFileInfo::exists(file_ + ".lock"));
+        } else {
+            put(file_ + ".lock", lock);
+        }
+        LayoutWindow one(file_, {"127.0.0.1:1"});
+        QCOMPARE(one.notice(), QString());
+        one.saveAs("mine");
+        QTRY_VERIFY(Layouts(file_).names().contains("mine"));
+    }
+
     void iniOfBeforeIsTakenOver() {
         const QString ini = folder_->filePath("gui.ini");
         put(ini, "[window]\nlayout=Bench\n[layouts]\nsize=1\n1\\name=Bench\n1\\plots=\"{\\\"panes\\\":[]}\"\n"
