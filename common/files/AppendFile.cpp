@@ -15,6 +15,7 @@ bool AppendFile::create(const QString &path) {
     size_ = 0;
     file_ =
         ::open(QFile::encodeName(path).constData(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
+    isNamed_ = file_ >= 0 && isAtPath();
     return file_ >= 0 || fail("cannot be made");
 }
 
@@ -50,11 +51,15 @@ bool AppendFile::isRemoved() const {
 }
 
 bool AppendFile::isChanged() const {
+    struct stat status {};
+    return ::fstat(file_, &status) != 0 || quint64(status.st_size) != size_ || (isNamed_ && !isAtPath());
+}
+
+bool AppendFile::isAtPath() const {
     struct stat status {
     }, named{};
-    return ::fstat(file_, &status) != 0 || quint64(status.st_size) != size_ ||
-           ::stat(QFile::encodeName(path_).constData(), &named) != 0 || named.st_ino != status.st_ino ||
-           named.st_dev != status.st_dev;
+    return ::fstat(file_, &status) == 0 && ::stat(QFile::encodeName(path_).constData(), &named) == 0 &&
+           named.st_ino == status.st_ino && named.st_dev == status.st_dev;
 }
 
 void AppendFile::close() {

@@ -34,9 +34,11 @@ public:
 
 private:
     bool fail(const char *what);
+    bool isAtPath() const;
 
     QString path_, error_;
     int file_ = -1;
+    bool isNamed_ = false; // its path led to it at first: not all file systems tell
     quint64 size_ = 0;
 };
 
