@@ -54,7 +54,9 @@ void MapCorrector::beginDrive(quint64 scans) {
         const std::lock_guard lock(mutex_);
         ++drive_;
         taken_ = scans;
-        state_.isFull = false;
+        state_.isFull = state_.isDue = false;
+        state_.keys = state_.bytes = 0;
+        state_.loops = {};
     }
     added_ = scans;
     pose_.reset();
@@ -281,6 +283,8 @@ void MapCorrector::remember(const Item &item) {
 
 void MapCorrector::tellMemory() {
     const std::lock_guard lock(mutex_);
+    if (remembered_ != drive_)
+        return; // another drive has begun
     state_.keys = memory_.loops.graph().poses.size();
     state_.loops = memory_.loops.counts();
     state_.isDue = state_.isUnderWay || memory_.loops.hasNews();

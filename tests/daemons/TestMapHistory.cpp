@@ -65,8 +65,10 @@ private Q_SLOTS:
         drive(0, 10);
         const QJsonArray before = call("map.get")["edges"].toArray();
         QVERIFY(!before.isEmpty());
+        QTRY_VERIFY(call("matcher.state")["key_scans"].toInt() > 0);
         call("map.clear");
-        call("map.clear"); // an empty map replaces nothing
+        QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0); // at once
+        call("map.clear");                                       // an empty map replaces nothing
         QCOMPARE(call("map.undo")["segments"].toInt(), before.size());
         const QJsonArray back = call("map.get")["edges"].toArray();
         QCOMPARE(back.size(), before.size());
