@@ -84,6 +84,23 @@ private Q_SLOTS:
         QVERIFY(tail.ok() && tail->leftOut > 0 && tail->drive.loops.scans() == read->drive.loops.scans());
     }
 
+    // Of a table with a wrong number no row is read, however many the others say that there are.
+    void wrongTablesTakeNoMemory() {
+        const auto peak = [] { // of the address space; MB
+            const QByteArray status = contentOf("/proc/self/status");
+            return status.mid(status.indexOf("VmPeak:") + 7).simplified().split(' ').value(0).toDouble() /
+                   1024;
+        };
+        Tables tables;
+        tables.edges.assign(100000, -1);
+        for (int i = 1; i < 3000; ++i)
+            tables.scans.insert(tables.scans.end(), {0, 0, 0, 0, 0, 1, 99999});
+        const QByteArray bytes = firstItem() + item(tables.content());
+        const double before = peak();
+        QVERIFY(!readDriveJournal(bytes, "hostile.journal"));
+        QVERIFY2(peak() - before < 1000, saying("%1 MB", peak() - before));
+    }
+
     // Each byte of a small journal, with a sum that is right; and each place where it may be cut.
     void anyByteMayBeWrong() {
         const QByteArray content = Tables().addKey().addMotion().content(), first = firstItem();
