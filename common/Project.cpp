@@ -13,7 +13,7 @@ struct KnownDaemon {
 // docs/protocol.md, default ports.
 const KnownDaemon knownDaemons[] = {
     {"supervisor", 7400},      {"motorcontrol", 7410}, {"velodynelogger", 7420}, {"seriallogger", 7430},
-    {"softwaretrigger", 7440}, {"scanmatcher", 7450},  {"simulator", 7490},
+    {"softwaretrigger", 7440}, {"scanmatcher", 7450},  {"recorder", 7460},       {"simulator", 7490},
 };
 
 } // namespace

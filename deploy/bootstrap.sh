@@ -3,7 +3,7 @@
 
 hermes_tool_packages=(build-essential cmake ninja-build pkg-config python3)
 hermes_library_packages=(
-    qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libsdl2-dev libeigen3-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev zlib1g-dev
+    qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libsdl2-dev libeigen3-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev libzstd-dev zlib1g-dev
 )
 hermes_build_packages=("${hermes_tool_packages[@]}" "${hermes_library_packages[@]}")
 hermes_package_packages=(debhelper dpkg-dev fakeroot help2man)

@@ -394,6 +394,7 @@ void Client::deliver(int handle, const QJsonObject &params, const WireValue &dat
             {ErrorCode::InvalidParams,
              QStringLiteral("topic %1: stamp: found %2, expected seconds since the Unix epoch")
                  .arg(update.topic, QString::fromUtf8(compactJson(params.value(QStringLiteral("stamp")))))});
+    update.replayed = params.value(QStringLiteral("replayed")).toBool();
     // Of a message in a batch they were read with the rest.
     update.data =
         data.kind() == WireView::Kind::Undefined ? WireValue(params.value(QStringLiteral("data"))) : data;

@@ -19,9 +19,10 @@ namespace hermes {
 struct TopicUpdate {
     int handle = 0; ///< what Client::subscribe gave
     QString topic;
-    quint64 seq = 0;     ///< counts the publications; a gap was thinned out or dropped
-    quint64 dropped = 0; ///< lost so far because this client read too slowly
-    double stamp = 0;    ///< seconds since the epoch when the data were true
+    quint64 seq = 0;       ///< counts the publications; a gap was thinned out or dropped
+    quint64 dropped = 0;   ///< lost so far because this client read too slowly
+    double stamp = 0;      ///< seconds since the epoch when the data were true
+    bool replayed = false; ///< it was recorded, and says nothing of now
     WireValue data;
 
     QJsonValue json() const { return data.toJson(); }

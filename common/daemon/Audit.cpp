@@ -2,6 +2,7 @@
 
 #include "common/Time.h"
 #include "common/files/Folder.h"
+#include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QJsonArray>
@@ -70,21 +71,18 @@ QJsonValue shortened(const QJsonValue &value, int &left) {
     return result;
 }
 
-QJsonObject entryOf(const Call &call, const Command &command, const QJsonValue &params,
-                    const Result<QJsonValue> &result) {
-    QJsonObject entry{{QStringLiteral("stamp"), stampNow()},
-                      {QStringLiteral("client"), call.clientName},
-                      {QStringLiteral("role"), toString(call.role)},
-                      {QStringLiteral("method"), command.name()}};
+CommandMessage entryOf(const Call &call, const Command &command, const QJsonValue &params,
+                       const Result<QJsonValue> &result) {
+    CommandMessage entry{stampNow(), call.clientName, toString(call.role), command.name(), {}, {}, {}, {}};
     int left = longestParams;
     takeFrom(left, params);
     const bool isLong = left < 0;
     left = longestParams;
     if (!params.isUndefined())
-        entry.insert(QStringLiteral("params"), isLong ? shortened(params, left) : params);
+        entry.params = isLong ? shortened(params, left) : params;
     if (!result) {
-        entry.insert(QStringLiteral("error"), result.error().code);
-        entry.insert(QStringLiteral("message"), result.error().message.left(longestParams));
+        entry.error = result.error().code;
+        entry.message = result.error().message.left(longestParams);
     }
     return entry;
 }
@@ -121,28 +119,30 @@ void Audit::fillAllowance() {
     filled_ = now;
 }
 
-void Audit::append(const QJsonObject &entry) {
-    const QByteArray line = compactJson(entry);
+void Audit::append(const CommandMessage &entry) {
+    const QByteArray line = compactJson(asJson(entry));
     allowance_ = std::max(0.0, allowance_ - line.size());
-    file_->append(line);
+    if (file_)
+        file_->append(line);
+    Q_EMIT noted(entry);
 }
 
 void Audit::note(const Call &call, const Command &command, const QJsonValue &params,
                  const Result<QJsonValue> &result) {
-    if (!file_ || !command.isAudited())
+    if (!command.isAudited())
         return;
-    QJsonObject entry = entryOf(call, command, params, result);
+    CommandMessage entry = entryOf(call, command, params, result);
     const bool isForRole = !result && result.error().is(ErrorCode::NotAuthorised);
     // Anybody can come again under another name, and would bury what others did.
     const bool isAnybody = isForRole || call.role == Role::Observer;
     fillAllowance();
-    const bool isMuch = allowance_ < longestParams || file_->isSlow();
+    const bool isMuch = allowance_ < longestParams || (file_ && file_->isSlow());
     if (!isMuch && !isAnybody && !command.isSetPoint() && !command.isUrgent())
         return append(entry);
     if (isMuch) {
         summedUp_ = filled_;
-        entry.remove(QStringLiteral("params"));
-        entry.remove(QStringLiteral("message"));
+        entry.params.reset();
+        entry.message.reset();
     }
     QString key = (isAnybody ? QString() : call.clientName) + QLatin1Char('\n') + command.name();
     if (repeated_.size() >= maxRepeated && !repeated_.contains(key))
@@ -172,9 +172,8 @@ void Audit::writeRepeated(bool all) {
             known = repeated_.erase(known);
             continue;
         }
-        known->last.insert(QStringLiteral("calls"), known->calls);
-        if (file_)
-            append(known->last);
+        known->last.calls = known->calls;
+        append(known->last);
         known->calls = 0;
         known->period_s = std::min(2 * known->period_s, longestPeriod_s);
         known->due = now + known->period_s;

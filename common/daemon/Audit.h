@@ -2,7 +2,7 @@
 
 #include "common/daemon/AuditFile.h"
 #include "common/daemon/Command.h"
-#include "protocol/jsonrpc/JsonRpc.h"
+#include "protocol/messages/Daemons.h"
 
 #include <QMap>
 #include <QObject>
@@ -35,15 +35,19 @@ public:
     /// $STATE_DIRECTORY of the service manager, else hermes in the user's folder of state.
     static QString usualFolder();
 
+Q_SIGNALS:
+    /// An entry, also where no file is written.
+    void noted(const hermes::CommandMessage &entry);
+
 private:
     struct Repeated {
-        QJsonObject last;
+        CommandMessage last;
         int calls = 0;
         double period_s = 1;
         double due = 0; ///< of monotonicNow()
     };
 
-    void append(const QJsonObject &entry);
+    void append(const CommandMessage &entry);
     void writeRepeated(bool all);
     void fillAllowance();
 

@@ -70,6 +70,11 @@ Command &Command::unlisted() {
     return *this;
 }
 
+Command &Command::stream() {
+    isStream_ = true;
+    return *this;
+}
+
 Command &Command::handler(const Handler &function) {
     return asyncHandler([function](const Call &call, const Reply &reply) { reply.give(function(call)); });
 }
@@ -152,12 +157,12 @@ Result<QJsonObject> Command::accept(const QJsonValue &params) const {
     return named;
 }
 
-Error Command::notFor(const Call &call, Role needed, const QString &what) const {
-    return {ErrorCode::NotAuthorised,
-            QStringLiteral("%1%2 is for the role %3, this client has %4; %5")
-                .arg(commandName_, what, toString(needed), toString(call.role), call.moreRights),
-            QJsonObject{{QStringLiteral("role"), toString(call.role)},
-                        {QStringLiteral("needed"), toString(needed)}}};
+Error Call::notFor(const QString &what, Role needed) const {
+    return {
+        ErrorCode::NotAuthorised,
+        QStringLiteral("%1 is for the role %2, this client has %3; %4")
+            .arg(what, toString(needed), toString(role), moreRights),
+        QJsonObject{{QStringLiteral("role"), toString(role)}, {QStringLiteral("needed"), toString(needed)}}};
 }
 
 std::optional<Error> Command::refusal(const Call &call) const {
@@ -165,7 +170,7 @@ std::optional<Error> Command::refusal(const Call &call) const {
         const Field &field = fields_[index];
         const QJsonValue given = call.params.value(field.name());
         if (call.role < needed && !given.isUndefined() && given != field.defaultValue())
-            return notFor(call, needed, QStringLiteral(" with ") + field.name());
+            return call.notFor(commandName_ + QStringLiteral(" with ") + field.name(), needed);
     }
     return std::nullopt;
 }
@@ -183,7 +188,7 @@ void Command::execute(const QJsonValue &params, Call call, const Reply &reply) c
     QString what = QStringLiteral("unknown exception");
     try {
         if (call.role < role_)
-            return reply.error(notFor(call, role_, QString()));
+            return reply.error(call.notFor(commandName_, role_));
         const auto accepted = accept(params);
         if (!accepted)
             return reply.error(accepted.error());

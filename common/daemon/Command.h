@@ -30,6 +30,8 @@ struct Call {
     int integer(const char *name) const { return int(value(name).toDouble()); }
     bool flag(const char *name) const { return value(name).toBool(); }
     QString text(const char *name) const { return value(name).toString(); }
+    /// NotAuthorised: `what` is for this role.
+    Error notFor(const QString &what, Role needed) const;
 };
 
 /// A command, declared once: description, validation, help and dispatch follow from it.
@@ -65,6 +67,8 @@ public:
     Command &takes(int values);
     /// Not in the description: it is of the connection, not of the daemon.
     Command &unlisted();
+    /// Sent again and again, so that the audit sums it up.
+    Command &stream();
     /// Answers at once.
     Command &handler(const Handler &function);
     /// Answers at once or later, through the Reply.
@@ -76,8 +80,8 @@ public:
     bool needsFresh() const { return extra_.contains(freshKey()); }
     /// It changes something, or stops: who calls it is written down.
     bool isAudited() const { return role_ > Role::Observer || isUrgent(); }
-    /// Sent again and again, the last one counts: who drives.
-    bool isSetPoint() const { return extra_.contains(QStringLiteral("x-needs-lease")); }
+    /// Sent again and again: who drives, or replays topics.
+    bool isSetPoint() const { return isStream_ || extra_.contains(QStringLiteral("x-needs-lease")); }
     bool isListed() const { return isListed_; }
     int maxValues() const { return maxValues_; }
 
@@ -95,7 +99,6 @@ private:
     /// Those of a stop's parameters that are as they should be.
     QJsonObject fitting(const QJsonObject &named) const;
     QJsonObject paramsSchema() const;
-    Error notFor(const Call &call, Role needed, const QString &what) const;
     std::optional<Error> refusal(const Call &call) const;
     void warnOfAngles(const QJsonObject &params) const;
 
@@ -110,6 +113,7 @@ private:
     AsyncHandler run_;
     Role role_ = Role::Operator;
     bool isListed_ = true;
+    bool isStream_ = false;
     int maxValues_ = 3000;
     mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };

@@ -4,6 +4,7 @@
 #include "common/Time.h"
 #include "common/daemon/Daemon.h"
 #include "common/settings/DottedPath.h"
+#include "protocol/jsonrpc/JsonCodec.h"
 #include "protocol/wire/Fields.h"
 
 namespace hermes {
@@ -164,6 +165,8 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
                 Session *session = daemon.server().session(call.client);
                 if (!session)
                     return Error(ErrorCode::NotReady, QStringLiteral("the client is gone"));
+                if (const Role needed = topics.roleFor(call.text("topic")); call.role < needed)
+                    return call.notFor(QStringLiteral("the topic ") + call.text("topic"), needed);
                 if (session->topics().size() >= maxSubscriptions)
                     return Error(
                         ErrorCode::OverLimit,
@@ -192,12 +195,46 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
             }));
 }
 
+void addReplayCommand(Daemon &daemon, CommandRegistry &commands, TopicHub &topics) {
+    commands.add(
+        Command(QStringLiteral("topics.replay"),
+                QStringLiteral("Shows a recorded message of a topic to its subscribers. Nothing else of this "
+                               "topic is sent until this client ends that or goes"))
+            .param(Field::text(QStringLiteral("topic"), QStringLiteral("Name of the topic")))
+            .param(Field::number(QStringLiteral("stamp"), QStringLiteral("When the data were true"))
+                       .unit(QStringLiteral("s"))
+                       .range(0, 1e10)
+                       .byDefault(0))
+            .param(Field::any(QStringLiteral("data"), QStringLiteral("As the topic has them")).optional())
+            .param(Field::boolean(QStringLiteral("live"),
+                                  QStringLiteral("Ends it: the topic goes on with what is true now"))
+                       .byDefault(false))
+            .takes(JsonCodec::defaultFrameLimit) // any message, of which the schema checks nothing
+            .stream()
+            .returnsNull()
+            .handler([&daemon, &topics](const Call &call) -> Result<QJsonValue> {
+                Session *session = daemon.server().session(call.client);
+                if (!session)
+                    return Error(ErrorCode::NotReady, QStringLiteral("the client is gone"));
+                if (!call.flag("live") && !call.has("data"))
+                    return invalidParams({{QStringLiteral("data"), QJsonValue::Undefined,
+                                           QStringLiteral("a recorded message, or live: true")}});
+                const Result<void> done =
+                    call.flag("live")
+                        ? topics.endReplay(call.text("topic"), &session->topics())
+                        : topics.replay(call.text("topic"), call.value("data"), call.number("stamp"),
+                                        &session->topics(), call.clientName);
+                return done ? Result<QJsonValue>(QJsonValue()) : done.error();
+            }));
+}
+
 } // namespace
 
 void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topics) {
     addDaemonCommands(daemon, commands);
     addSettingsCommands(daemon, commands);
     addTopicCommands(daemon, commands, topics);
+    addReplayCommand(daemon, commands, topics);
     addProtocolCommand(daemon, commands);
     commands.add(
         Command(QStringLiteral("log.tail"), QStringLiteral("The last records of the log, oldest first"))
@@ -210,6 +247,11 @@ void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topi
             .handler([](const Call &call) { return asJson(Log::instance().tail(call.integer("count"))); }));
     topics.declare(
         Topic(QStringLiteral("log"), QStringLiteral("Each record of the log")).carries<LogMessage>());
+    topics.declare(Topic(QStringLiteral("commands"),
+                         QStringLiteral("Each command that changes something or stops, as the audit has it; "
+                                        "for engineers"))
+                       .carries<CommandMessage>()
+                       .needs(Role::Engineer));
     topics.declare(
         Topic(QStringLiteral("status"), QStringLiteral("What daemon.status gives, at each change of level"))
             .carries<DaemonStatus>()

@@ -1,6 +1,7 @@
 #include "common/daemon/Daemon.h"
 
 #include "common/Log.h"
+#include "common/OwnRobot.h"
 #include "common/Project.h"
 #include "common/Time.h"
 #include "common/daemon/CommonCommands.h"
@@ -56,6 +57,15 @@ Daemon::Daemon(const DaemonIdentity &identity)
     declareCommonSettings();
     addCommonCommands(*this, commands_, topics_);
     connect(&channels_, &Server::clientGone, this, &Daemon::clientGone);
+    connect(&channels_.audit(), &Audit::noted, this,
+            [this](const CommandMessage &entry) { publish(QStringLiteral("commands"), entry, entry.stamp); });
+    connect(&topics_, &TopicHub::replaysChanged, this, [this] {
+        const QString item = QStringLiteral("topics"), replays = topics_.replays();
+        if (replays.isEmpty())
+            healthItems_.remove(item);
+        else
+            healthItems_.set(item, HealthLevel::Ok, QStringLiteral("replayed, not live: ") + replays);
+    });
     Log::instance().follow(this, [this](const LogRecord &record) {
         publish(
             QStringLiteral("log"), [&record] { return record.message(); }, record.stamp);
@@ -172,6 +182,11 @@ void Daemon::waitForMended(const QString &file) {
 Result<void> Daemon::launch() {
     const bool insecure = configuration_.flag(QStringLiteral("insecure"));
     openAudit();
+    if (qEnvironmentVariableIsSet(robotVariable) && !ownRobot())
+        logWarning(self_.name, QStringLiteral("%1 is ignored: expected the UUID of a robot, a space and its "
+                                              "name of up to %2 printable characters")
+                                   .arg(QLatin1String(robotVariable))
+                                   .arg(longestRobotName));
     Result<void> failed;
     for (const QJsonValue &url : configuration_.value(QStringLiteral("listen")).toArray()) {
         const auto listening = listen(url.toString());
@@ -319,7 +334,8 @@ DaemonInfo Daemon::info(Role asking) const {
             channels_.addresses(),
             started_,
             monotonicNow() - startedMono_,
-            toString(asking)};
+            toString(asking),
+            ownRobot()};
 }
 
 DaemonStatus Daemon::status() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Role.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Outgoing.h"
 
@@ -29,6 +30,11 @@ public:
     Topic &carries() {
         return schema(schemaOf<T>());
     }
+    /// Who may subscribe to it; without a word, observers.
+    Topic &needs(Role role) {
+        role_ = role;
+        return *this;
+    }
     /// Gives the full state with which a subscription begins; nothing: there is none as yet.
     Topic &snapshot(const Snapshot &function) {
         state_ = function;
@@ -43,6 +49,7 @@ public:
     }
 
     const QString &name() const { return topicName_; }
+    Role role() const { return role_; }
     const Snapshot &snapshot() const { return state_; }
     const SnapshotParts &snapshotParts() const { return parts_; }
     TopicDescription description() const {
@@ -55,6 +62,7 @@ private:
     QJsonObject content_;
     Snapshot state_;
     SnapshotParts parts_;
+    Role role_ = Role::Observer;
 };
 
 } // namespace hermes

@@ -5,12 +5,13 @@
 
 #include <QStringList>
 #include <algorithm>
+#include <utility>
 
 namespace hermes {
 
 bool TopicHub::hasSubscribers(const QString &topic) const {
     const auto entry = topics_.constFind(topic);
-    return entry != topics_.constEnd() && !entry->queues.isEmpty();
+    return entry != topics_.constEnd() && !entry->queues.isEmpty() && !entry->replay;
 }
 
 bool TopicHub::hasRoom(const QString &topic) const {
@@ -25,6 +26,8 @@ void TopicHub::publish(const QString &topic, const std::function<Outgoing()> &ma
     if (entry == topics_.end())
         return logError(QStringLiteral("topics"),
                         QStringLiteral("published \"%1\", which is not declared").arg(topic));
+    if (entry->replay)
+        return;
     ++entry->seq;
     const auto queues = entry->queues;
     if (queues.isEmpty())
@@ -34,14 +37,22 @@ void TopicHub::publish(const QString &topic, const std::function<Outgoing()> &ma
         queue->offer(message);
 }
 
+Result<TopicHub::Entry *> TopicHub::find(const QString &topic) {
+    const auto entry = topics_.find(topic);
+    if (entry != topics_.end())
+        return &*entry;
+    const QStringList known = topics_.keys();
+    return Error(
+        ErrorCode::NoSuchTopic,
+        QStringLiteral("no topic \"%1\"; there is %2").arg(topic.left(80), known.join(QStringLiteral(", "))));
+}
+
 Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions &options,
                                     TopicQueue *queue) {
-    const auto entry = topics_.find(topic);
-    if (entry == topics_.end()) {
-        const QStringList known = topics_.keys();
-        return Error(ErrorCode::NoSuchTopic, QStringLiteral("no topic \"%1\"; there is %2")
-                                                 .arg(topic.left(80), known.join(QStringLiteral(", "))));
-    }
+    const auto found = find(topic);
+    if (!found)
+        return found.error();
+    Entry *const entry = *found;
     const quint64 id = ++lastId_;
     queue->add(id, topic, options);
     if (!entry->queues.contains(queue))
@@ -56,8 +67,12 @@ Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions
 
 void TopicHub::sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue) const {
     const Entry &entry = *topics_.constFind(topic);
+    if (entry.replay)
+        return queue->offer(entry.replay->last, id);
     if (entry.topic.snapshotParts())
         return queue->stream(topic, id, partsOf(topic));
+    if (!entry.topic.snapshot())
+        return;
     const Outgoing state = entry.topic.snapshot()();
     if (!state.isNothing())
         queue->offer({topic, entry.seq, stampNow(), state}, id);
@@ -68,6 +83,8 @@ TopicQueue::Parts TopicHub::partsOf(const QString &topic) const {
         if (cursor < 0)
             return std::nullopt;
         const Entry &entry = *topics_.constFind(topic);
+        if (entry.replay)
+            return std::nullopt;
         const Outgoing part = entry.topic.snapshotParts()(cursor);
         return TopicMessage{topic, entry.seq, stampNow(), part};
     };
@@ -75,10 +92,67 @@ TopicQueue::Parts TopicHub::partsOf(const QString &topic) const {
 
 void TopicHub::publishSnapshot(const QString &topic) {
     const auto entry = topics_.find(topic);
+    if (entry->replay)
+        return;
     ++entry->seq;
     const auto queues = entry->queues;
     for (TopicQueue *queue : queues)
-        queue->stream(topic, 0, partsOf(topic));
+        sendSnapshot(topic, 0, queue);
+}
+
+bool TopicHub::isAlwaysLive(const QString &topic) {
+    static const QStringList names{QStringLiteral("log"),       QStringLiteral("status"),
+                                   QStringLiteral("settings"),  QStringLiteral("commands"),
+                                   QStringLiteral("processes"), QStringLiteral("session"),
+                                   QStringLiteral("control")};
+    return names.contains(topic);
+}
+
+/// An error: it is unknown, or another client replays it.
+Result<TopicHub::Entry *> TopicHub::findFor(const QString &topic, const TopicQueue *client) {
+    const auto entry = find(topic);
+    if (entry && (*entry)->replay && (*entry)->replay->client != client)
+        return Error(ErrorCode::NotReady,
+                     QStringLiteral("the topic \"%1\" is replayed by %2").arg(topic, (*entry)->replay->name));
+    return entry;
+}
+
+Result<void> TopicHub::replay(const QString &topic, const Outgoing &data, double stamp, TopicQueue *client,
+                              const QString &name) {
+    if (isAlwaysLive(topic))
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("the topic \"%1\" tells of now and is never replayed").arg(topic));
+    const auto entry = findFor(topic, client);
+    if (!entry)
+        return entry.error();
+    const TopicMessage message{topic, ++(*entry)->seq, stamp, data, true};
+    const bool isFirst = !(*entry)->replay;
+    (*entry)->replay = {client, name, message};
+    const auto queues = (*entry)->queues;
+    for (TopicQueue *queue : queues)
+        queue->offer(message);
+    if (isFirst)
+        Q_EMIT replaysChanged();
+    return {};
+}
+
+Result<void> TopicHub::endReplay(const QString &topic, TopicQueue *client) {
+    const auto entry = findFor(topic, client);
+    if (!entry)
+        return entry.error();
+    if (std::exchange((*entry)->replay, std::nullopt)) {
+        publishSnapshot(topic);
+        Q_EMIT replaysChanged();
+    }
+    return {};
+}
+
+QString TopicHub::replays() const {
+    QStringList texts;
+    for (const Entry &entry : topics_)
+        if (entry.replay)
+            texts << QStringLiteral("%1 (by %2)").arg(entry.topic.name(), entry.replay->name);
+    return texts.join(QStringLiteral(", "));
 }
 
 bool TopicHub::unsubscribe(quint64 id, TopicQueue *queue) {
@@ -91,6 +165,14 @@ bool TopicHub::unsubscribe(quint64 id, TopicQueue *queue) {
 void TopicHub::forget(TopicQueue *queue) {
     for (Entry &entry : topics_)
         entry.queues.removeAll(queue);
+    for (Entry &entry : topics_) // which publishes to those that are left
+        if (entry.replay && entry.replay->client == queue)
+            endReplay(entry.topic.name(), queue);
+}
+
+Role TopicHub::roleFor(const QString &topic) const {
+    const auto entry = topics_.constFind(topic);
+    return entry == topics_.constEnd() ? Role::Observer : entry->topic.role();
 }
 
 std::vector<TopicDescription> TopicHub::description() const {

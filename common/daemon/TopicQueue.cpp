@@ -11,7 +11,7 @@ namespace hermes {
 const EncodedFrame &TopicMessage::frame(Codec &codec) const {
     EncodedFrame &made = (*frames)[typeid(codec)];
     if (made.bytes.isEmpty() && !made.error)
-        made = codec.encodeTopic(topic, seq, stamp, data);
+        made = codec.encodeTopic(topic, seq, stamp, data, replayed);
     return made;
 }
 

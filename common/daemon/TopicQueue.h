@@ -20,6 +20,7 @@ struct TopicMessage {
     quint64 seq = 0; ///< counts the publications of the topic from 1
     double stamp = 0;
     Outgoing data;
+    bool replayed = false; ///< it was recorded
     /// Its frame in each framing, made once for all who get it.
     using Frames = std::map<std::type_index, EncodedFrame>;
     std::shared_ptr<Frames> frames = std::make_shared<Frames>();

@@ -6,6 +6,7 @@
 #include "common/interface/SocketOwner.h"
 #include "common/platform/Sockets.h"
 
+#include <QTimerEvent>
 #include <utility>
 
 namespace hermes {

@@ -1,16 +1,27 @@
 #include "common/network/Announcement.h"
 
+#include "common/OwnRobot.h"
 #include "common/Project.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "common/network/Publisher.h"
 
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 namespace hermes {
 namespace {
 
 bool isHeld = false;
+
+constexpr int longestRecord = 255; // bytes of a record (RFC 6763, section 6.1)
+
+/// A record of text that takes no more than there is room for.
+QByteArray record(const char *key, QString value) {
+    while (QByteArray(key).size() + 1 + value.toUtf8().size() > longestRecord)
+        value.chop(std::as_const(value).back().isLowSurrogate() ? 2 : 1);
+    return QByteArray(key) + '=' + value.toUtf8();
+}
 
 } // namespace
 
@@ -32,7 +43,11 @@ std::optional<AnnouncedPort> AnnouncedPort::of(const QString &daemon, const QStr
 
 Announcement::Announcement(const QString &daemon, const std::vector<AnnouncedPort> &ports)
     : thread_(new QThread) {
-    auto *publisher = new Publisher(daemon, ports);
+    std::vector<AnnouncedPort> told = ports;
+    if (const auto robot = ownRobot())
+        for (AnnouncedPort &port : told)
+            port.texts << record("robot", robot->name) << record("robot_id", robot->id);
+    auto *publisher = new Publisher(daemon, told);
     publisher->moveToThread(thread_);
     QObject::connect(thread_, &QThread::started, publisher, &Publisher::begin);
     QObject::connect(thread_, &QThread::finished, publisher, &QObject::deleteLater);

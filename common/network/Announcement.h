@@ -12,7 +12,7 @@ namespace hermes {
 /// A port that others on the network can reach, as DNS-SD tells of it.
 struct AnnouncedPort {
     quint16 port = 0;
-    QList<QByteArray> texts; ///< KEY=VALUE: name, protocol, framing, tls
+    QList<QByteArray> texts; ///< KEY=VALUE: name, protocol, framing, tls, robot, robot_id
 
     /// Of a daemon that listens there: as the settings say, and as it is. Nothing for what only this computer
     /// reaches and what is no TCP.

@@ -1,5 +1,6 @@
 #include "common/recording/RecordingSession.h"
 
+#include "common/OwnRobot.h"
 #include "common/Time.h"
 #include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
@@ -45,6 +46,14 @@ QString toUtc(double stamp) {
     return QDateTime::fromMSecsSinceEpoch(qint64(stamp * 1e3), Qt::UTC).toString(Qt::ISODateWithMs);
 }
 
+/// When a recording began that was interrupted, by the clocks of now.
+Moment startOf(const QJsonObject &sidecar, const Moment &now) {
+    const auto stamp_ns = qint64(sidecar["start"].toDouble() * 1e9);
+    const bool isSameRun = sidecar["boot"].toString() == bootIdentity();
+    return {stamp_ns, isSameRun ? qint64(sidecar["start_mono"].toDouble() * 1e9)
+                                : now.mono_ns - (now.stamp_ns - stamp_ns)};
+}
+
 /// Room that stays taken until the recording ends. Not every file system can; then there is none. Error: the
 /// disk is full.
 Result<void> reserve(const QString &path) {
@@ -81,25 +90,32 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     Result<void> result = lock_.take(options.root, options.logger);
     if (!result)
         return result;
-    const Result<QString> folder = enterSessionFolder(options.root, session, options.logger);
+    const Result<QString> folder =
+        enterSessionFolder(options.root, session, options.logger, writer_.goesOn());
     if (!folder) {
         lock_.release();
         return folder.error();
     }
-    plan_ = {*folder, options.logger, options.fileBytes, options.fileSeconds};
+    plan_ = {*folder, options.logger, options.fileBytes, options.fileSeconds, {}, Moment::now()};
+    if (const Result<QJsonObject> earlier = Sidecar::read(sidecarPath()); earlier && writer_.goesOn())
+        plan_.earlier = *earlier;
+    plan_.start = plan_.earlier.isEmpty() ? writer_.beganEarlier().value_or(plan_.start)
+                                          : startOf(plan_.earlier, plan_.start);
     session_ =
         session.session.isEmpty() ? QUuid::createUuid().toString(QUuid::WithoutBraces) : session.session;
-    const Moment now = Moment::now();
+    const Moment start = plan_.start;
     head_ = {{"format", Sidecar::format},
              {"logger", options.logger},
              {"name", session.name},
              {"session", session_},
              {"host", QSysInfo::machineHostName()},
-             {"start", now.stamp()},
-             {"start_utc", toUtc(now.stamp())},
-             {"start_mono", now.mono()},
+             {"start", start.stamp()},
+             {"start_utc", toUtc(start.stamp())},
+             {"start_mono", start.mono()},
              {"boot", bootIdentity()},
              {"settings", options.settings}};
+    if (const auto robot = ownRobot())
+        head_.insert("robot", asJson(*robot));
     const auto refused = [&](const Error &error) {
         abandon();
         return error;
@@ -126,6 +142,10 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     if (result)
         return {};
     writer_.end();
+    if (!plan_.earlier.isEmpty()) {
+        Sidecar::write(sidecarPath(), plan_.earlier, true);
+        return refused(result.error());
+    }
     for (const QString &file : QDir(*folder).entryList({options.logger + "-*"}, QDir::Files))
         QFile::remove(*folder + '/' + file); // of this moment: the folder had none before
     return refused(result.error());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "common/Time.h"
 #include "protocol/messages/Recordings.h"
 
 #include <QJsonArray>
@@ -16,6 +17,11 @@ struct RecordingPlan {
     QString prefix;         ///< files are named PREFIX-0001.SUFFIX and on
     double fileBytes = 1e9; ///< a new file begins where the next record would make this one longer
     double fileSeconds = 3600;
+    /// The sidecar of this recording before it was interrupted, which goes on; empty: it is new.
+    QJsonObject earlier = {};
+    /// How many files were written before.
+    int earlierFiles() const { return earlier["files"].toArray().size(); }
+    Moment start = {}; ///< of the recording, also of one that was interrupted
 };
 
 /// What a logger tells of the recording under way, or of the last one.
@@ -27,6 +33,9 @@ struct RecordingState {
     NamedCounts losses;         ///< what was not, by reason; all zero where nothing is missing
     QJsonObject gps;            ///< what is known of position and time
     std::optional<Error> error; ///< writing has ended by it
+
+    /// Puts before it what was recorded before an interruption, as the sidecar has it; empty: nothing was.
+    void addEarlier(const QJsonObject &sidecar);
 };
 
 /// What a logger does to have its recordings managed by Recording: writes files, and repairs those of a
@@ -35,6 +44,11 @@ struct RecordingState {
 class RecordingWriter {
 public:
     virtual ~RecordingWriter() = default;
+
+    /// Whether begin() goes on with a recording that was interrupted, when it is given the same session.
+    virtual bool goesOn() const { return false; }
+    /// When what is to be recorded began, if that was earlier.
+    virtual std::optional<Moment> beganEarlier() const { return {}; }
 
     virtual Result<void> begin(const RecordingPlan &plan) = 0;
     /// Everything taken so far is in the files when it returns; state() says if that failed.

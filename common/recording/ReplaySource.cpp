@@ -80,6 +80,16 @@ Result<void> ReplaySource::mayChange() const {
     return {};
 }
 
+void ReplaySource::clientGone(quint64 client) {
+    if (client != client_ || (state_ != State::Replay && state_ != State::Ended))
+        return;
+    client_ = 0;
+    logWarning("source", "who replays is gone");
+    if (const Result<void> live = actions_.live({}); !live)
+        logError("source", live.error().message);
+    actions_.changed();
+}
+
 Result<QJsonValue> ReplaySource::open(const Call &call) {
     const bool live = call.has("live") && call.flag("live");
     if (live + call.has("pcap") + call.has("recording") != 1) {
@@ -93,6 +103,7 @@ Result<QJsonValue> ReplaySource::open(const Call &call) {
     }
     if (const Result<void> fine = mayChange(); !fine)
         return fine.error();
+    client_ = call.flag("until_gone") ? call.client : 0;
     const Result<void> result = live                    ? actions_.live(call)
                                 : call.has("recording") ? openRecording(call)
                                                         : actions_.pcap(call);
@@ -118,6 +129,8 @@ Command ReplaySource::openCommand(const QString &summary) {
                    .unit("s")
                    .range(0, 1e7)
                    .byDefault(0))
+        .param(Field::boolean("until_gone", "A replay ends when the client that asks for it goes")
+                   .byDefault(false))
         .gives<SourceStatus>()
         .example({{"recording", "drive"}}, QJsonObject{{"state", "replay"}, {"name", "/data/drive"}})
         .handler([this](const Call &call) { return open(call); });

@@ -45,6 +45,8 @@ public:
     void opened(State state, const QString &name);
     /// For the playing thread, to tell its end: then done is called in the main thread.
     Ended whenEnded(const Ended &done);
+    /// A client has gone: what it replayed only as long as it is there ends.
+    void clientGone(quint64 client);
     /// All that was played is shown; or why it ended before.
     void end(const Result<void> &result);
 
@@ -65,6 +67,7 @@ private:
     const Actions actions_;
     State state_ = State::None;
     QString name_, error_;
+    quint64 client_ = 0;     ///< with whom the replay ends; 0: with none
     quint64 generation_ = 0; ///< counts sources
 };
 

@@ -28,7 +28,8 @@ Result<void> checkSession(const QString &folder, const QString &session) {
 }
 
 /// Whether the logger may join the folder, which exists.
-Result<void> checkFolder(const QString &folder, const SessionName &session, const QString &logger) {
+Result<void> checkFolder(const QString &folder, const SessionName &session, const QString &logger,
+                         bool goesOn) {
     if (!QFileInfo(folder).isDir())
         return diskError(folder + ": the folder of the recording cannot be made: a file has this name",
                          folder);
@@ -36,7 +37,11 @@ Result<void> checkFolder(const QString &folder, const SessionName &session, cons
         return diskError(folder + ": it is a link; recordings are not written elsewhere", folder);
     const bool fresh = QDir(folder).entryList({logger + ".json", logger + "-*"}, QDir::Files).isEmpty();
     const bool empty = QDir(folder).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::NoDotAndDotDot);
-    if (!fresh || (session.session.isEmpty() && !empty))
+    const Result<QJsonObject> own =
+        goesOn ? Sidecar::read(Sidecar::path(folder, logger)) : Result<QJsonObject>(QJsonObject());
+    const bool isInterrupted = own && !session.session.isEmpty() &&
+                               own->value("session") == session.session && own->value("ended").isString();
+    if ((!fresh && !isInterrupted) || (session.session.isEmpty() && !empty))
         return diskError(folder + ": it exists already; recordings are not overwritten", folder);
     return checkSession(folder, session.session);
 }
@@ -47,12 +52,13 @@ QString reservePath(const QString &folder, const QString &logger) {
     return folder + "/." + logger + ".reserve";
 }
 
-Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger) {
+Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger,
+                                   bool goesOn) {
     const QString folder = QDir(root).absoluteFilePath(session.name);
     QString why;
     for (int attempt = 0; attempt < 100; ++attempt) { // others may make and remove it at the same time
         if (!QDir(root).mkdir(session.name) && QFileInfo::exists(folder)) {
-            const Result<void> joined = checkFolder(folder, session, logger);
+            const Result<void> joined = checkFolder(folder, session, logger, goesOn);
             if (!joined && QFileInfo::exists(folder))
                 return joined.error();
         }

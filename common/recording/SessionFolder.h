@@ -17,8 +17,10 @@ QString reservePath(const QString &folder, const QString &logger);
 
 /// Makes ROOT/NAME, or joins it where a logger of the same session has made it; puts the (empty) reserve into
 /// it, gives its absolute path. Whatever was recorded stays: a folder of another session, or one in which
-/// this logger has recorded, is refused (InputOutput, data.path). The logger holds the lock of the root.
-Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger);
+/// this logger has recorded, is refused (InputOutput, data.path), unless it goes on with what it recorded of
+/// this session and has ended. The logger holds the lock of the root.
+Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger,
+                                   bool goesOn = false);
 
 /// Held while a logger writes below a folder or repairs what is there, so that two of a kind do not disturb
 /// each other. The system takes it from a process that dies.

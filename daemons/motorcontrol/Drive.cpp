@@ -9,6 +9,7 @@
 namespace hermes::motorcontrol {
 namespace {
 
+const QString silentCause = QStringLiteral("time-out");
 constexpr double longestStep_s = 0.1; // after a pause the ramp goes on, it does not make up for it
 
 /// One value of a command and how large it may be.
@@ -47,7 +48,7 @@ Result<void> checkBounds(const Values &values) {
 void Drive::configure(const Settings &settings) {
     settings_ = settings;
     watchdog_.setTimeout(settings.commandTimeout_s);
-    halt("the settings were changed");
+    halt("settings", "the settings were changed");
 }
 
 Result<void> Drive::driveTwist(quint64 client, const Twist2D &twist, double age_s, double now) {
@@ -94,25 +95,27 @@ Result<void> Drive::accept(quint64 client, const WheelValues &target, double age
     if (!renewed)
         return renewed;
     target_ = target;
+    haltCause_.clear();
     haltReason_.clear();
     deposed_ = 0;
     watchdog_.feed(now - std::max(0.0, age_s)); // time on the way counts
     return {};
 }
 
-void Drive::halt(const QString &reason) {
+void Drive::halt(const QString &cause, const QString &reason) {
     target_ = setPoint_ = {};
     watchdog_.rest();
+    haltCause_ = cause;
     haltReason_ = reason;
 }
 
 void Drive::stop(quint64 client, const QString &who) {
     const quint64 driver = lease_.client();
     if (driver == 0 && client == deposed_) // its own stop is not why the robot stands
-        return halt(QString(haltReason_));
+        return halt(QString(haltCause_), QString(haltReason_));
     if (driver != client)
         depose();
-    halt("stopped by " + who);
+    halt(driver != 0 && driver == client ? "driver" : "stop", "stopped by " + who);
 }
 
 void Drive::depose() {
@@ -128,7 +131,7 @@ void Drive::emergencyStop(quint64 client, const QString &who, double now) {
         stopped_ = lease_.isHeldBy(client) ? 0 : lease_.client();
     pressed_ = now;
     depose();
-    halt(latch_.reason(emergencyCause));
+    halt(emergencyCause, latch_.reason(emergencyCause));
 }
 
 void Drive::restoreStop(const QString &reason, double now) {
@@ -166,7 +169,7 @@ void Drive::resetEmergencyStop(const QString &who) {
     latch_.release();
     ++resets_;
     lease_.revoke();
-    halt((who.isEmpty() ? QString("released") : "released by " + who) + ", waits for a new lease");
+    halt("reset", (who.isEmpty() ? QString("released") : "released by " + who) + ", waits for a new lease");
 }
 
 Result<void> Drive::acquire(quint64 client, const QString &name, double timeout_s, double now, double age_s) {
@@ -180,7 +183,7 @@ Result<void> Drive::takeOver(quint64 client, const QString &name, double timeout
     if (!may)
         return may;
     if (const auto loser = lease_.takeOver(client, name, timeout_s, now))
-        halt(QString("%1 took the control over from %2").arg(name, *loser));
+        halt("take-over", QString("%1 took the control over from %2").arg(name, *loser));
     return {};
 }
 
@@ -190,42 +193,42 @@ void Drive::ask(quint64 client, const QString &name) {
 
 void Drive::release(quint64 client) {
     if (lease_.release(client))
-        halt("the control was released");
+        halt("release", "the control was released");
 }
 
 void Drive::clientGone(quint64 client) {
     if (lease_.release(client))
-        halt("the client that held the control has gone");
+        halt("client gone", "the client that held the control has gone");
 }
 
 void Drive::stoodStill(const QString &text) {
     lease_.revoke();
-    halt(text);
+    halt("gap", text);
 }
 
 bool Drive::fault(const QString &name, const QString &reason) {
     if (!latch_.set(name, reason))
         return false;
     lease_.revoke();
-    halt(reason);
+    halt(name, reason);
     return true;
 }
 
-void Drive::setNotReady(const QString &why) {
+void Drive::setNotReady(const QString &why, const QString &cause) {
     if (notReady_ == why)
         return;
     notReady_ = why;
     lease_.revoke();
-    halt(why);
+    halt(cause, why);
 }
 
 const WheelValues &Drive::step(double now) {
     const double dt = std::clamp(now - lastStep_, 0.0, longestStep_s);
     lastStep_ = now;
     if (const auto name = lease_.expire(now))
-        halt(QString("the control of %1 ran out").arg(*name));
+        halt(silentCause, QString("the control of %1 ran out").arg(*name));
     if (watchdog_.hasExpired(now))
-        halt(QString("no command for %1 s").arg(settings_.commandTimeout_s));
+        halt(silentCause, QString("no command for %1 s").arg(settings_.commandTimeout_s));
     if (dt > 0)
         setPoint_ = ramped(setPoint_, target_, settings_.layout, settings_.limits.acceleration, dt);
     return setPoint_;

@@ -62,7 +62,7 @@ public:
     bool fault(const QString &name, const QString &reason);
     void setReady() { notReady_.clear(); }
     /// The wheels cannot be commanded; halts, and ends the lease. why is for messages.
-    void setNotReady(const QString &why);
+    void setNotReady(const QString &why, const QString &cause = "controller");
 
     /// The speeds (rad/s) that the wheels shall have now, once a cycle.
     const WheelValues &step(double now);
@@ -73,6 +73,8 @@ public:
     const ControlLease &lease() const { return lease_; }
     /// Why the robot halted last; empty while it follows commands.
     const QString &haltReason() const { return haltReason_; }
+    /// The same in a word, for programs: what MotionHold::cause lists.
+    const QString &haltCause() const { return haltCause_; }
 
     static constexpr const char *emergencyCause = "estop";
     static constexpr double holdOff_s = 2; ///< after a press
@@ -80,7 +82,7 @@ public:
 private:
     Result<void> mayMove(double age_s) const;
     Result<void> accept(quint64 client, const WheelValues &target, double age_s, double now);
-    void halt(const QString &reason);
+    void halt(const QString &cause, const QString &reason);
     void depose();
 
     Settings settings_;
@@ -89,7 +91,7 @@ private:
     StopLatch latch_;
     WheelValues target_{}, setPoint_{};
     QString notReady_ = "the controllers have not answered yet";
-    QString haltReason_;
+    QString haltCause_, haltReason_;
     /// Of the emergency stop. 0: several pressed it, or nobody that is known; nobody drove.
     quint64 presser_ = 0, stopped_ = 0;
     double pressed_ = 0;  // the last time

@@ -32,7 +32,7 @@ void DriveEngine::configure(const MotorSettings &settings) {
 }
 
 void DriveEngine::retire(const QString &why) {
-    drive_.setNotReady(why);
+    drive_.setNotReady(why, "shutdown");
     retired_ = true;
     stand();
 }
@@ -148,6 +148,7 @@ Telemetry &DriveEngine::report() {
     telemetry_.covariance = odometry_.covariance();
     telemetry_.target = drive_.target();
     telemetry_.setPoint = drive_.setPoint();
+    telemetry_.haltCause = drive_.haltCause();
     telemetry_.haltReason = drive_.haltReason();
     telemetry_.latch = drive_.latch();
     telemetry_.lease = drive_.lease();

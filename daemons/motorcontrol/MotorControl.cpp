@@ -10,6 +10,7 @@
 #include <cstring>
 #include <future>
 #include <sys/resource.h>
+#include <tuple>
 
 namespace hermes::motorcontrol {
 namespace {
@@ -19,6 +20,13 @@ constexpr std::chrono::milliseconds stopLimit{1000};
 // Nobody waits for it.
 Reply unanswered() {
     return Reply([](const Result<QJsonValue> &) {});
+}
+
+bool isSame(const MotionHold &a, const MotionHold &b) {
+    const auto parts = [](const MotionHold &h) {
+        return std::tie(h.latched, h.control.held, h.control.holder, h.control.wanted, h.halted, h.cause);
+    };
+    return parts(a) == parts(b);
 }
 
 constexpr int niceness = -11; // where it may: what must stop the robot does not wait behind ordinary work
@@ -55,6 +63,10 @@ void MotorControl::declareTopics() {
     addTopic(Topic("odometry", "Where the wheels have brought the robot, after each cycle (50 Hz)")
                  .carries<OdometryMessage>());
     addTopic(Topic("wheels", "How each wheel turns, after each cycle").carries<WheelsMessage>());
+    addTopic(Topic("control", "Who holds the control, why the robot halted last and what is latched, when it "
+                              "changes")
+                 .carries<MotionHold>()
+                 .snapshot([this] { return Outgoing(holdOf(told_)); }));
     addTopic(Topic("power", "What each controller measures, at 10 Hz").carries<PowerMessage>());
 }
 
@@ -211,7 +223,10 @@ void MotorControl::show(const Telemetry &telemetry) {
     const bool isNewLatch = telemetry.latch.isSet() != told_.latch.isSet();
     const bool isNewStop =
         telemetry.latch.reason(Drive::emergencyCause) != told_.latch.reason(Drive::emergencyCause);
+    const bool isNewHold = !isSame(holdOf(telemetry), holdOf(told_));
     told_ = telemetry;
+    if (isNewHold)
+        publish("control", holdOf(told_));
     if (isNewStop)
         keepStop();
     if (isNewLatch)
@@ -224,7 +239,7 @@ void MotorControl::show(const Telemetry &telemetry) {
         publish(
             "odometry", [&] { return odometryOf(telemetry); }, telemetry.stamp);
         publish(
-            "wheels", [&] { return wheelsOf(telemetry); }, telemetry.stamp);
+            "wheels", [&] { return wheelsOf(telemetry, active_.drive.layout); }, telemetry.stamp);
     }
     if (cycles_ % slowEvery == 0) {
         gauge_.take(bootNow(), batteryOf(telemetry));

@@ -1,5 +1,6 @@
 #include "daemons/motorcontrol/MotorMessages.h"
 
+#include "common/Time.h"
 #include "daemons/motorcontrol/DriveLoop.h"
 #include "daemons/motorcontrol/FailureText.h"
 #include "protocol/roboclaw/Status.h"
@@ -41,11 +42,12 @@ OdometryMessage odometryOf(const Telemetry &t) {
     return {t.pose, t.twist, t.covariance, t.mono};
 }
 
-WheelsMessage wheelsOf(const Telemetry &t) {
+WheelsMessage wheelsOf(const Telemetry &t, const WheelLayout &layout) {
     WheelsMessage message;
     for (std::size_t i = 0; i < wheelCount; ++i)
         message.wheels[i] = {t.target[i], t.setPoint[i], t.speeds[i], t.turns[i]};
     message.slip = t.slip;
+    message.target = layout.twist(t.target);
     return message;
 }
 
@@ -81,6 +83,10 @@ Result<BatteryReading> batteryOf(const Telemetry &t) {
             reading.motors_a += std::abs(r.current_a[motor] * (*r.duty)[motor]);
     }
     return reading;
+}
+
+MotionHold holdOf(const Telemetry &t) {
+    return {t.latch.causes(), t.lease.state(monotonicNow()), t.haltReason, t.haltCause};
 }
 
 CycleState cycleOf(const Telemetry &t) {
@@ -121,7 +127,8 @@ const Fields<WheelsMessage> &fieldsOf(Of<WheelsMessage>) {
     static const auto fields =
         Fields<WheelsMessage>()
             .addEach(wheelNames, &WheelsMessage::wheels, "Positive turns drive the robot forward")
-            .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s");
+            .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s")
+            .add("target", &WheelsMessage::target, "The robot's velocity that was commanded");
     return fields;
 }
 
@@ -184,7 +191,6 @@ const Fields<MotorState> &fieldsOf(Of<MotorState>) {
             .add("standing", &S::standing, "As motor.stop answers")
             .add("estop", &S::estop, "The emergency stop is latched")
             .include(&S::hold)
-            .add("halted", &S::halted, "Why the robot halted last; empty while it follows commands")
             .add("pose", &S::pose, "As in the topic odometry")
             .add("twist", &S::twist, "As measured")
             .add("target", &S::target, "The velocity that was commanded")

@@ -15,6 +15,7 @@ struct WheelMessage {
 struct WheelsMessage {
     std::array<WheelMessage, wheelCount> wheels;
     double slip = 0;
+    Twist2D target; ///< of the robot
 };
 
 /// Whether all controllers have confirmed that they stand: the answer to a stop.
@@ -42,7 +43,6 @@ struct MotorState {
     Standing standing;
     bool estop = false;
     MotionHold hold;
-    QString halted;
     Pose2D pose;
     Twist2D twist, target, setPoint;
     WheelsMessage wheels;
@@ -53,10 +53,11 @@ struct MotorState {
 };
 
 OdometryMessage odometryOf(const Telemetry &telemetry);
-WheelsMessage wheelsOf(const Telemetry &telemetry);
+WheelsMessage wheelsOf(const Telemetry &telemetry, const WheelLayout &layout);
 PowerMessage powerOf(const Telemetry &telemetry, const BatteryState &battery);
 /// Of controllers that have all told all; else the reason.
 Result<BatteryReading> batteryOf(const Telemetry &telemetry);
+MotionHold holdOf(const Telemetry &telemetry);
 CycleState cycleOf(const Telemetry &telemetry);
 Standing standingOf(const Telemetry &telemetry);
 /// Whether every controller has confirmed that it stands.

@@ -32,7 +32,7 @@ struct Telemetry {
     std::array<Controller, controllerCount> controllers;
     CycleStatistics cycle;
     bool realtime = false; ///< the cycle goes before all ordinary threads
-    QString haltReason;
+    QString haltCause, haltReason;
     StopLatch latch;
     ControlLease lease;
     quint64 unread = 0;                       ///< reports that the rest of the daemon was too slow to take

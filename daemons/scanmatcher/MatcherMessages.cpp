@@ -1,7 +1,7 @@
 #include "daemons/scanmatcher/MatcherMessages.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
-#include "vectorlib/motion/MotionModel.h"
+#include "vectorlib/motion/OdometryFault.h"
 
 #include <cmath>
 
@@ -9,7 +9,6 @@ namespace hermes::scanmatcher {
 
 namespace {
 
-constexpr double latest = 1e10; // seconds since the epoch: beyond it stamps lose their digits
 constexpr double longestScan_s = 5;
 
 const QString sinceTheEpoch = QStringLiteral(", in seconds since the Unix epoch, not in milliseconds");
@@ -60,39 +59,19 @@ Result<Scan> readScan(WireView data, quint64 &unknown) {
 }
 
 Result<vectorlib::OdometrySample> readOdometry(WireView data, double stamp, quint64 &unknown) {
-    if (!(stamp >= 0 && stamp <= latest))
-        return wrong("odometry",
-                     QString("stamp: found %1, expected a number from 0 to %2").arg(stamp).arg(latest) +
-                         sinceTheEpoch);
     ReadReport report;
     const auto message = readMessage<OdometryMessage>(data, report);
     unknown += report.unknown;
     if (!message)
         return wrong("odometry", report.text());
-    using vectorlib::MotionModel;
-    if (std::hypot(message->twist.vx, message->twist.vy) > MotionModel::fastest_mps ||
-        std::abs(message->twist.omega) > MotionModel::fastest_radps)
-        return wrong("odometry",
-                     QString("member twist: found %1 m/s, %2 m/s and %3 rad/s, expected what a robot "
-                             "can: %4 m/s and %5 rad/s at most")
-                         .arg(message->twist.vx)
-                         .arg(message->twist.vy)
-                         .arg(message->twist.omega)
-                         .arg(MotionModel::fastest_mps)
-                         .arg(MotionModel::fastest_radps));
     vectorlib::OdometrySample sample{stamp,
                                      message->pose,
                                      {message->twist.vx, message->twist.vy, message->twist.omega},
                                      Eigen::Matrix3d(Eigen::Matrix3d::Zero())};
-    for (int i = 0; i < 9; ++i) {
-        const double value = message->covariance[std::size_t(i)];
-        if (i % 4 == 0 && value < 0)
-            return wrong("odometry",
-                         QString("member covariance.%1: found %2, expected a variance of at least 0")
-                             .arg(i)
-                             .arg(value));
-        (*sample.covariance)(i / 3, i % 3) = value;
-    }
+    for (int i = 0; i < 9; ++i)
+        (*sample.covariance)(i / 3, i % 3) = message->covariance[std::size_t(i)];
+    if (const std::string fault = vectorlib::faultOf(sample); !fault.empty())
+        return wrong("odometry", QString::fromStdString(fault));
     return sample;
 }
 

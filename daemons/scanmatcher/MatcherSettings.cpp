@@ -2,6 +2,7 @@
 
 #include "common/client/DaemonAddress.h"
 #include "common/settings/DottedPath.h"
+#include "vectorlib/mapping/NamedSettings.h"
 
 namespace hermes::scanmatcher {
 namespace {
@@ -141,18 +142,10 @@ void ScanMatcher::declareSettings() {
 
 vectorlib::ScanTrackerSettings ScanMatcher::trackerSettings() const {
     auto &values = const_cast<ScanMatcher *>(this)->settings();
-    vectorlib::ScanTrackerSettings s;
-    s.compensateMotion = values.flag("matcher.compensate_motion");
-    s.tracking.expectedDeviationXY = values.number("matcher.expected_deviation_m");
-    s.tracking.expectedDeviationAlpha = values.number("matcher.expected_deviation_rad");
-    s.tracking.permitted = {values.number("matcher.permitted_m"), values.number("matcher.permitted_m"),
-                            values.number("matcher.permitted_rad")};
-    s.tracking.minMatchedShare = values.number("matcher.min_matched_share");
-    s.relocalizeAfter = values.integer("matcher.relocalize_after");
-    s.relocalizeSeconds = values.number("matcher.relocalize_s");
-    s.sensorOnRobot = {values.number("sensor.x_m"), values.number("sensor.y_m"),
-                       values.number("sensor.theta_rad")};
-    return s;
+    return vectorlib::namedTrackerSettings([&](const char *name) {
+        const QJsonValue value = values.value(name);
+        return value.isBool() ? double(value.toBool()) : value.toDouble();
+    });
 }
 
 } // namespace hermes::scanmatcher

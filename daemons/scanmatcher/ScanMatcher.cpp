@@ -178,6 +178,7 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
         return;
     }
     Scan scan = parsed.take();
+    scan.replayed |= update.replayed;
     if (scan.partial)
         return;
     if (std::exchange(replayed_, scan.replayed) != scan.replayed)

@@ -35,6 +35,7 @@ SerialLogger::SerialLogger()
     exports_.setMaxThreadCount(1);
     reads_.setMaxThreadCount(1);
     connect(&second_, &QTimer::timeout, this, &SerialLogger::tick);
+    connect(this, &Daemon::clientGone, this, [this](quint64 client) { source_.clientGone(client); });
     viewTimer_.setSingleShot(true);
     connect(&viewTimer_, &QTimer::timeout, this, &SerialLogger::processViews);
     settleTimer_.setSingleShot(true);

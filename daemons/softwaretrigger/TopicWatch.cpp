@@ -43,6 +43,8 @@ WatchedState TopicWatch::state() const {
 }
 
 void TopicWatch::receive(const TopicUpdate &update) {
+    if (update.replayed) // it moves nothing, and the way meanwhile is not known
+        return interrupted();
     ++messages_;
     problem_ = take(update);
     if (!problem_.isEmpty()) {

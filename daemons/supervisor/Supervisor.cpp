@@ -1,6 +1,8 @@
 #include "daemons/supervisor/Supervisor.h"
 
+#include "common/OwnRobot.h"
 #include "common/Project.h"
+#include "daemons/supervisor/RobotId.h"
 #include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
@@ -153,6 +155,7 @@ Command Supervisor::processCommand(const QString &name, const QString &summary,
 
 Result<void> Supervisor::start() {
     guard_ = std::make_shared<ProcessGuard>();
+    tellRobot();
     reconcile();
     timer_.start(std::chrono::seconds(1));
     setState(DaemonState::Running);
@@ -160,7 +163,24 @@ Result<void> Supervisor::start() {
 }
 
 void Supervisor::settingsChanged(const QStringList &) {
+    tellRobot();
     reconcile();
+}
+
+void Supervisor::tellRobot() {
+    if (!robot_)
+        robot_ = ownRobot(); // it is one of several computers of a robot
+    if (!robot_) {
+        const Result<QString> id = robotId(settings().value("listen").toArray());
+        if (!id)
+            health().set("robot identity", HealthLevel::Warn,
+                         "the next start is another robot: " + id.error().message);
+        const QString host = QHostInfo::localHostName();
+        robot_ = {id ? *id : newRobotId(), host.isEmpty() ? "robot" : host};
+    }
+    setOwnRobot({robot_->id, settings().text("robot")});
+    if (!ownRobot()) // not named by the settings, or by nothing that can be shown
+        setOwnRobot(*robot_);
 }
 
 void Supervisor::reconcile() {
@@ -236,8 +256,7 @@ Result<QJsonValue> Supervisor::setEntries(const QJsonArray &entries) {
 }
 
 ProcessesMessage Supervisor::list() {
-    const QString robot = settings().text("robot");
-    ProcessesMessage all{robot.isEmpty() ? QHostInfo::localHostName() : robot, {}};
+    ProcessesMessage all{ownRobot().value_or(*robot_).name, {}};
     for (const auto &process : processes_)
         all.processes.push_back(process->status());
     return all;

@@ -33,11 +33,14 @@ private:
     Result<QJsonValue> remove(const QString &name);
     Result<QJsonValue> setEntries(const QJsonArray &entries);
     void dismiss(std::unique_ptr<SupervisedProcess> process);
+    /// Says to itself and to those that it starts of which robot they are.
+    void tellRobot();
     ProcessesMessage list();
     void update();
 
     std::shared_ptr<ProcessGuard> guard_;
     std::vector<std::unique_ptr<SupervisedProcess>> processes_;
+    std::optional<RobotIdentity> robot_; ///< as it is where the settings do not name it
     QTimer timer_;
     std::unique_ptr<Setup> setup_;
 };

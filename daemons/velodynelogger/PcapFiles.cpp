@@ -27,7 +27,7 @@ Outcome<void> PcapFiles::next() {
         if (const Outcome<void> closed = writer_.close(); !closed)
             return closed;
     note();
-    const std::string path = pathOf(files_.size() + 1);
+    const std::string path = pathOf(std::size_t(plan_.earlierFiles()) + files_.size() + 1);
     if (const Outcome<void> opened = writer_.open(path); !opened)
         return opened;
     files_.push_back({path.substr(path.rfind('/') + 1)});

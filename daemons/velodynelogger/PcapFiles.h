@@ -27,7 +27,9 @@ public:
     Outcome<void> close();
 
     const std::vector<File> &files() const { return files_; }
-    std::string path() const { return pathOf(files_.size()); } ///< of the last
+    std::string path() const {
+        return pathOf(std::size_t(plan_.earlierFiles()) + files_.size());
+    } ///< of the last
 
 private:
     Outcome<void> next();

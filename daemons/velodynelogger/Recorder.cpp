@@ -44,6 +44,7 @@ Result<void> Recorder::begin(const RecordingPlan &plan) {
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress_ = Progress();
+        progress_.earlier = plan.earlier;
     }
     publish(opened);
     if (!opened)
@@ -170,6 +171,7 @@ RecordingState Recorder::state() const {
                     {"queue", double(queueDrops_)},
                     {"too_long", double(tooLong_)},
                     {"unwritten", double(counts.packets - written + afterFailure_)}};
+    state.addEarlier(progress.earlier);
     state.gps = gpsOf(progress.position, counts.position);
     if (progress.error)
         state.error = diskError(QString::fromStdString(*progress.error), state.path);

@@ -17,6 +17,7 @@ public:
     explicit Recorder(std::size_t capacity = 12 * 1024 * 1024);
     ~Recorder() override;
 
+    bool goesOn() const override { return true; }
     Result<void> begin(const RecordingPlan &plan) override;
     void end() override;
     RecordingState state() const override;
@@ -33,6 +34,7 @@ public:
 private:
     /// Of a recording, together true at one moment.
     struct Progress {
+        QJsonObject earlier; ///< sidecar of what was recorded before an interruption
         std::string path;
         std::vector<PcapFiles::File> files;
         PacketAccount::Counts counts;

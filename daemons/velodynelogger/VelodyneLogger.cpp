@@ -46,6 +46,7 @@ VelodyneLogger::VelodyneLogger()
         return Error(ErrorCode::NotReady,
                      "only what is received is recorded; source.open {live: true} receives");
     });
+    connect(this, &Daemon::clientGone, this, [this](quint64 client) { source_.clientGone(client); });
     connect(&second_, &QTimer::timeout, this, &VelodyneLogger::tick);
     retry_.setSingleShot(true);
     connect(&retry_, &QTimer::timeout, this, &VelodyneLogger::publishTurns);

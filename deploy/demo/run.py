@@ -73,13 +73,14 @@ class Tour(Course):
 
 
 class Demo:
-    """The four daemons and one drive."""
+    """The five daemons and one drive."""
 
     def __init__(self, world, course, folder, logs):
         self.world, self.course = world, course
         lidar_port, motor_line = free_port(2368, socket.SOCK_DGRAM), os.path.join(logs, "motors")
         self.ports = {name: free_port(port) for name, port in
-                      (("simulator", 7490), ("motorcontrol", 7410), ("velodynelogger", 7420), ("scanmatcher", 7450))}
+                      (("simulator", 7490), ("motorcontrol", 7410), ("velodynelogger", 7420), ("scanmatcher", 7450),
+                       ("recorder", 7460))}
         self.processes = []
         try:
             # Who listens first, then what it listens to.
@@ -91,7 +92,9 @@ class Demo:
                                            **course.simulator})
             line = f"serial://{motor_line}?baud=115200"
             self.start("motorcontrol", logs, {"controllers.1.url": line, "controllers.2.url": line, **course.motors})
-            self.matcher, self.logger, self.simulator, self.motors = [process.connect() for process in self.processes]
+            others = [f"127.0.0.1:{port}" for name, port in self.ports.items() if name != "recorder"]
+            self.start("recorder", logs, {"daemons": json.dumps(others), "record.folder": folder})
+            self.matcher, _, self.simulator, self.motors, self.recorder = [process.connect() for process in self.processes]
             self.attendant = Attendant(self.motors, self.simulator)
         except BaseException:
             self.stop()
@@ -120,7 +123,9 @@ class Demo:
         odometry = Listener(self.ports["motorcontrol"], "odometry", 1000)
         truth = Listener(self.ports["simulator"], "truth", 1000)
         if self.course.records:
-            self.logger.call("record.start", name="recording")
+            self.wait(lambda: any("4 daemons" in one["message"] for one in self.recorder.call("daemon.status")["health"]),
+                      "the recorder")
+            self.recorder.call("session.start", name="recording")
         self.wait(lambda: poses.messages, "the first scan")
         self.follow(follower, steered_by, lambda follower: self.show(follower.progress, poses.messages))
         # A few scans more, taken standing still, then the end of the stream.
@@ -136,9 +141,10 @@ class Demo:
 
     def recorded(self):
         """Ends the recording."""
-        told = self.logger.call("record.stop")
-        return {"path": os.path.join("recording", os.path.basename(told["path"])),  # where it will be
-                "bytes": told["bytes"], **told["counts"], "losses": told["losses"]}
+        told = self.recorder.call("session.stop")
+        (lidar,) = (part for part in told["parts"] if part["daemon"] == "velodynelogger")
+        return {"path": "recording", "bytes": told["bytes"], **lidar["counts"], "losses": lidar["losses"],
+                "problems": told["problems"]}
 
     def follow(self, follower, steered_by, watch):
         """To the end of the path, with somebody beside the robot who helps it on."""
@@ -323,7 +329,7 @@ def keep_logs(work):
 
 def main():
     parser = argparse.ArgumentParser(
-        prog="./demo", description="Starts simulator, motor control, Velodyne logger and scan matcher as processes of their own, "
+        prog="./demo", description="Starts simulator, motor control, Velodyne logger, scan matcher and recorder as processes of their own, "
         "drives once through a world as any client would, and leaves map, trajectories, recording and summary in demo-out/.")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")

@@ -131,6 +131,8 @@ class PoseTopic(threading.Thread):
         try:
             for message in self.stream:
                 data = message["data"]
+                if message.get("replayed"):  # it was somewhere else then
+                    continue
                 if data.get("outcome", "matched") == "matched":  # a lost matcher only guesses
                     pose, twist = numbers(data.get("pose", data), "x", "y", "theta"), numbers(data["twist"], "vx", "vy", "omega")
                     self.newest = numbers(message, "stamp")["stamp"], pose, twist

@@ -31,14 +31,10 @@ Banners::Banners(QMainWindow &window, DriveControl &drive, Sounds &sounds)
     auto *const replay = new Banner;
     replay->setObjectName("replayBanner");
     add(replay, "replayLine");
-    connect(&drive.replay(), &ReplayWatch::changed, replay, [&drive, replay] {
-        const QString text = drive.replay().text();
+    connect(&drive.sessions(), &Sessions::replayChanged, replay, [&drive, replay] {
+        const QString &text = drive.sessions().replay();
         replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
                      "background: #6a2fb0; color: white;");
-    });
-    connect(&drive.replay(), &ReplayWatch::lost, this, [this](const QString &robot) {
-        notify(tr("%1 is gone from here, and may still show a recording. Added again, Live ends that.")
-                   .arg(robot));
     });
     note_->setObjectName("noticeBanner");
     add(note_, "noticeLine");

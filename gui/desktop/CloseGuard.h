@@ -7,24 +7,20 @@
 
 namespace hermes::desktop {
 
-class RecordPanel;
 class SettingsPanel;
 
-/// What the operator is to know before the window closes, and what is to end with it. A window that is closed
+/// What the operator is to know before the window closes. A window that is closed
 /// once more within 20 s is meant to be, unless there is something else to be said by then.
 class CloseGuard : public QObject {
     Q_OBJECT
 public:
     CloseGuard(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
-               RecordPanel &recordings, QObject *parent = nullptr);
+               QObject *parent = nullptr);
 
-    /// What speaks against closing now; empty: nothing, and what was replayed from here is told to end.
+    /// What speaks against closing now; empty: nothing.
     QString objection();
     /// From now on nothing does.
     void closeAnyway() { isForced_ = true; }
-    /// After the event loop has ended: returns when what was replayed from here is live again, or a second
-    /// later.
-    void waitForLive() const;
 
 Q_SIGNALS:
     /// What was still to be written is: the window may close without another wish.
@@ -36,7 +32,6 @@ private:
     DriveControl &drive_;
     LayoutKeeper &keeper_;
     const SettingsPanel &settings_;
-    RecordPanel &recordings_;
     bool isForced_ = false, waits_ = false;
     QElapsedTimer tried_; ///< since something was said
     QString said_;

@@ -106,7 +106,6 @@ QJsonObject fromIni(const QString &path, const QByteArray &text) {
         {"robots",
          QJsonObject{{"addresses", QJsonArray::fromStringList(file.value("robots/addresses").toStringList())},
                      {"names", objectOfPairs(file.value("robots/names").toStringList())},
-                     {"places", objectOfPairs(file.value("robots/places").toStringList())},
                      {"chosen", file.value("robots/chosen").toString()}}},
         {"kept", kept}};
 }
@@ -165,7 +164,6 @@ void Layouts::read() {
     robots_.names = textsIn(robots["names"]);
     for (QString &name : robots_.names)
         name = nameOf(name);
-    robots_.places = textsIn(robots["places"]);
     robots_.chosen = robots["chosen"].toString();
     values_ = textsIn(kept["kept"]);
 }
@@ -265,7 +263,6 @@ QByteArray Layouts::json() const {
                                    {"plots", one.layout.plots}});
     const QJsonObject robots{{"addresses", QJsonArray::fromStringList(robots_.addresses)},
                              {"names", objectWith(robots_.names)},
-                             {"places", objectWith(robots_.places)},
                              {"chosen", robots_.chosen}};
     return QJsonDocument({{"layout", current_},
                           {"layouts", layouts},

@@ -34,13 +34,11 @@ public:
     };
     struct Robots {
         QStringList addresses;
-        QMap<QString, QString> names;  ///< given ones, by address
-        QMap<QString, QString> places; ///< of daemons that were put to a robot
-        QString chosen;                ///< address
+        QMap<QString, QString> names; ///< given ones, by id
+        QString chosen;               ///< id
 
         bool operator==(const Robots &other) const {
-            return addresses == other.addresses && names == other.names && places == other.places &&
-                   chosen == other.chosen;
+            return addresses == other.addresses && names == other.names && chosen == other.chosen;
         }
     };
 

@@ -16,7 +16,6 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
-#include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/FloatingDock.h"
@@ -85,15 +84,10 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
     for (const PanelKind &kind : panelKinds())
         addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_, buttons_}));
-    auto *const recordings = findChild<RecordPanel *>();
-    connect(&drive_.replay(), &ReplayWatch::changed, recordings,
-            [this, recordings] { recordings->setReplaying(drive_.replay().isReplaying()); });
-    connect(recordings, &RecordPanel::liveWanted, this, [this] { drive_.replay().endAll(); });
-    connect(recordings, &RecordPanel::recordingChanged, this, [this](bool isRecording) {
+    connect(&drive_.sessions(), &Sessions::changed, this, [this] {
         findChild<QDockWidget *>("recordings") // seen when its tab is behind others, too
-            ->setWindowTitle(isRecording ? tr("Recordings \u25cf") : tr("Recordings"));
+            ->setWindowTitle(drive_.sessions().isRecording() ? tr("Recordings \u25cf") : tr("Recordings"));
     });
-    drive_.replay().setPlayer(&recordings->player());
     addEventBar();
     addButtonBar();
     banners_ = new Banners(*this, drive_, sounds_); // the last of them is the highest
@@ -103,7 +97,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     restoreAll();
     connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
     connect(&keeper_, &LayoutKeeper::failed, banners_, &Banners::notify);
-    closeGuard_ = new CloseGuard(drive_, keeper_, *findChild<SettingsPanel *>(), *recordings, this);
+    closeGuard_ = new CloseGuard(drive_, keeper_, *findChild<SettingsPanel *>(), this);
     connect(closeGuard_, &CloseGuard::ready, this, &MainWindow::close);
 }
 
@@ -151,7 +145,6 @@ void MainWindow::restoreAll() {
     banners_->notify(
         QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
     fleet_.setNames(layouts_.robots().names);
-    fleet_.setPlaces(layouts_.robots().places);
     fleet_.prefer(layouts_.robots().chosen);
 }
 
@@ -318,7 +311,7 @@ void MainWindow::keepAll() {
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
     layouts_.setValue("limits", compactText(drive_.limits()));
     layouts_.setValue("layers", compactText(QJsonObject::fromVariantMap(map_->layers())));
-    layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()});
+    layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.preferred()});
 }
 
 // Now and then, whatever was set, for the window may not be closed in order.
@@ -343,10 +336,6 @@ bool MainWindow::focusNextPrevChild(bool isNext) {
 void MainWindow::leave() {
     closeGuard_->closeAnyway();
     close();
-}
-
-void MainWindow::finish() {
-    closeGuard_->waitForLive();
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {

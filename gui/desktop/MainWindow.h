@@ -34,9 +34,6 @@ public:
     MapPanel &map() { return *map_; }
     /// Closes the window without a question.
     void leave();
-    /// After the event loop has ended: returns when what was replayed from here is live again, or a second
-    /// later.
-    void finish();
 
 protected:
     void showEvent(QShowEvent *event) override;

@@ -123,17 +123,17 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
 }
 
 void TopBar::updateRobots() {
-    std::vector<std::pair<QString, QString>> all, shown; // name and address
+    std::vector<std::pair<QString, QString>> all, shown; // name and id
     for (const auto &robot : fleet_.robots())
-        all.emplace_back(fleet_.titleOf(*robot), robot->address());
+        all.emplace_back(fleet_.titleOf(*robot), robot->id());
     for (int i = 0; i < robots_->count(); ++i)
         shown.emplace_back(robots_->itemText(i), robots_->itemData(i).toString());
     if (all != shown) {
         robots_->clear();
-        for (const auto &[name, address] : all)
-            robots_->addItem(name, address);
+        for (const auto &[name, id] : all)
+            robots_->addItem(name, id);
     }
-    robots_->setCurrentIndex(fleet_.robot() ? robots_->findData(fleet_.robot()->address()) : -1);
+    robots_->setCurrentIndex(fleet_.robot() ? robots_->findData(fleet_.robot()->id()) : -1);
     window()->setWindowTitle(fleet_.robot() ? tr("%1 - Hermes").arg(fleet_.titleOf(*fleet_.robot()))
                                             : tr("Hermes"));
 }

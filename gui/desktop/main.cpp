@@ -102,7 +102,5 @@ int main(int argc, char **argv) {
     const EndSignals signals;
     QObject::connect(&signals, &EndSignals::endWanted, &window, &MainWindow::leave);
     window.show();
-    const int code = QApplication::exec();
-    window.finish();
-    return code;
+    return QApplication::exec();
 }

@@ -274,6 +274,8 @@ QStringList adviceFor(const Error &error, Client &client, const Arguments &argum
         return wasClosed(error, arguments);
     if (error.is(ErrorCode::ControlHeld))
         return aboutControl(error, arguments);
+    if (command == "session remove" && error.data["confirm"].toBool())
+        return {"--yes removes it"};
     if (command == "drive" && error.is(ErrorCode::MethodNotFound))
         return {QString("%1 drives no robot; hermes-motorcontrol does").arg(theDaemon(arguments))};
     if (isCall && error.is(ErrorCode::MethodNotFound))

@@ -11,15 +11,17 @@ namespace hermes::ctl {
 namespace {
 
 /// What is wrong with the text of a number, or nothing.
-QString readNumber(const QString &text, double &value) {
+QString readNumber(const QString &text, double &value, bool mayBe0 = false) {
     bool ok = false;
     value = text.toDouble(&ok);
-    const bool isGood = ok && std::isfinite(value) && value > 0 && value <= 1e9;
-    return isGood ? QString() : '"' + text + "\", expected a number above 0, at most 1e9";
+    const bool isGood = ok && std::isfinite(value) && (value > 0 || (mayBe0 && value == 0)) && value <= 1e9;
+    return isGood
+               ? QString()
+               : QString("\"%1\", expected a number %2 0, at most 1e9").arg(text, mayBe0 ? "from" : "above");
 }
 
 /// A flag, a text or a number; a number above `most` counts as that.
-template <auto member, int most = 1000000000>
+template <auto member, int most = 1000000000, bool mayBe0 = false>
 QString take(Arguments &arguments, const QString &text) {
     auto &place = arguments.*member;
     using Value = std::decay_t<decltype(place)>;
@@ -29,7 +31,7 @@ QString take(Arguments &arguments, const QString &text) {
         place = text;
     } else {
         double value = 0;
-        if (const QString wrong = readNumber(text, value); !wrong.isEmpty())
+        if (const QString wrong = readNumber(text, value, mayBe0); !wrong.isEmpty())
             return wrong;
         if (std::is_same_v<Value, int> && value != std::floor(value))
             return text + ", expected a whole number";
@@ -62,8 +64,9 @@ QString takeHost(Arguments &arguments, const QString &text) {
     return {};
 }
 
-QString takeDaemons(Arguments &arguments, const QString &text) {
-    arguments.daemons = text.split(',');
+template <auto member>
+QString takeList(Arguments &arguments, const QString &text) {
+    arguments.*member = text.split(',');
     return {};
 }
 
@@ -76,8 +79,12 @@ Error wrongUsage(const QString &text) {
 const std::vector<Option> &options() {
     static const std::vector<Option> all{
         {"--daemons A,B",
-         "record, replay, doc --all: these daemons and no others; setup: the supervisor, the motor control",
-         takeDaemons},
+         "list, doc --all: these daemons and no others; session start: these loggers; setup: the supervisor, "
+         "the "
+         "motor control",
+         takeList<&Arguments::daemons>},
+        {"--recorder D", "session: this recorder, not the one at its default port",
+         take<&Arguments::recorder>},
         {"--host HOST", "where daemons given by name run (127.0.0.1)", takeHost},
         {"--timeout S",
          "the longest wait. Without it 5 s for a connection, 120 s for the other computer of keys pair; for "
@@ -92,14 +99,25 @@ const std::vector<Option> &options() {
         {"--rate HZ", "watch: at most so many messages a second", take<&Arguments::rate_hz>},
         {"--list", "setup: only tells what is plugged in (--yes: asks silent lines, too)",
          take<&Arguments::list>},
-        {"--yes", "setup: without questions; the wheels are off the ground", take<&Arguments::yes>},
+        {"--yes", "setup: without questions; the wheels are off the ground; session remove: without one",
+         take<&Arguments::yes>},
         {"--undo", "setup: puts back what the last one has replaced", take<&Arguments::undo>},
         {"--wheels", "setup: only tests the wheels", take<&Arguments::wheels>},
-        {"--count N", "watch: end after N messages; log: the last N records (100)", take<&Arguments::count>},
+        {"--count N", "watch: end after N messages; log: the last N records (100); session list: the last N",
+         take<&Arguments::count>},
         {"--csv", "watch: CSV, a column for each value", take<&Arguments::csv>},
         {"--speed X", "replay: so many times as fast (1)", take<&Arguments::speed>},
         {"--for S", "drive: for so many seconds (10)", take<&Arguments::for_s, 1000000>},
+        {"--from S", "replay: begin at this second of the session (0)",
+         take<&Arguments::from_s, 1000000000, true>},
         {"--loop", "replay: begin anew at the end", take<&Arguments::loop>},
+        {"--without A,B", "replay: these daemons stay live", takeList<&Arguments::without>},
+        {"--detach", "replay: the recorder goes on alone; session live ends it", take<&Arguments::detach>},
+        {"--at S", "session explain: what was at this second of the session",
+         take<&Arguments::at_s, 1000000000, true>},
+        {"--format F", "session export: csv, tum, carmen or mcap", take<&Arguments::format>},
+        {"--topics A,B", "session export: these topics and no others, as motorcontrol/odometry",
+         takeList<&Arguments::topics>},
         {"--role ROLE", "keys issue, pair: observer, operator, engineer, or daemon", take<&Arguments::role>},
         {"--days N", "keys issue, pair: valid for so many days (730)", take<&Arguments::days, 36500>},
         {"--port P", "keys pair: waits on this port (7499)", takePort},
@@ -120,7 +138,7 @@ const Option *findOption(const QString &name) {
 
 void Arguments::takeWord(const QString &word) {
     if (command.isEmpty())
-        command = word;
+        command = withoutShortName(word);
     else if (!subcommandNames(command).isEmpty())
         command += ' ' + word;
     else

@@ -10,7 +10,7 @@ namespace hermes::ctl {
 
 /// The command line of hermesctl.
 struct Arguments {
-    QString command;   ///< two words for `record start` and its like
+    QString command;   ///< two words for `session start` and its like
     QStringList words; ///< what follows the command, options taken out
     QString host = "127.0.0.1";
     std::chrono::milliseconds timeout{5000};
@@ -21,11 +21,16 @@ struct Arguments {
     int port = 0;       ///< 0: the usual one
     QString role;
     double speed = 1;
-    double for_s = 0;    ///< 0: without end
-    QStringList given;   ///< names of all options, as they came
-    QStringList daemons; ///< speak to these; empty: to those at their default ports
-    QString out;         ///< file instead of stdout
-    bool force = false;  ///< overwrites it
+    double for_s = 0;              ///< 0: without end
+    QStringList given;             ///< names of all options, as they came
+    QStringList daemons;           ///< speak to these; empty: to those at their default ports
+    QString recorder = "recorder"; ///< who records and replays sessions
+    QStringList without, topics;
+    QString format;
+    double at_s = 0, from_s = 0;
+    bool detach = false;
+    QString out;        ///< file instead of stdout
+    bool force = false; ///< overwrites it
     bool all = false;
     bool network = false;
     bool loop = false;

@@ -13,7 +13,6 @@
 #include "gui/hermesctl/Question.h"
 #include "gui/hermesctl/Table.h"
 #include "gui/hermesctl/Waiting.h"
-#include "gui/hermesctl/WrongItems.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
@@ -81,8 +80,23 @@ void noteAngles(Client &client, const QString &method, const QJsonObject &values
             note(text);
 }
 
-/// A refusal may tell when the same is taken, which is waited for, or that a person has to confirm, who is
-/// asked.
+QString logLine(WireView record) {
+    ReadReport report;
+    const auto read = readMessage<LogMessage>(record, report);
+    if (!read)
+        return "a record of the log cannot be read: " + report.text();
+    const auto time = QDateTime::fromMSecsSinceEpoch(qint64(read->stamp * 1000));
+    return QString("%1 %2 %3: %4")
+        .arg(time.toString(Qt::ISODateWithMs), read->level, read->source, read->text);
+}
+
+} // namespace
+
+Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
+                       const QJsonValue &params, Client::Repeats repeats) {
+    return PatientCall(client, arguments).run(method, params, repeats);
+}
+
 Result<QJsonValue> askAgain(Client &client, const Arguments &arguments, const QString &method,
                             QJsonObject params) {
     constexpr double longest_s = 5;
@@ -108,23 +122,6 @@ Result<QJsonValue> askAgain(Client &client, const Arguments &arguments, const QS
     }
 }
 
-QString logLine(WireView record) {
-    ReadReport report;
-    const auto read = readMessage<LogMessage>(record, report);
-    if (!read)
-        return "a record of the log cannot be read: " + report.text();
-    const auto time = QDateTime::fromMSecsSinceEpoch(qint64(read->stamp * 1000));
-    return QString("%1 %2 %3: %4")
-        .arg(time.toString(Qt::ISODateWithMs), read->level, read->source, read->text);
-}
-
-} // namespace
-
-Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
-                       const QJsonValue &params, Client::Repeats repeats) {
-    return PatientCall(client, arguments).run(method, params, repeats);
-}
-
 namespace {
 
 Result<void> listNetwork(const Arguments &arguments) {
@@ -139,7 +136,7 @@ Result<void> listNetwork(const Arguments &arguments) {
         return Error(ErrorCode::Disconnected,
                      "no daemon has announced itself; only a daemon that listens on the network does so");
     QJsonArray values;
-    std::vector<QStringList> rows{{"name", "host", "address", "port", "framing"}};
+    std::vector<QStringList> rows{{"name", "host", "address", "port", "framing", "robot"}};
     const QStringList heading = rows.front();
     for (const QJsonObject &daemon : *found) {
         values.append(daemon);
@@ -154,19 +151,30 @@ Result<void> listNetwork(const Arguments &arguments) {
 
 /// What is wrong with the reply of one that has taken the connection, where it lacks a text of that name;
 /// nothing: empty.
-QString whyUnlisted(const SessionReply &reply, const char *method, const char *member) {
+QString whyUnlisted(const Client &client, const Result<QJsonValue> &reply, const char *method,
+                    const char *member) {
     const QString foreign = "answers, but is no daemon of Hermes: ";
-    if (reply.result)
-        return (*reply.result)[member].toString().isEmpty()
+    if (reply)
+        return (*reply)[member].toString().isEmpty()
                    ? foreign + QString("its reply to %1 has no %2").arg(method, member)
                    : QString();
-    const Error error = reply.result.error();
-    const Client::Rejected &rejected = reply.member.client->rejected();
+    const Error error = reply.error();
+    const Client::Rejected &rejected = client.rejected();
     if (error.is(ErrorCode::MethodNotFound) || rejected.unreadable > 0 || rejected.unasked > 0)
         return foreign + error.message;
     if (error.is(ErrorCode::TimedOut) || error.is(ErrorCode::Disconnected))
         return "does not answer: " + error.message;
     return "does not say what it is: " + error.message;
+}
+
+/// The health items that are not ok, of what daemon.status gave: name, level and message of each.
+QJsonArray wrongItems(const Result<QJsonValue> &status) {
+    QJsonArray wrong;
+    for (const QJsonValue &item : status ? (*status)["health"].toArray() : QJsonArray())
+        if (item["level"] != "ok")
+            wrong.append(
+                QJsonObject{{"name", item["name"]}, {"level", item["level"]}, {"message", item["message"]}});
+    return wrong;
 }
 
 } // namespace
@@ -182,43 +190,58 @@ Result<void> listDaemons(const Arguments &arguments) {
         addresses.append(*address);
     }
     const auto all = connectAll(addresses, arguments.timeout);
-    std::vector<SessionCall> calls;
+    std::vector<Client *> clients;
     for (const auto &client : all) {
         if (client->isConnected())
-            calls.push_back({{client->address(), client.get(), false, false}, {}});
+            clients.push_back(client.get());
     }
-    const auto infos = callAllAndWait(calls, "daemon.info", arguments.timeout);
-    auto answering = calls;
-    for (std::size_t i = 0; i < calls.size(); ++i)
-        if (!infos[i].result)
-            answering[i].member.client = nullptr; // is not waited for again
+    for (const auto &client : all)
+        if (!arguments.daemons.isEmpty() && !clients.empty() && !client->isConnected())
+            note(client->problem());
+    const auto infos = callAllAndWait(clients, "daemon.info", arguments.timeout);
+    auto answering = clients;
+    for (std::size_t i = 0; i < clients.size(); ++i)
+        if (!infos[i])
+            answering[i] = nullptr; // is not waited for again
     const auto states = callAllAndWait(answering, "daemon.status", arguments.timeout);
-    const auto text = [](const SessionReply &reply, const char *member, const char *unknown) {
-        const QString found = reply.result ? (*reply.result)[member].toString() : QString();
+    const auto text = [](const Result<QJsonValue> &reply, const char *member, const char *unknown) {
+        const QString found = reply ? (*reply)[member].toString() : QString();
         return found.isEmpty() ? QString::fromLatin1(unknown) : printable(found);
     };
     QJsonArray found;
-    for (std::size_t i = 0; i < calls.size(); ++i) {
+    for (std::size_t i = 0; i < clients.size(); ++i) {
         const QString name = text(infos[i], "name", "?"), state = text(states[i], "state", "?");
-        const QString version = text(infos[i], "version", ""), &address = calls[i].member.name;
-        const QString nameless = whyUnlisted(infos[i], "daemon.info", "name");
+        const QString version = text(infos[i], "version", ""), address = clients[i]->address();
+        const QJsonValue robot = infos[i] ? (*infos[i])["robot"] : QJsonValue::Undefined;
+        const QString nameless = whyUnlisted(*clients[i], infos[i], "daemon.info", "name");
         const QString unlisted =
-            nameless.isEmpty() ? whyUnlisted(states[i], "daemon.status", "state") : nameless;
+            nameless.isEmpty() ? whyUnlisted(*clients[i], states[i], "daemon.status", "state") : nameless;
         const QJsonArray wrong =
             unlisted.isEmpty()
                 ? wrongItems(states[i])
                 : QJsonArray{QJsonObject{{"name", "daemon"}, {"level", "error"}, {"message", unlisted}}};
         if (!arguments.json) {
-            printLine(QString("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
+            printLine(QString("%1 %2 %3 %4 %5")
+                          .arg(name, -16)
+                          .arg(state, -10)
+                          .arg(version, -8)
+                          .arg(address, -22)
+                          .arg(printable(robot["name"].toString()))
+                          .trimmed());
             for (const QJsonValue &item : wrong)
-                printLine(printable("  " + wrongText(item)));
+                printLine(printable(
+                    QString("  %1: %2: %3")
+                        .arg(item["level"].toString(), item["name"].toString(), item["message"].toString())));
         }
-        found.append(QJsonObject{
-            {"name", name}, {"state", state}, {"version", version}, {"address", address}, {"wrong", wrong}});
+        QJsonObject one{
+            {"name", name}, {"state", state}, {"version", version}, {"address", address}, {"wrong", wrong}};
+        if (robot.isObject())
+            one.insert("robot", robot);
+        found.append(one);
     }
-    if (arguments.json && !calls.empty())
+    if (arguments.json && !clients.empty())
         printJson(found);
-    if (!calls.empty())
+    if (!clients.empty())
         return {};
     for (const auto &client : all)
         if (!client->problem().contains("Connection refused")) // by a host that cannot be asked

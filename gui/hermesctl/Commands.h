@@ -21,16 +21,6 @@ Result<void> setUp(const Arguments &arguments);
 Result<void> stopRobots(const Arguments &arguments);
 Result<void> emergencyStopRobots(const Arguments &arguments);
 
-/// All loggers begin one session, or none does and the error tells what was taken back.
-Result<void> recordStart(const Arguments &arguments);
-/// Error: what is missing or does not agree.
-Result<void> recordStop(const Arguments &arguments);
-/// A text into the recordings of all loggers that have marks.
-Result<void> recordMark(const Arguments &arguments);
-Result<void> recordStatus(const Arguments &arguments);
-Result<void> recordList(const Arguments &arguments);
-/// All loggers of a session replay it, until its end or SIGINT; then they are live again.
-Result<void> replay(const Arguments &arguments);
 /// Keys for TLS, in the folder of this user: docs/security.md.
 Result<void> keysInit(const Arguments &arguments);
 Result<void> keysIssue(const Arguments &arguments);
@@ -49,6 +39,10 @@ Result<void> getSettings(Client &client, const Arguments &arguments);
 Result<void> setSettings(Client &client, const Arguments &arguments);
 Result<void> showLog(Client &client, const Arguments &arguments);
 Result<void> document(Client &client, const Arguments &arguments);
+/// Has the recorder, which is the first word, do what the second word of the command says, and tells what
+/// came of it. Error also: what is missing of a session. A replay is shown until its end or a signal, which
+/// ends it.
+Result<void> session(Client &recorder, const Arguments &arguments);
 /// The reference of all daemons on one page.
 Result<void> documentAll(const Arguments &arguments);
 /// Prints a topic until the count is reached, as one JSON object a line or as CSV.
@@ -64,5 +58,10 @@ Result<void> checkDrive(const Arguments &arguments);
 Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
                        const QJsonValue &params = QJsonObject(),
                        Client::Repeats repeats = Client::Repeats::Usual);
+
+/// The same; a refusal may tell when the same is taken, which is waited for, or that a person has to confirm,
+/// who is asked.
+Result<QJsonValue> askAgain(Client &client, const Arguments &arguments, const QString &method,
+                            QJsonObject params);
 
 } // namespace hermes::ctl

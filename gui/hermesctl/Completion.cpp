@@ -8,10 +8,8 @@
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/DriveLine.h"
 #include "gui/hermesctl/Hosts.h"
-#include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Subcommands.h"
 #include "gui/hermesctl/TypedLine.h"
-#include "gui/session/SessionRecorder.h"
 
 #include <QJsonArray>
 
@@ -82,7 +80,11 @@ private:
             return plain(knownHosts(promptTimeout), before);
         if (option == "--role")
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
-        if (option != "--daemons")
+        if (option == "--format")
+            return plain({"csv", "tum", "carmen", "mcap"}, before);
+        if (option == "--recorder")
+            return daemons(before);
+        if (option != "--daemons" && option != "--without")
             return {};
         const QString given = line_.current.mid(before.size());
         const QString listed = given.left(given.lastIndexOf(',') + 1);
@@ -119,13 +121,13 @@ private:
         return word.contains('|') ? plain(word.split('|')) : Candidates();
     }
 
-    Candidates daemons() const {
+    Candidates daemons(const QString &before = {}) const {
         Candidates found;
         for (const QString &name : daemonNames()) {
             const QString address = *daemonAddress(name, line_.arguments.host);
-            found.push_back({name, address});
-            if (!line_.current.isEmpty()) // names first: who wants an address begins with it
-                found.push_back({address, name});
+            found.push_back({before + name, address});
+            if (line_.current.size() > before.size()) // names first: who wants an address begins with it
+                found.push_back({before + address, name});
         }
         return found;
     }
@@ -164,6 +166,8 @@ private:
 
     QStringList whatThereIs(const QString &method, const QString &parameter) {
         const bool isName = parameter == "name";
+        if (isName && method.startsWith("session.") && method != "session.start")
+            return namesOf(ask("session.list").toArray());
         if (parameter == "recording" || (isName && method.startsWith("record.") && method != "record.start"))
             return namesOf(ask("record.list").toArray());
         if (isName && method.startsWith("process.") && method != "process.add")
@@ -209,15 +213,11 @@ private:
     }
 
     Candidates sessions() {
-        line_.arguments.timeout = promptTimeout;
-        const auto loggers = Loggers::find(line_.arguments);
-        if (!loggers)
-            return {};
-        SessionRecorder recorder(loggers->members);
-        const auto list = await<SessionList>([&](auto done) { recorder.list(0, done); });
+        line_.arguments.words = QStringList(line_.arguments.recorder);
         Candidates found;
-        for (const RecordedSession &session : list.sessions)
-            found.push_back({session.name, session.members().join(", ")});
+        for (const QJsonValue &session : ask("session.list").toArray())
+            found.push_back(
+                {session["name"].toString(), session["daemons"].toVariant().toStringList().join(", ")});
         return found;
     }
 

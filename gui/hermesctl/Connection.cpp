@@ -1,10 +1,12 @@
 #include "gui/hermesctl/Connection.h"
+#include "common/interface/InterfaceUrl.h"
 
 #include "common/client/DaemonAddress.h"
 #include "gui/hermesctl/Hosts.h"
 #include "gui/hermesctl/Waiting.h"
 
 #include <QTimer>
+#include <algorithm>
 
 namespace hermes::ctl {
 
@@ -56,11 +58,25 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
     return clients;
 }
 
-SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
-                              std::chrono::milliseconds timeout) {
+std::vector<Result<QJsonValue>> callAllAndWait(const std::vector<Client *> &clients, const QString &method,
+                                               std::chrono::milliseconds timeout) {
     const Waiting waiting(timeout);
-    QObject context;
-    return await<SessionReplies>([&](auto done) { callAll(calls, method, timeout, &context, done); });
+    QEventLoop loop;
+    std::vector<Result<QJsonValue>> replies(clients.size(), Error(ErrorCode::Disconnected, method));
+    auto open = clients.size() - std::size_t(std::count(clients.begin(), clients.end(), nullptr));
+    for (std::size_t i = 0; i < clients.size(); ++i)
+        if (clients[i])
+            clients[i]->call(
+                method, QJsonObject(),
+                [&, i](const Result<QJsonValue> &result) {
+                    replies[i] = result;
+                    if (--open == 0)
+                        loop.quit();
+                },
+                timeout);
+    if (open > 0)
+        loop.exec();
+    return replies;
 }
 
 } // namespace hermes::ctl

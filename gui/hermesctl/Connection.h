@@ -1,10 +1,9 @@
 #pragma once
 
-#include "gui/session/SessionMember.h"
+#include "common/client/Client.h"
 
 #include <QEventLoop>
 #include <memory>
-#include <optional>
 
 namespace hermes::ctl {
 
@@ -16,23 +15,9 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
                                                 std::chrono::milliseconds timeout);
 
-/// Begins something, and waits in a nested event loop for what it gives: begin takes a function to give it
-/// to.
-template <typename T, typename Begin>
-T await(const Begin &begin) {
-    std::optional<T> result;
-    QEventLoop loop;
-    begin([&](const T &value) {
-        result = value;
-        loop.quit();
-    });
-    if (!result)
-        loop.exec();
-    return *result;
-}
-
-/// As callAll, and waits.
-SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
-                              std::chrono::milliseconds timeout);
+/// Calls a method of all at the same time; the replies are in their order. Who is nullptr is not called, and
+/// has the error Disconnected.
+std::vector<Result<QJsonValue>> callAllAndWait(const std::vector<Client *> &clients, const QString &method,
+                                               std::chrono::milliseconds timeout);
 
 } // namespace hermes::ctl

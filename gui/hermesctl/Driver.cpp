@@ -67,6 +67,8 @@ Result<void> Driver::acquire() {
 }
 
 void Driver::onOdometry(const TopicUpdate &update) {
+    if (update.replayed)
+        return;
     ReadReport report;
     const auto odometry = readMessage<OdometryMessage>(update.data, report);
     if (!odometry)

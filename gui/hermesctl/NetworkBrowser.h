@@ -16,8 +16,8 @@ class NetworkBrowser : public QObject {
 public:
     NetworkBrowser();
 
-    /// Looks for a while, in a nested event loop: {name, host, address, port, framing, protocol, tls} of
-    /// each, by names. Error: Avahi or D-Bus does not run here.
+    /// Looks for a while, in a nested event loop: {name, host, address, port, framing, protocol, tls}
+    /// of each and {robot, robot_id} of those that know, by names. Error: Avahi or D-Bus does not run here.
     Result<QList<QJsonObject>> look(std::chrono::milliseconds howLong);
 
 private Q_SLOTS:

@@ -1,4 +1,5 @@
 // hermesctl stop and estop: every robot that is there, at once.
+#include "common/Project.h"
 #include "common/client/DaemonAddress.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/NetworkBrowser.h"

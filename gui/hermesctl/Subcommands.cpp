@@ -15,8 +15,6 @@ Speaks to the daemons of a robot.
 const char *const helpMiddle = R"(
 D is the name of a daemon (at its default port), HOST:PORT, or a URL.
 
-Loggers are the daemons with the command record.start that answer at their default ports.
-
 )";
 
 const char *const helpEnd = R"(  --help, --version
@@ -78,14 +76,23 @@ const std::vector<Subcommand> &subcommands() {
          "--list --yes --undo --wheels --daemons", setUp},
         {"stop [D...]", "stops all robots that are there, at once, and tells which stand", "", stopRobots},
         {"estop [D...]", "the same, and they stay stopped until motor.reset_estop", "", emergencyStopRobots},
-        {"record start NAME", "all loggers begin to record as one session, or none does", "--daemons",
-         recordStart},
-        {"record stop", "ends it and checks that nothing is missing", "--daemons", recordStop},
-        {"record mark TEXT", "adds a text with the time to the recording", "--daemons", recordMark},
-        {"record status", "what each logger records", "--daemons", recordStatus},
-        {"record list", "the sessions that were recorded", "--daemons", recordList},
-        {"replay SESSION", "plays a session back through the same topics, until its end or Ctrl-C",
-         "--daemons --speed --loop", replay},
+        {"session start [NAME]", "the recorder begins to record all of the robot, or nothing begins",
+         "--recorder --daemons", session},
+        {"session stop", "ends it and tells what is missing", "--recorder", session},
+        {"session mark TEXT", "adds a text with the time to what is recorded", "--recorder", session},
+        {"session status", "what is recorded or replayed now", "--recorder", session},
+        {"session list", "those that were recorded, the latest first", "--recorder --count", session},
+        {"session info SESSION", "its length, way, topics, marks, stops and faults", "--recorder", session},
+        {"session replay SESSION", "plays it back through the same topics, until its end or Ctrl-C",
+         "--recorder --speed --from --loop --without --detach", session},
+        {"session live", "ends a replay", "--recorder", session},
+        {"session explain SESSION", "who drove, and why the robot stopped", "--recorder --at", session},
+        {"session export SESSION --format F", "writes files for other programs beside it, and tells which",
+         "--recorder --format --topics", session},
+        {"session rename SESSION NAME", "gives it another name", "--recorder", session},
+        {"session remove SESSION", "removes it, after a question", "--recorder --yes", session},
+        {"record ...", "short for session: record start, record stop, ...", "", "session"},
+        {"replay SESSION", "short for session replay", "", "session replay"},
         {"keys init", "makes an authority that signs keys for TLS, and your own keys", "", keysInit},
         {"keys issue NAME --role ROLE",
          "keys for a person (observer, operator, engineer) or a robot (daemon)", "--role --days", keysIssue},
@@ -132,6 +139,12 @@ const Subcommand *findSubcommand(const QString &name) {
             return &one;
     }
     return nullptr;
+}
+
+QString withoutShortName(const QString &word) {
+    const Subcommand *const command = findSubcommand(word);
+    const auto *const meaning = command ? std::get_if<const char *>(&command->run) : nullptr;
+    return meaning ? *meaning : word;
 }
 
 QStringList commonOptions() {

@@ -108,10 +108,13 @@ private:
     }
 
     static void printMessage(const TopicUpdate &update) {
-        printJson(QJsonObject{{"stamp", update.stamp},
-                              {"seq", double(update.seq)},
-                              {"dropped", double(update.dropped)},
-                              {"data", update.json()}});
+        QJsonObject message{{"stamp", update.stamp},
+                            {"seq", double(update.seq)},
+                            {"dropped", double(update.dropped)},
+                            {"data", update.json()}};
+        if (update.replayed)
+            message.insert("replayed", true);
+        printJson(message);
     }
 
     void tellWhatIsMissing() const {

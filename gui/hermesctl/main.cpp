@@ -102,7 +102,7 @@ QString unknownCommand(const QString &command) {
                             : QString("unknown command \"%1\", there is %2").arg(command, list);
 }
 
-int run(const Arguments &arguments) {
+int run(Arguments arguments) {
     std::optional<PrivateFiles> owners;
     if (arguments.command.startsWith("keys "))
         owners.emplace();
@@ -123,6 +123,8 @@ int run(const Arguments &arguments) {
         if (const auto opened = setOutput(arguments.out, arguments.force); !opened)
             return finish(opened, {}, arguments);
     }
+    if (arguments.command.startsWith("session "))
+        arguments.words.prepend(arguments.recorder);
     if (ofAll)
         return finish(documentAll(arguments), {}, arguments);
     return std::holds_alternative<RobotCommand>(command->run) ? runRobotCommand(*command, arguments)

@@ -103,11 +103,15 @@ void WheelTurn::acquire() {
 }
 
 void WheelTurn::onOdometry(const TopicUpdate &update) {
+    if (update.replayed)
+        return;
     clock_.add(update.stamp, stampNow(), latency_s_);
     isClockKnown_ = true;
 }
 
 void WheelTurn::onWheels(const TopicUpdate &update) {
+    if (update.replayed)
+        return;
     const QJsonValue wheel = update.json()[wheel_];
     if (!begin_ && wheel["set_point"].toDouble() == 0)
         return;

@@ -2,6 +2,7 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
+#include "gui/vector/RecordedSession.h"
 #include "vectorlib/io/TextInput.h"
 
 namespace hermes::vector {
@@ -56,16 +57,33 @@ LidarCapture::LidarCapture(Input &input, const SensorOptions &options, velodyne:
 }
 
 std::string LidarCapture::read(velodyne::TurnAssembler &assembler) {
+    const std::vector<std::string> parts = partsFrom(name_);
+    feed(reader_, assembler);
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        Input input(parts[i]);
+        PcapReader reader;
+        if (const Outcome<void> opened = reader.open(input.stream(), input.name()); !opened)
+            throw Failure(opened.error());
+        feed(reader, assembler);
+    }
+    assembler.finish();
+    const std::string leftOut = counts_.leftOut();
+    std::string text;
+    for (const std::string &more :
+         {parts.size() > 1 ? name_ + ": read on to " + parts.back() : std::string(),
+          notice(assembler.counts()), leftOut.empty() ? leftOut : name_ + ": " + leftOut})
+        text += (text.empty() || more.empty() ? "" : "; ") + more;
+    return text;
+}
+
+void LidarCapture::feed(PcapReader &reader, velodyne::TurnAssembler &assembler) {
     Datagram datagram;
     PcapReader::Next next;
-    while ((next = reader_.next(datagram)) == PcapReader::Next::Datagram)
+    while ((next = reader.next(datagram)) == PcapReader::Next::Datagram)
         stream_.take(datagram, {&assembler});
     if (next == PcapReader::Next::Failed)
-        throw Failure(reader_.error());
-    assembler.finish();
-    const std::string others = notice(assembler.counts()), leftOut = reader_.counts().leftOut();
-    return others + (others.empty() || leftOut.empty() ? "" : "; ") +
-           (leftOut.empty() ? "" : name_ + ": " + leftOut);
+        throw Failure(reader.error());
+    counts_ += reader.counts();
 }
 
 std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
@@ -78,7 +96,7 @@ std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
         throw Failure(name_ + ": found data packets of " + listOthers(choice) + " only, expected some" +
                       (options_.port ? " to port " + std::to_string(*options_.port) : "") +
                       (options_.sender.empty() ? "" : " from " + options_.sender));
-    const std::string leftOut = reader_.counts().leftOut(true);
+    const std::string leftOut = counts_.leftOut(true);
     throw Failure(
         name_ + ": found " +
         (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +

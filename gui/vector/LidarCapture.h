@@ -19,7 +19,8 @@ struct SensorOptions {
     void addTo(CLI::App &sub);
 };
 
-/// The data packets of one sensor in a capture, whatever port they went to.
+/// The data packets of one sensor in a capture, whatever port they went to. Of a recording that is cut into
+/// NAME-0001.pcap, NAME-0002.pcap and so on those that follow are read, too.
 class LidarCapture {
 public:
     /// input: to be kept while this is used. model: the sensor's; Blank for any. Throws Failure when it is no
@@ -32,11 +33,13 @@ public:
     std::string read(velodyne::TurnAssembler &assembler);
 
 private:
+    void feed(PcapReader &reader, velodyne::TurnAssembler &assembler);
     std::string notice(const velodyne::PacketCounts &counts) const;
 
     std::string name_;
     SensorOptions options_;
     PcapReader reader_;
+    PcapReader::Counts counts_; ///< of all files
     LidarStream stream_;
 };
 

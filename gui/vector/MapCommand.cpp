@@ -28,6 +28,7 @@ public:
         options.source.open = options.segment.open;
         if (!options.sensor.empty())
             options.source.mount = parsePose(options.sensor);
+        openSession();
         if (options.onlyScan)
             writeScan();
         else if (options.localize.empty())
@@ -37,6 +38,16 @@ public:
     }
 
 private:
+    void openSession() {
+        const std::string &path = options.source.path;
+        std::error_code ignored;
+        if (!std::filesystem::is_directory(std::filesystem::u8path(path), ignored) || !captureIn(path))
+            return;
+        options.source.session = std::make_shared<RecordedSession>(path);
+        if (!options.isSigmaGiven())
+            options.sigma = options.source.session->sigma().value_or(options.sigma);
+    }
+
     void build() {
         const auto begin = Clock::now();
         MapRun run;
@@ -146,7 +157,10 @@ private:
     /// To a ScanTracker or a MapLocalizer.
     template <typename Tracker>
     void apply(Tracker &tracker) const {
-        vectorlib::ScanTrackerSettings settings;
+        vectorlib::ScanTrackerSettings settings =
+            options.source.session ? options.source.session->tracker() : vectorlib::ScanTrackerSettings();
+        if (options.source.session && options.source.mount)
+            settings.sensorOnRobot = *options.source.mount;
         settings.useOdometry = options.odometry == "use";
         settings.seekWhereContradicted = false; // the parts of a log are joined later
         tracker.apply(settings);

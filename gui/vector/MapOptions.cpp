@@ -21,9 +21,11 @@ void MapOptions::addTo(CLI::App &command) {
 
 void MapOptions::addInput(CLI::App &command) {
     command
-        .add_option("LOG", source.path,
-                    "CARMEN log, pcap of an " + velodyne::sensorNames() +
-                        ", or a folder of points files taken in name order (2 before 10)")
+        .add_option(
+            "LOG", source.path,
+            "CARMEN log, pcap of an " + velodyne::sensorNames() +
+                " (of NAME-0001.pcap, NAME-0002.pcap ... the first), the folder of a session, or one of "
+                "points files taken in name order (2 before 10)")
         ->required();
     addOption(command, "--scan N", onlyScan, wholeNumber(0, 1e9),
               "Build no map: write the points of scan N, from 0, as CSV x,y in its sensor's frame, for the "
@@ -60,8 +62,9 @@ void MapOptions::addWays(CLI::App &command) {
     command.add_flag("--corrected", source.corrected,
                      "The log's scan poses are a corrected reference: odometry is taken from its ODOM lines "
                      "only, and the summary tells the error against the reference");
-    addOption(command, "--sensor X,Y,THETA", sensor, poseText(true),
-              "Pose of the sensor on the robot of a CARMEN log: metres, radians (degrees as 90deg)");
+    addOption(
+        command, "--sensor X,Y,THETA", sensor, poseText(true),
+        "Pose of the sensor on the robot of a CARMEN log or a session: metres, radians (degrees as 90deg)");
     addOption(command, "--field-of-view DEG", source.fieldOfView, between(1, 360),
               "Angle that a scan of a CARMEN log covers, degrees");
     addOption(command, "--max-range M", source.maxRange, between(0.01, 1000),
@@ -76,9 +79,9 @@ void MapOptions::addWays(CLI::App &command) {
     command.add_flag("--skip-damaged", source.skipDamaged,
                      "Count damaged lines of a log and go on instead of stopping at the first");
     source.sensor.addTo(command);
-    addOption(command, "--sigma M", sigma, aboveZero(),
-              "Largest standard deviation of points from their line, metres")
-        ->capture_default_str();
+    sigmaOption_ = addOption(command, "--sigma M", sigma, aboveZero(),
+                             "Largest standard deviation of points from their line, metres")
+                       ->capture_default_str();
     segment.addTo(command,
                   "defaults by the scanner: 10, 0.05, 0.20, 15 for a dense one, else 5, 0.10, 0.60, 4");
     command.add_flag("--force", force, "Overwrite files that exist");

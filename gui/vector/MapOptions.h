@@ -21,11 +21,14 @@ struct MapOptions {
     double sigma = vectorlib::VectorizerSettings().sigma;
 
     void addTo(CLI::App &command);
+    bool isSigmaGiven() const { return sigmaOption_->count() > 0; }
 
 private:
     void addInput(CLI::App &command);
     void addFiles(CLI::App &command);
     void addWays(CLI::App &command);
+
+    const CLI::Option *sigmaOption_ = nullptr;
 };
 
 } // namespace hermes::vector

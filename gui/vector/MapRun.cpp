@@ -166,6 +166,7 @@ nlohmann::ordered_json MapRun::summary() const {
     json["lost"] = counts.lost;
     json["doubted"] = counts.doubted;
     json["restarts"] = counts.restarts;
+    json["by_odometry"] = counts.byOdometry;
     if (!trust_.empty())
         json["trust"] = {{"mean", std::accumulate(trust_.begin(), trust_.end(), 0.0) / double(trust_.size())},
                          {"percentile_5", quantile(trust_, 0.05)}};

@@ -133,14 +133,24 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
 MapSourceReport readCapture(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     MapScan scan;
     std::size_t turns = 0;
-    velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
+    RecordedSession *const session = options.session.get();
+    const auto decoding = session ? session->decoding() : velodyne::TurnAssembler::Options();
+    velodyne::TurnAssembler assembler(decoding, [&](const velodyne::Turn &turn) {
         if (turns++ % options.every != 0)
             return;
         takeTurn(turn, scan);
+        if (session && !scan.points.empty())
+            scan.odometry = session->over(scan.begin(), scan.end());
         sink(scan, (turns - 1) / options.every, 0);
     });
     MapSourceReport report;
     report.otherSensors = LidarCapture(input, options.sensor).read(assembler);
+    if (!session)
+        return report;
+    report.odometryRefused = session->refused();
+    report.mount = options.mount.value_or(session->tracker().sensorOnRobot);
+    if (const std::string problems = session->problems(); !problems.empty())
+        report.otherSensors += (report.otherSensors.empty() ? "" : "; ") + problems;
     return report;
 }
 
@@ -175,7 +185,7 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
           std::tuple("--sender", "capture", !isCapture && !options.sensor.sender.empty()),
           std::tuple("--corrected", "CARMEN log", !isLog && options.corrected),
           std::tuple("--skip-damaged", "CARMEN log", !isLog && options.skipDamaged),
-          std::tuple("--sensor", "CARMEN log", !isLog && options.mount),
+          std::tuple("--sensor", "CARMEN log or session", !isLog && !options.session && options.mount),
           std::tuple("--field-of-view", "CARMEN log", !isLog && options.fieldOfView),
           std::tuple("--max-range", "CARMEN log", !isLog && options.maxRange),
           std::tuple("--seconds-per-turn", "CARMEN log", !isLog && options.secondsPerTurn),
@@ -187,6 +197,11 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
 
 MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
     std::error_code ignored;
+    if (options.session) {
+        Input input(*captureIn(options.path));
+        refuseUnused(options, true, false);
+        return readCapture(input, options, sink);
+    }
     if (fs::is_directory(fs::u8path(options.path), ignored)) {
         refuseUnused(options, false, false);
         return readFolder(options, sink);

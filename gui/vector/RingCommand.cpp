@@ -1,6 +1,7 @@
 #include "gui/vector/Failure.h"
 #include "gui/vector/LidarCapture.h"
 #include "gui/vector/Options.h"
+#include "gui/vector/RecordedSession.h"
 #include "vectorlib/io/Number.h"
 
 #include <iostream>
@@ -34,7 +35,10 @@ struct RingCommand {
     void run() const {
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        Input input(in);
+        std::error_code ignored;
+        Input input(std::filesystem::is_directory(std::filesystem::u8path(in), ignored)
+                        ? captureIn(in).value_or(in)
+                        : in);
         LidarCapture capture(input, sensor, velodyne::modelFromText(model));
         velodyne::TurnAssembler::Options options;
         options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
@@ -97,7 +101,10 @@ void addRingCommand(CLI::App &app) {
     CLI::App *sub = app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an " +
                                                    velodyne::sensorNames() +
                                                    " (CSV turn,stamp,azimuth,range,intensity,x,y)");
-    sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
+    sub->add_option("PCAP", command->in,
+                    "Capture, pcap or pcapng; of a recording NAME-0001.pcap, NAME-0002.pcap ... its "
+                    "first file, or its folder")
+        ->required();
     command->sensor.addTo(*sub);
     CLI::Option *laser = addOption(
         *sub, "--laser ID", command->laser, wholeNumber(0, velodyne::maxLasers() - 1),

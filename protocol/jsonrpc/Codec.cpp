@@ -106,7 +106,8 @@ EncodedFrame Codec::encode(const Outgoing &message) {
     return {bytes, std::nullopt};
 }
 
-EncodedFrame Codec::encodeTopic(const QString &topic, quint64 seq, double stamp, const Outgoing &data) {
+EncodedFrame Codec::encodeTopic(const QString &topic, quint64 seq, double stamp, const Outgoing &data,
+                                bool replayed) {
     return encode(Outgoing::writtenBy([&](WireWriter &out) {
         out.beginObject();
         out.key(QStringLiteral("jsonrpc"));
@@ -123,6 +124,10 @@ EncodedFrame Codec::encodeTopic(const QString &topic, quint64 seq, double stamp,
         out.number(stamp);
         if (out.hasRefused())
             return out.within(QStringLiteral("params.stamp"));
+        if (replayed) {
+            out.key(QStringLiteral("replayed"));
+            out.boolean(true);
+        }
         out.key(QStringLiteral("data"));
         data.write(out);
         if (out.hasRefused()) {

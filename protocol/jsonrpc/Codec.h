@@ -78,7 +78,8 @@ public:
     /// The message as one frame. A number that is NaN or infinite is an error that names its path.
     EncodedFrame encode(const Outgoing &message);
     /// The notification of a topic; its params come last, so that forSubscription() can add to them.
-    EncodedFrame encodeTopic(const QString &topic, quint64 seq, double stamp, const Outgoing &data);
+    EncodedFrame encodeTopic(const QString &topic, quint64 seq, double stamp, const Outgoing &data,
+                             bool replayed = false);
     /// Frames of single replies become the pieces of one frame, that of a batch.
     virtual void joinBatch(std::vector<QByteArray> &frames) const = 0;
     /// The frame of a notification with two more members of its params, whose content one frame has for all

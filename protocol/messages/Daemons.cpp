@@ -46,6 +46,13 @@ const Fields<ProcessesMessage> &fieldsOf(Of<ProcessesMessage>) {
     return fields;
 }
 
+const Fields<RobotIdentity> &fieldsOf(Of<RobotIdentity>) {
+    static const auto fields = Fields<RobotIdentity>()
+                                   .add("id", &RobotIdentity::id, "A UUID: the same as long as the robot is")
+                                   .add("name", &RobotIdentity::name, "What people call it");
+    return fields;
+}
+
 const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>) {
     using I = DaemonInfo;
     static const auto fields =
@@ -70,7 +77,8 @@ const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>) {
             .add("uptime_s", &I::uptime_s, "Since it started", "s")
             .mayBeMissing()
             .add("role", &I::role, "Of who asks: what it may do")
-            .mayBeMissing();
+            .mayBeMissing()
+            .add("robot", &I::robot, "Of which robot it is, where it was told");
     return fields;
 }
 
@@ -111,6 +119,21 @@ const Fields<LogMessage> &fieldsOf(Of<LogMessage>) {
                                    .add("source", &L::source, "What spoke")
                                    .mayBeMissing()
                                    .add("text", &L::text, "What it said");
+    return fields;
+}
+
+const Fields<CommandMessage> &fieldsOf(Of<CommandMessage>) {
+    using C = CommandMessage;
+    static const auto fields =
+        Fields<C>()
+            .add("stamp", &C::stamp, "Since the Unix epoch; of several: of the last", "s")
+            .add("client", &C::client, "Who called: its process and user, or the name in its certificate")
+            .add("role", &C::role, "Its role")
+            .add("method", &C::method, "The command")
+            .add("params", &C::params, "Its parameters, shortened where they are long")
+            .add("error", &C::error, "The code, where it was refused")
+            .add("message", &C::message, "Why it was")
+            .add("calls", &C::calls, "How many calls are summed up");
     return fields;
 }
 

@@ -45,6 +45,11 @@ const Fields<ProcessEntry> &fieldsOf(Of<ProcessEntry>);
 const Fields<ProcessStatus> &fieldsOf(Of<ProcessStatus>);
 const Fields<ProcessesMessage> &fieldsOf(Of<ProcessesMessage>);
 
+/// What tells a robot from all others: its id, a UUID, whatever people call it.
+struct RobotIdentity {
+    QString id, name;
+};
+
 /// What daemon.info gives.
 struct DaemonInfo {
     QString name, title, version, protocol;
@@ -53,7 +58,8 @@ struct DaemonInfo {
     qint64 pid = 0;
     QStringList listen;
     double started = 0, uptime_s = 0;
-    QString role; ///< of who asks
+    QString role;                       ///< of who asks
+    std::optional<RobotIdentity> robot; ///< of which it is; none: it was not told
 };
 
 /// One thing of a daemon that is well or not.
@@ -74,6 +80,17 @@ struct DaemonStatus {
 struct LogMessage {
     double stamp = 0;
     QString level, source, text;
+};
+
+/// The topic `commands`, and a line of the audit: a command that was carried out or refused, or several of
+/// them summed up.
+struct CommandMessage {
+    double stamp = 0;
+    QString client, role, method;
+    std::optional<QJsonValue> params;
+    std::optional<int> error;
+    std::optional<QString> message;
+    std::optional<int> calls;
 };
 
 /// What settings.set and settings.reset give: dotted paths.
@@ -98,10 +115,12 @@ struct SubscriptionAnswer {
     quint64 subscription = 0;
 };
 
+const Fields<RobotIdentity> &fieldsOf(Of<RobotIdentity>);
 const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>);
 const Fields<HealthItem> &fieldsOf(Of<HealthItem>);
 const Fields<DaemonStatus> &fieldsOf(Of<DaemonStatus>);
 const Fields<LogMessage> &fieldsOf(Of<LogMessage>);
+const Fields<CommandMessage> &fieldsOf(Of<CommandMessage>);
 const Fields<SettingsChange> &fieldsOf(Of<SettingsChange>);
 const Fields<SavedSettings> &fieldsOf(Of<SavedSettings>);
 const Fields<TopicDescription> &fieldsOf(Of<TopicDescription>);

@@ -23,7 +23,16 @@ const Fields<MotionHold> &fieldsOf(Of<MotionHold>) {
     static const auto fields =
         Fields<MotionHold>()
             .add("latched", &MotionHold::latched, "Reason of each cause that holds until motor.reset_estop")
-            .add("control", &MotionHold::control, "As in control.state");
+            .add("control", &MotionHold::control, "As in control.state")
+            .add("halted", &MotionHold::halted, "Why the robot halted last; empty while it follows commands")
+            .mayBeMissing()
+            .add("cause", &MotionHold::cause,
+                 "The same in a word: driver (who drove stopped), stop (others did), estop, time-out, "
+                 "take-over, client gone, release, reset, "
+                 "settings, gap (the program stood still), shutdown, controller (one is not ready), or the "
+                 "fault that "
+                 "is latched")
+            .mayBeMissing();
     return fields;
 }
 

@@ -18,10 +18,16 @@ struct LeaseState {
     std::optional<QString> wanted; ///< who asked the holder for it last
 };
 
-/// What keeps the robot from following a client's commands: a part of motor.state.
+/// What keeps the robot from following a client's commands: the topic `control`, and a part of motor.state.
 struct MotionHold {
     QMap<QString, QString> latched; ///< cause: reason
     LeaseState control;
+    QString halted; ///< why the robot halted last; empty while it follows commands
+    /// The same in a word: driver (who drove stopped), stop (others did), estop, time-out (of commands, or of
+    /// the control), take-over, client gone, release, reset, settings, gap (the program stood still),
+    /// shutdown, controller (one is not ready), or the fault that is latched: battery, current, temperature,
+    /// encoder, controller_1, controller_2.
+    QString cause;
 };
 
 /// Whether the robot is known to stand: a part of what motor.stop and motor.estop answer, and of

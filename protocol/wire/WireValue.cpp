@@ -1,4 +1,5 @@
 #include "protocol/wire/WireTree.h"
+#include "protocol/wire/WireWriter.h"
 
 #include <QJsonArray>
 #include <QJsonObject>
@@ -102,6 +103,46 @@ QJsonValue toJson(const Node &node) {
     }
     default:
         return QJsonValue::Null;
+    }
+}
+
+template <typename T>
+void write(const PackedNumbers &numbers, WireWriter &out) {
+    std::vector<T> values(numbers.size());
+    numbers.copy(values.data());
+    for (const T value : values)
+        out.number(value);
+}
+
+void write(const Node &node, WireWriter &out) {
+    switch (node.GetType()) {
+    case rapidjson::kFalseType:
+    case rapidjson::kTrueType:
+        return out.boolean(node.GetBool());
+    case rapidjson::kNumberType:
+        return node.IsInt64() ? out.integer(node.GetInt64()) : out.number(node.GetDouble());
+    case rapidjson::kStringType:
+        return out.text(textOf(node));
+    case rapidjson::kArrayType:
+        out.beginArray();
+        for (const Node &element : node.GetArray())
+            write(element, out);
+        return out.endArray();
+    case rapidjson::kObjectType:
+        if (const auto packed = PackedNumbers::of(node)) {
+            out.beginArray();
+            packed->kind == PackedNumbers::Kind::Float ? write<float>(*packed, out)
+                                                       : write<double>(*packed, out);
+            return out.endArray();
+        }
+        out.beginObject();
+        for (const auto &member : node.GetObject()) {
+            out.key(textOf(member.name));
+            write(member.value, out);
+        }
+        return out.endObject();
+    default:
+        out.null();
     }
 }
 
@@ -224,6 +265,13 @@ QJsonValue WireView::toJson() const {
     if (element_)
         return hermes::toJson(*PackedNumbers::of(nodeOf(node_)), *element_);
     return node_ ? hermes::toJson(nodeOf(node_)) : QJsonValue(QJsonValue::Undefined);
+}
+
+void WireView::write(WireWriter &out) const {
+    if (element_)
+        out.number(PackedNumbers::of(nodeOf(node_))->at(*element_));
+    else
+        hermes::write(nodeOf(node_), out);
 }
 
 QString WireView::described() const {

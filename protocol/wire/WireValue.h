@@ -10,6 +10,8 @@
 
 namespace hermes {
 
+class WireWriter;
+
 /// A value of a message that came, whatever form it had on the wire: a view into a tree that somebody else
 /// keeps alive.
 class WireView {
@@ -34,6 +36,8 @@ public:
     std::size_t numbers(quint16 *to) const;
     void forEachMember(const std::function<void(const QString &name, WireView value)> &see) const;
     QJsonValue toJson() const;
+    /// To a writer of any form; members in the order in which they came.
+    void write(WireWriter &out) const;
     /// For an error message: `text "abc"`, `12`, `an array of 3`.
     QString described() const;
 

@@ -44,7 +44,7 @@ private Q_SLOTS:
             }
         }
         QVERIFY(found);
-        QCOMPARE(description["x-topics"].toArray().size(), 5);
+        QCOMPARE(description["x-topics"].toArray().size(), 6);
         const QString hash = daemon->descriptionHash();
         start();
         QCOMPARE(daemon->descriptionHash(), hash);

@@ -1,4 +1,6 @@
 #include "DaemonFixture.h"
+#include "tests/support/Rows.h"
+#include "tests/support/Texts.h"
 
 using namespace hermes;
 
@@ -99,5 +101,94 @@ private Q_SLOTS:
         daemon->publish("numbers", QJsonObject()); // a drop is counted in the messages that follow it
         last = client.message()["params"].toObject();
         QCOMPARE(last["seq"].toInt(), topics + 1 + last["dropped"].toInt());
+    }
+
+    void aReplayTakesThePlaceOfATopic() {
+        RawClient viewer(address());
+        viewer.ask("topics.subscribe", QJsonArray{"state"});
+        QCOMPARE(params(viewer)["data"].toString(), QString("all"));
+        auto player = std::make_unique<RawClient>(address());
+        const auto replay = [&](const QJsonValue &data) {
+            return player->ask("topics.replay",
+                               QJsonObject{{"topic", "state"}, {"stamp", 5.5}, {"data", data}});
+        };
+        QVERIFY(replay("then")["result"].isNull());
+        const QJsonObject shown = params(viewer);
+        QVERIFY(shown["replayed"].toBool());
+        QCOMPARE(shown["stamp"].toDouble(), 5.5);
+        QCOMPARE(shown["data"].toString(), QString("then"));
+        daemon->publish("state", "now");
+        QVERIFY(!daemon->hasSubscribers("state")); // to the live data nobody listens
+        RawClient late(address());
+        late.ask("topics.subscribe", QJsonArray{"state"});
+        QCOMPARE(params(late)["data"].toString(), QString("then"));
+        for (const char *key : {"data", "live"}) {
+            const QJsonObject refused =
+                late.ask("topics.replay", QJsonObject{{"topic", "state"}, {key, true}})["error"].toObject();
+            QCOMPARE(refused["code"].toInt(), -32005);
+            VERIFY_CONTAINS(refused["message"].toString(), "is replayed by tcp://127.0.0.1");
+        }
+        VERIFY_CONTAINS(healthOf("topics"), "state (by tcp://127.0.0.1");
+        replay(QJsonArray{1, QJsonObject{{"a", QJsonValue()}}});
+        QCOMPARE(params(viewer)["data"].toArray().size(), 2); // and nothing of what was live meanwhile
+        player->ask("topics.replay", QJsonObject{{"topic", "state"}, {"live", true}});
+        const QJsonObject live = params(viewer);
+        QCOMPARE(live["data"].toString(), QString("all"));
+        QVERIFY(!live.contains("replayed"));
+        QCOMPARE(healthOf("topics"), QString());
+        replay("again");
+        QCOMPARE(params(viewer)["data"].toString(), QString("again"));
+        player.reset();
+        QCOMPARE(params(viewer)["data"].toString(), QString("all"));
+    }
+
+    void whatIsNotReplayed_data() {
+        const Rows<QString, QJsonObject, int> row("topic", "params", "code");
+        for (const char *topic : {"log", "status", "settings", "commands", "processes", "session"})
+            row(topic, topic, {{"data", 1}}, -32602);
+        row("unknown", "none", QJsonObject{{"data", 1}}, -32006);
+        row("no data", "numbers", QJsonObject{}, -32602);
+        row("stamp", "numbers", QJsonObject{{"data", 1}, {"stamp", -1}}, -32602);
+    }
+    void whatIsNotReplayed() {
+        FETCH(QString, topic, QJsonObject, params, int, code);
+        params["topic"] = topic;
+        QCOMPARE(RawClient(address()).ask("topics.replay", params)["error"].toObject()["code"].toInt(), code);
+        QCOMPARE(healthOf("topics"), QString());
+    }
+
+    void commandsAreToldToEngineers_data() {
+        const Rows<QString, int> row("role", "refusal");
+        row("engineer", "engineer", 0);
+        row("operator", "operator", -32001);
+        row("observer", "observer", -32001);
+    }
+    void commandsAreToldToEngineers() {
+        FETCH(QString, role, int, refusal);
+        start({"access.plain=\"" + role + "\"", "audit.on=false"});
+        RawClient client(address());
+        const QJsonObject answer = client.ask("topics.subscribe", QJsonArray{"commands"});
+        QCOMPARE(answer["error"].toObject()["code"].toInt(), refusal);
+        if (refusal != 0)
+            return;
+        RawClient other(address());
+        other.ask("settings.get");
+        other.ask("settings.set", QJsonObject{{"values", QJsonObject{{"gain", 2}}}});
+        other.ask("settings.set", QJsonObject{{"values", QJsonObject{{"gain", 20}}}});
+        const QJsonValue first = params(client), second = params(client);
+        QCOMPARE(first["data"]["method"].toString(), QString("settings.set"));
+        QCOMPARE(first["data"]["params"]["values"]["gain"].toInt(), 2);
+        QCOMPARE(first["data"]["stamp"].toDouble(), first["stamp"].toDouble());
+        QVERIFY(first["data"]["error"].isUndefined());
+        QCOMPARE(second["data"]["error"].toInt(), -32003);
+    }
+
+private:
+    static QJsonObject params(RawClient &client) { return client.message()["params"].toObject(); }
+    QString healthOf(const QString &item) {
+        for (const HealthItem &one : daemon->status().health)
+            if (one.name == item)
+                return one.message;
+        return {};
     }
 };

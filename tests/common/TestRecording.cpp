@@ -10,6 +10,7 @@ private Q_SLOTS:
         QTemporaryDir root;
         Logger logger(root.path() + "/recordings");
         QCOMPARE(logger.call("record.stop").error().code, int(ErrorCode::NotReady));
+        qputenv("HERMES_ROBOT", "11111111-2222-4333-8444-555555555555 rover");
         RecordingState state;
         state.counts = {{"lines", 2}};
         state.losses = {{"lines", 0}};
@@ -29,6 +30,7 @@ private Q_SLOTS:
         QCOMPARE(sidecar.value("files").toArray(), state.files);
         QCOMPARE(sidecar.value("settings").toObject(), logger.settings.values());
         QCOMPARE(sidecar.value("session"), started->toObject().value("session"));
+        QCOMPARE(sidecar.value("robot").toObject().value("name").toString(), QString("rover"));
         QVERIFY(sidecar.value("end").toDouble() >= sidecar.value("start").toDouble());
         QVERIFY(sidecar.value("end_mono").toDouble() >= sidecar.value("start_mono").toDouble());
         QCOMPARE(QDir(folderOf(started)).entryList(QDir::Files | QDir::Hidden),

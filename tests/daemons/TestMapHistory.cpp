@@ -156,13 +156,14 @@ private Q_SLOTS:
     }
 
     void aReplayLeavesTheLiveMapAlone_data() {
-        const Rows<QString> row("mode");
-        row("mapping", "mapping");
-        row("localization", "localization");
+        const Rows<QString, bool> row("mode", "isOfTopics");
+        row("mapping", "mapping", false);
+        row("localization", "localization", false);
+        row("by topics.replay", "mapping", true);
     }
 
     void aReplayLeavesTheLiveMapAlone() {
-        QFETCH(QString, mode);
+        FETCH(QString, mode, bool, isOfTopics);
         call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
         drive(0, 40);
         const QJsonArray live = call("map.get")["edges"].toArray();
@@ -171,12 +172,23 @@ private Q_SLOTS:
         QTRY_VERIFY(source->hasSubscribers("scan2d"));
         int scans = call("matcher.state")["scans"].toInt();
         const bool isApart = mode == "mapping";
+        ConnectedClient player(asOwner(source->server().addresses().value(0)));
+        const auto replay = [&player](QJsonObject params) {
+            params["topic"] = "scan2d";
+            QVERIFY(player.callAndWait("topics.replay", params).ok());
+        };
         for (int i = 0; i < 20; ++i) { // of long ago
             QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
+            if (isOfTopics) {
+                replay({{"data", scan}, {"stamp", 0.1 * i}});
+                continue;
+            }
             scan["replayed"] = true;
             source->publish("scan2d", scan, 0.1 * i);
         }
         QTRY_COMPARE(call("matcher.state")["scans"].toInt(), isApart ? 20 : scans + 20);
+        if (isOfTopics)
+            replay({{"live", true}});
         QTRY_VERIFY2(healthItem("replay")["message"].toString().contains("live map is kept") == isApart,
                      qPrintable(healthItem("replay")["message"].toString()));
         QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("warn"));

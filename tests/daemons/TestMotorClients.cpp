@@ -98,6 +98,26 @@ private Q_SLOTS:
         drive({{"vx", 0.5}}, 0.2); // the control was kept
     }
 
+    // As often as it does.
+    void eachHaltIsToldByATopic() {
+        launchReady();
+        QStringList told;
+        client_->subscribe("control", {{"queue", 20}}, [&](const TopicUpdate &update) {
+            const QJsonObject data = update.json().toObject();
+            told.append(data["control"].toObject()["holder"].toString() + ": " + data["cause"].toString() +
+                        ", " + data["halted"].toString());
+        });
+        call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
+        const QString follows = "anna: , ", late = "anna: time-out, no command for 1 s";
+        for (int times = 1; times <= 2; ++times) {
+            call("motor.drive", {{"vx", 0.5}});
+            QTRY_COMPARE(told.count(late), times);
+            QCOMPARE(told.count(follows), times);
+        }
+        call("motor.estop", {{"client", "bert"}});
+        QTRY_VERIFY2(told.last().startsWith(": estop, emergency stop by bert"), qPrintable(told.last()));
+    }
+
     // Longer than the mail to it holds: the cycle goes on, and tells how much was not read.
     void aBusyMainThreadDelaysNoStop() {
         plugServer();

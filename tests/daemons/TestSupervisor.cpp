@@ -9,7 +9,10 @@ using namespace hermes::supervisor;
 class TestSupervisor : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void init() { folder_ = std::make_unique<QTemporaryDir>(); }
+    void init() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        qunsetenv("HERMES_ROBOT");
+    }
 
     void cleanup() {
         client_.reset();

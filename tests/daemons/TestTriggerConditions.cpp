@@ -31,6 +31,18 @@ private Q_SLOTS:
         QCOMPARE(fired_["low"].size(), 2); // it was true before
     }
 
+    void whatIsReplayedFiresNothing() {
+        define("low", condition("", "<", 5));
+        waitSubscribed("readings");
+        target_->publish("readings", 6);
+        ConnectedClient player(asOwner(targetAddress_));
+        QVERIFY(player.callAndWait("topics.replay", QJsonObject{{"topic", "readings"}, {"data", 1}}).ok());
+        QVERIFY(player.callAndWait("topics.replay", QJsonObject{{"topic", "readings"}, {"live", true}}).ok());
+        target_->publish("readings", 4);
+        QTRY_COMPARE(fired_["low"].size(), 1);
+        QCOMPARE(fired_["low"].last()["cause"]["value"].toDouble(), 4.0);
+    }
+
     void conditionOutlivesTheTarget() {
         define("high", condition("", ">", 5));
         waitSubscribed("readings");

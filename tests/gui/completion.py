@@ -101,7 +101,7 @@ class Completion(ThermometerCase):
         self.assertEqual(candidates("drive motorcontrol vx=1 "), ["vy=", "omega="])
         self.assertEqual(candidates("setup --l"), ["--list"])
         self.assertEqual(candidates("drive motorcontrol --f"), ["--force", "--for"])
-        self.assertEqual(candidates("record list --daemons supervisor,scan"), ["supervisor,scanmatcher"])
+        self.assertEqual(candidates("record start --daemons supervisor,scan"), ["supervisor,scanmatcher"])
 
     def test_hosts(self):
         """Those of earlier connections, the last one first, and robots that keys were issued for."""

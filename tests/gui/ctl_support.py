@@ -82,23 +82,23 @@ class MadeUpDaemon:
             threading.Thread(target=self.serve, args=(client,), daemon=True).start()
 
     def serve(self, client):
-        with client, client.makefile("rw", encoding="utf-8") as lines:
+        with client, client.makefile("r", encoding="utf-8") as lines, client.makefile("w", encoding="utf-8") as out:
             try:
                 for line in lines:
-                    self.answer(json.loads(line), lines)
-            except OSError:
+                    self.answer(json.loads(line), out)
+            except (OSError, UnicodeDecodeError):  # spoken to in another framing
                 pass
 
-    def answer(self, request, lines):
+    def answer(self, request, out):
         reply = self.replies.get(request["method"], self.Error(code=-32601, message="not found"))
         reply = reply(request["params"]) if callable(reply) else reply
         key = "error" if isinstance(reply, self.Error) else "result"
-        lines.write(json.dumps({"jsonrpc": "2.0", "id": request["id"], key: reply}) + "\n")
+        out.write(json.dumps({"jsonrpc": "2.0", "id": request["id"], key: reply}) + "\n")
         if request["method"] == "topics.subscribe":
             for seq, dropped, data in self.messages:
-                params = {"subscription": 1, "topic": "made.up", "seq": seq, "dropped": dropped, "stamp": 1.5, "data": data}
-                lines.write(json.dumps({"jsonrpc": "2.0", "method": "topic", "params": params}) + "\n")
-        lines.flush()
+                params = {"subscription": 1, "topic": request["params"]["topic"], "seq": seq, "dropped": dropped, "stamp": 1.5, "data": data}
+                out.write(json.dumps({"jsonrpc": "2.0", "method": "topic", "params": params}) + "\n")
+        out.flush()
 
     def stop(self):
         self.server.close()

@@ -145,8 +145,8 @@ class Hermesctl(ThermometerCase):
         self.addCleanup(other.stop)
         at = other.address
         for words in (["call", at, "x.y"], ["call", "--json", at, "x.y"], ["call", at, "settings.get"], ["discover", at], ["doc", at],
-                      ["log", at], ["set", at, "a=1"], ["get", at], ["list", "--daemons", at], ["record", "list", "--daemons", at],
-                      ["replay", odd, "--daemons", at], ["call", at, odd], [odd]):
+                      ["log", at], ["set", at, "a=1"], ["get", at], ["list", "--daemons", at], ["record", "list", "--recorder", at],
+                      ["replay", odd, "--recorder", at], ["call", at, odd], [odd]):
             shown = ctl(*words)
             wrong = [c for c in shown.stdout + shown.stderr if c in "\x1b\x07\x9b\u202e\r\u2028"]
             self.assertEqual(wrong, [], words)

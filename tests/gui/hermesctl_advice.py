@@ -221,7 +221,7 @@ class Json(ThermometerCase):
                                         (["set", address, "period_s=-1"], 1, -32003),
                                         (["watch", address, "nothing"], 1, -32006),
                                         (["list", "--host", "127.77.77.77"], 1, -32011),
-                                        (["record", "list", "--daemons", address], 1, -32011),
+                                        (["record", "list", "--recorder", address], 1, -32601),
                                         (["call", address], 2, -32602), (["--foo"], 2, -32602), ([], 2, -32602),
                                         (["watch", address, "x", "--csv"], 2, -32602)):
             shown = ctl(*arguments, "--json")

@@ -15,6 +15,7 @@ ALLOWED = {
     "common": {"common", "protocol"},
     "daemons/motorcontrol": {"common", "protocol"},
     "daemons/velodynelogger": {"common", "protocol"},
+    "daemons/recorder": {"common", "protocol"},
     "daemons/seriallogger": {"common", "protocol"},
     "daemons/softwaretrigger": {"common", "protocol"},
     "daemons/supervisor": {"common", "protocol"},

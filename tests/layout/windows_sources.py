@@ -27,8 +27,8 @@ def sources():
             with open(os.path.join(folder, "CMakeLists.txt"), encoding="utf-8") as text:
                 lists.append((folder, text.read()))
     found += [path for path in walls.portable_sources(lists) if os.path.exists(path)]
-    # hermes-vector is built as a whole: tests/gui/vector_windows.py.
-    return sorted(path for path in found if not path.endswith("Posix.cpp") and "/gui/vector/" not in path)
+    # hermes-vector is built as a whole: tests/gui/vector_windows.py. MCAP is for daemons alone.
+    return sorted(path for path in found if not path.endswith("Posix.cpp") and "/gui/vector/" not in path and "/protocol/mcap/" not in path)
 
 
 def link_headers(folder, qt):

@@ -76,7 +76,7 @@ class DemoTest(unittest.TestCase):
         # The wheels slip, and the matcher, which goes by them, puts it right.
         self.assertGreater(summary["by_odometry"], 0.9 * summary["scans"], summary)
         self.assertGreater(summary["final_drift_m"], 0.2)
-        self.assertEqual(set(summary["exit_status"]), {"simulator", "motorcontrol", "velodynelogger", "scanmatcher"})
+        self.assertEqual(set(summary["exit_status"]), {"simulator", "motorcontrol", "velodynelogger", "scanmatcher", "recorder"})
         self.assertLess(seconds, 60)
         self.assertEqual(set(summary["exit_status"].values()), {0})
         lines = text_of(os.path.join(self.out, "trajectory.tum")).splitlines()

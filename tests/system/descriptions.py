@@ -12,7 +12,7 @@ from support import BINARIES, DaemonError, Process, free_port
 DAEMONS = ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "supervisor", "simulator")
 COMMON = {"rpc.discover", "daemon.info", "daemon.status", "daemon.shutdown", "settings.schema", "settings.get",
           "settings.set", "settings.reset", "settings.save", "topics.list", "topics.subscribe", "topics.unsubscribe",
-          "log.tail"}
+          "topics.replay", "log.tail"}
 SAMPLES = (("number", 1.5), ("integer", 3), ("string", "zz"), ("boolean", True), ("array", [[[]]]), ("null", None),
            ("object", {"no such": 1}))
 

@@ -12,6 +12,7 @@ import time
 
 from support import BINARIES, Process, free_port, wait_for, put
 
+ROBOT = "11111111-2222-4333-8444-555555555555", "rover \u00e4"
 BUS = """<busconfig><type>system</type><listen>unix:path={folder}/bus</listen><auth>EXTERNAL</auth><policy context="default">
 <allow send_destination="*"/><allow receive_sender="*"/><allow own="*"/></policy></busconfig>"""
 
@@ -72,7 +73,7 @@ def skip(why):
 
 def start_daemon(folder, environment, listen):
     """hermes-softwaretrigger, which uses no device, at each (host, framing); and its ports there."""
-    os.environ.update(environment)
+    os.environ.update(environment, HERMES_ROBOT=" ".join(ROBOT))
     ports = [free_port(0) for _ in listen]
     urls = [word for port, (host, framing) in zip(ports, listen) for word in ("--listen", f"tcp://{host}:{port}?protocol={framing}")]
     return Process(BINARIES, "softwaretrigger", free_port(0), folder, {"insecure": "true"}, urls), ports
@@ -107,6 +108,7 @@ def check_found(network, ports):
     found = wait_for("two announced ports", lambda: len(one := network.listed()) == 2 and one)
     assert {(one["port"], one["framing"]) for one in found} == {(ports[0], "json"), (ports[1], "cbor")}, found
     assert all((one["name"], one["tls"], one["protocol"]) == ("softwaretrigger", "no", "1.0") for one in found), found
+    assert all((one["robot_id"], one["robot"]) == ROBOT for one in found), found
     assert all(one["host"] == f"test{os.getpid()}.local" and one["address"] for one in found), found
 
 

@@ -133,7 +133,8 @@ def script(ports):
                                                             "settings.get", "topics.list", "log.tail")))
         yield from each(name, ("settings.set", {"values": {"limits": {"clients": 17}}}),
                         ("settings.reset", {"paths": ["limits.clients"]}), ("settings.save", {}), ("log.tail", {}),
-                        ("topics.subscribe", {"topic": "log"}), ("topics.unsubscribe", {"subscription": None}))
+                        ("topics.subscribe", {"topic": "log"}), ("topics.unsubscribe", {"subscription": None}),
+                        ("topics.replay", {"topic": "log", "live": True}))
     yield from each("softwaretrigger", ("trigger.define", trigger), ("trigger.list", {}), ("trigger.fire", {"id": "tick"}))
     for name in ("velodynelogger", "seriallogger"):
         yield from each(name, ("record.start", {"name": "drive", "session": "one"}), ("record.status", {}))

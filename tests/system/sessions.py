@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""All loggers of a robot record as one session and play it back, by hermesctl: all or none begins, the end is checked, what is
-played is what was recorded, together in time."""
+"""All loggers of a robot record as one session and play it back, by hermesctl and the recorder: all or none begins, the end is
+checked, what is played is what was recorded, together in time."""
 import json
 import os
 import shutil
@@ -104,7 +104,18 @@ class Sessions(unittest.TestCase):
         self.addCleanup(self.end, self.lidar)
         self.serial = Serial(self.folder, self.records)
         self.addCleanup(self.end, self.serial)
-        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{self.serial.process.port}"
+        self.begin_recorder(self.lidar.process.port, self.serial.process.port)
+
+    def begin_recorder(self, *ports):
+        """A recorder of the daemons at these ports, which answer."""
+        process = Process(load.BINARIES, "recorder", free_port(0), self.folder, {
+            "daemons": json.dumps([f"127.0.0.1:{port}" for port in ports]), "record.folder": self.records,
+            "record.free_floor_bytes": 0, "record.free_warn_bytes": 0})
+        self.addCleanup(process.stop)
+        self.recorder = f"127.0.0.1:{process.port}"
+        with process.connect() as daemon:
+            wait_for("the daemons", lambda: any(item["message"].startswith(f"{len(ports)} daemons")
+                                                for item in daemon.call("daemon.status")["health"]))
 
     @staticmethod
     def end(logger):
@@ -112,7 +123,7 @@ class Sessions(unittest.TestCase):
         logger.process.stop()
 
     def ctl(self, *arguments, status=0):
-        shown = ctl("--daemons", self.daemons, *arguments)
+        shown = ctl("--recorder", self.recorder, *arguments)
         self.assertEqual(shown.returncode, status, shown)
         return shown.stdout if status == 0 else shown.stderr
 
@@ -136,17 +147,19 @@ class Sessions(unittest.TestCase):
 
     def test_record(self):
         data, position, size = self.record("run1")
-        self.assertRegex(self.ctl("record", "status"), r"velodynelogger +recording +run1 .* nothing\n")
-        self.assertIn('records "run1" already', self.ctl("record", "start", "run2", status=1))
-        self.assertRegex(self.ctl("record", "list"), r"run1 .*velodynelogger being recorded")
+        wait_for("the packets in the state", lambda: f"packets {data + position}" in self.ctl("record", "status"))
+        self.assertRegex(self.ctl("record", "status"), r"velodynelogger +recording .* nothing *\n")
+        self.assertIn('"run1" is being recorded', self.ctl("record", "start", "run2", status=1))
+        self.assertRegex(self.ctl("record", "list"), r"run1 +20\S+ +\S+ MB +recorder, .* being recorded")
         shown = self.ctl("record", "stop")
-        self.assertRegex(shown, rf"velodynelogger +run1 +\S+ +\d+ +\d+ +data {data}, packets {data + position}, "
-                                rf"position {position} +nothing\n")
-        self.assertRegex(shown, rf"seriallogger +run1 +\S+ +1 +{size} +bytes {size}, chunks \d+ +nothing\n")
-        self.assertRegex(self.ctl("record", "list"), r"run1 .* velodynelogger,seriallogger +complete\n")
+        self.assertRegex(shown, rf"velodynelogger +stopped .* data {data}, packets {data + position}, position {position} +nothing\n")
+        self.assertRegex(shown, rf"seriallogger +stopped .* bytes {size}, chunks \d+ +nothing\n")
+        self.assertRegex(shown, r"recorder +stopped .* messages \d+, topics \d+ +nothing\n")
+        self.assertRegex(self.ctl("record", "list"), r"run1 +20\S+ +20\S+ .* recorder, \w+logger, \w+logger\n$")
         self.assertIn("nothing is being recorded", self.ctl("record", "stop", status=1))
         self.assertIn('has a recording "run1" already', self.ctl("record", "start", "run1", status=1))
-        self.assertEqual(sorted(os.listdir(self.records)), [".seriallogger.lock", ".velodynelogger.lock", "run1"])
+        self.assertEqual(sorted(os.listdir(self.records)),
+                         [".recorder.ended", ".recorder.lock", ".seriallogger.lock", ".velodynelogger.lock", "run1"])
         sidecars = [self.sidecar("run1", name) for name in ("velodynelogger", "seriallogger")]
         self.assertEqual(sidecars[0]["session"], sidecars[1]["session"])
         self.assertLess(abs(sidecars[0]["start"] - sidecars[1]["start"]), 1)
@@ -199,25 +212,23 @@ class Sessions(unittest.TestCase):
             return sum(line["text"].endswith("line 0") for _, line in heard) >= 3
 
         far, near = pty.openpty()
-        replay = subprocess.Popen([CTL, "--daemons", self.daemons, "replay", "run1", "--loop", "--speed", "10"], stderr=near)
+        replay = subprocess.Popen([CTL, "--recorder", self.recorder, "replay", "run1", "--loop", "--speed", "10"], stderr=near)
         os.close(near)
         try:
             wait_for("the third time", has_looped)
+            self.assertRegex(os.read(far, 100000).decode(), r"replaying, second \d+ of \d+")
             replay.send_signal(signal.SIGINT)
             self.assertEqual(replay.wait(20), 0)
         finally:
             replay.kill()
             replay.wait()
-        self.assertRegex(os.read(far, 100000).decode(), r"run1: [\d.]+ of [\d.]+ s")
         os.close(far)
         self.check_live()
-        shown = ctl("--daemons", self.daemons, "replay", "run2")
-        self.assertEqual(shown.returncode, 1)
-        self.assertIn('there is no session "run2"', shown.stderr)
+        self.assertIn('there is no session "run2"', self.ctl("replay", "run2", status=1))
 
     def test_what_cannot_be_replayed(self):
         self.record("run1")
-        self.assertIn('is recording "run1"', self.ctl("replay", "run1", status=1))
+        self.assertIn('"run1" is being recorded', self.ctl("replay", "run1", status=1))
         self.ctl("record", "stop")
         os.remove(load.captures(os.path.join(self.records, "run1"))[0])
         told = self.ctl("replay", "run1", status=1)
@@ -229,7 +240,7 @@ class Sessions(unittest.TestCase):
         full = Serial(self.folder, os.path.join(self.folder, "elsewhere"))  # a disk of its own
         self.addCleanup(self.end, full)
         full.daemon.call("settings.set", values={"record": {"free_warn_bytes": 1e15, "free_floor_bytes": 1e15}})
-        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{full.process.port}"
+        self.begin_recorder(self.lidar.process.port, full.process.port)
         told = self.ctl("record", "start", "run1", status=1)
         self.assertIn("seriallogger: ", told)
         self.assertIn("free_floor_bytes", told)
@@ -244,60 +255,80 @@ class Sessions(unittest.TestCase):
         self.addCleanup(late.wait)
         self.addCleanup(late.kill)
         wait_for("the late logger", lambda: listens(port))
-        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{port}"
-        told = self.ctl("--timeout", "4", "record", "start", "run1", status=1)
-        for words in ("late: record.start: no reply within 4 s", "late had begun and was stopped, see /late",
+        self.begin_recorder(self.lidar.process.port, port)
+        told = self.ctl("record", "start", "run1", status=1)
+        for words in ("late: record.start: no reply within 5 s", "late had begun and was stopped, see /late",
                       "velodynelogger had begun and was stopped"):
             self.assertIn(words, told)
-        self.assertNotRegex(self.ctl("record", "status"), " recording ")
+        self.assertIn("idle", self.ctl("record", "status"))
 
     def test_json_and_completion(self):
         def told(*arguments):
             return json.loads(self.ctl(*arguments, "--json"))
 
-        loggers = {"velodynelogger", "seriallogger"}
-        self.assertEqual({one["daemon"] for one in told("record", "start", "run1")}, loggers)
-        self.assertEqual([one["daemon"] for one in told("record", "mark", "here")], ["seriallogger"])
-        self.assertEqual({(one["daemon"], one["recording"]) for one in told("record", "status")}, {(name, True) for name in loggers})
-        self.assertEqual({(one["daemon"], one["name"]) for one in told("record", "stop")}, {(name, "run1") for name in loggers})
+        loggers = {"recorder", "velodynelogger", "seriallogger"}
+        self.assertEqual({part["daemon"] for part in told("record", "start", "run1")["parts"]}, loggers)
+        self.assertEqual(told("record", "mark", "here")["text"], "here")
+        self.assertEqual({(part["daemon"], part["state"]) for part in told("record", "status")["parts"]},
+                         {(name, "recording") for name in loggers})
+        stopped = told("record", "stop")
+        self.assertEqual((stopped["state"], stopped["name"], stopped["problems"]), ("idle", "run1", []))
         session, = told("record", "list")
-        self.assertEqual((session["name"], set(session["loggers"]), session["faults"]), ("run1", loggers, []))
-        for line in (f"replay --daemons {self.daemons} ru", f"call {self.daemons.split(',')[1]} source.open recording="):
+        self.assertEqual((session["name"], set(session["daemons"]), session["problems"]), ("run1", loggers, []))
+        for line in (f"replay --recorder {self.recorder} ru", f"call 127.0.0.1:{self.serial.process.port} source.open recording="):
             self.assertIn("run1", ctl("complete", "hermesctl " + line).stdout)
         error = json.loads(self.ctl("replay", "none", "--json", status=1))
         self.assertIn('no session "none"', error["message"])
 
+    def test_some_of_the_loggers_without_a_name(self):
+        parts = json.loads(self.ctl("session", "start", "--daemons", "seriallogger", "--json"))
+        self.assertEqual({part["daemon"] for part in parts["parts"]}, {"recorder", "seriallogger"})
+        self.assertRegex(parts["name"], r"^\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d$")
+        self.ctl("session", "stop")
+
+    def test_a_session_is_told_renamed_exported_and_removed(self):
+        self.record("run1")
+        self.ctl("record", "stop")
+        self.assertRegex(self.ctl("session", "info", "run1"), r"velodynelogger/scan2d +\d+ +0 ")
+        self.assertIn("run1", self.ctl("session", "explain", "run1", "--at", "0.5"))
+        for path in self.ctl("session", "export", "run1", "--format", "csv", "--topics", "velodynelogger/scan2d").splitlines():
+            self.assertTrue(os.path.exists(path), path)
+        self.assertRegex(self.ctl("session", "rename", "run1", "run2"), r"\nrun2 ")
+        self.assertIn("--yes removes it", self.ctl("session", "remove", "run2", status=1))
+        self.assertTrue(os.path.exists(os.path.join(self.records, "run2")))
+        self.ctl("session", "remove", "run2", "--yes")
+        self.assertFalse(os.path.exists(os.path.join(self.records, "run2")))
+        self.assertEqual(self.ctl("session", "list"), "")
+
+    def test_a_replay_without_hermesctl(self):
+        self.record("run1")
+        self.ctl("record", "stop")
+        self.ctl("replay", "run1", "--loop", "--speed", "0.1", "--detach")
+        wait_for("the replay", lambda: self.serial.daemon.call("source.status")["source"]["state"] == "replay")
+        killed = subprocess.Popen([CTL, "--recorder", self.recorder, "replay", "run1", "--speed", "0.1", "--json"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        self.assertIn(b'"replay":', killed.stdout.readline())
+        killed.kill()
+        killed.wait()
+        killed.stdout.close()
+        self.assertRegex(self.ctl("session", "status"), r"run1 +replaying")
+        self.assertNotIn("replaying", self.ctl("session", "live"))
+        self.check_live()
+
     def test_progress_as_json(self):
         self.record("run1")
         self.ctl("record", "stop")
-        shown = ctl("--daemons", self.daemons, "replay", "run1", "--json", "--speed", "0.25")
+        shown = ctl("--recorder", self.recorder, "replay", "run1", "--json", "--speed", "0.25")
         self.assertEqual(shown.returncode, 0, shown.stderr)
         progress = [json.loads(line)["progress"] for line in shown.stderr.splitlines()]
         self.assertGreater(len(progress), 3, shown.stdout)
         self.assertEqual(len({p["total"] for p in progress}), 1)
         self.assertEqual([p["done"] for p in progress], sorted(p["done"] for p in progress))
 
-    def test_a_start_tells_what_is_not_well(self):
-        """The receiver is unplugged: it would be recorded, and nothing comes."""
-        self.serial.process.stop()
-        ports = [{"name": "gps", "url": f"serial://{self.folder}/unplugged?baud=9600"}]
-        process = Process(load.BINARIES, "seriallogger", free_port(0), self.folder, {
-            "ports": json.dumps(ports), "record.folder": self.records, "record.free_floor_bytes": 0, "record.free_warn_bytes": 0})
-        self.addCleanup(process.stop)
-        process.connect().close()
-        shown = ctl("--daemons", f"127.0.0.1:{process.port}", "record", "start", "run1")
-        self.assertEqual(shown.returncode, 0, shown)
-        self.assertIn("records to", shown.stdout)
-        self.assertRegex(shown.stderr, rf"hermesctl: seriallogger: error: port gps: .*{self.folder}/unplugged")
-        ctl("--daemons", f"127.0.0.1:{process.port}", "record", "stop")
-        shown = ctl("--daemons", f"127.0.0.1:{process.port}", "record", "start", "run2", "--json")
-        notes = [json.loads(line)["note"] for line in shown.stderr.splitlines()]
-        self.assertTrue(any(one.startswith("seriallogger: error: port gps: ") for one in notes), shown)
-
     def test_mark(self):
-        self.assertIn("no logger that takes marks is recording", self.ctl("record", "mark", "too early", status=1))
+        self.assertIn("nothing is being recorded", self.ctl("record", "mark", "too early", status=1))
         self.ctl("record", "start", "run1")
-        self.assertRegex(self.ctl("record", "mark", "at the door"), r"daemon +marked at\nseriallogger +20\d\d-\S+\n$")
+        self.assertRegex(self.ctl("record", "mark", "at the door"), r"at \[s\] +mark\n\d\S* +at the door\n$")
         self.ctl("record", "stop")
         self.assertIn('"text":"at the door"', text_of(os.path.join(self.records, "run1", "seriallogger-events.jsonl")))
 
@@ -305,21 +336,9 @@ class Sessions(unittest.TestCase):
         self.record("run1")
         self.serial.process.process.kill()
         self.serial.process.process.wait()
-        shown = ctl("--daemons", self.daemons.split(",")[0], "record", "stop")
-        self.assertEqual(shown.returncode, 1)
-        self.assertIn("seriallogger: it took part, but does not answer", shown.stderr)
-        shown = ctl("--daemons", self.daemons.split(",")[0], "replay", "run1", "--speed", "10")  # what is there
-        self.assertEqual(shown.returncode, 0)
-        self.assertIn("seriallogger: it took part, but does not answer", shown.stderr)
-
-    def test_one_that_began_anew_is_told(self):
-        self.record("run1")
-        self.serial.process.process.kill()
-        self.serial.process.process.wait()
-        again = Serial(self.folder, self.records)
-        self.addCleanup(self.end, again)
-        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{again.process.port}"
-        self.assertIn("seriallogger: cut off", self.ctl("record", "stop", status=1))
+        self.assertIn("seriallogger: it took part, and does not answer", self.ctl("record", "stop", status=1))
+        shown = ctl("--recorder", self.recorder, "replay", "run1", "--speed", "10")  # what is there
+        self.assertEqual(shown.returncode, 0, shown)
 
     def test_losses_are_told(self):
         self.ctl("record", "start", "run1")
@@ -327,23 +346,6 @@ class Sessions(unittest.TestCase):
             stranger.sendto(bytes(3000), ("127.0.0.1", self.lidar.lidar_port))
         wait_for("the loss", lambda: self.lidar.daemon.call("record.status")["losses"]["too_long"])
         self.assertIn("velodynelogger: lost: too_long 1", self.ctl("record", "stop", status=1))
-
-    def test_who_is_asked(self):
-        nobody = f"127.0.0.1:{free_port(0)}"
-        for arguments, words, status in ((("--daemons", nobody, "record", "start", "x"), "refused", 1),
-                                         (("--host", "127.0.0.79", "record", "start", "x"), "no logger answers", 1),
-                                         (("--daemons", "nobody", "record", "stop"), "unknown daemon", 2),
-                                         (("record", "start", "a/b"), "NAME", 2), (("record",), "one of these is expected", 2),
-                                         (("record", "start"), "usage", 2), (("record", "stop", "x"), "usage", 2)):
-            shown = ctl(*arguments)
-            self.assertEqual(shown.returncode, status, shown)
-            self.assertIn(words, shown.stderr)
-        trigger = Process(load.BINARIES, "softwaretrigger", free_port(0), self.folder, {})
-        self.addCleanup(trigger.stop)
-        trigger.connect().close()
-        shown = ctl("--daemons", f"127.0.0.1:{trigger.port}", "record", "status")
-        self.assertEqual(shown.returncode, 1)
-        self.assertIn("no logger", shown.stderr)
 
 
 if __name__ == "__main__":

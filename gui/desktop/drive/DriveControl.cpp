@@ -20,8 +20,8 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     , odometry_(
           fleet, "odometry", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onOdometry(u); }, this)
     , stop_(fleet)
-    , replay_(fleet) {
-    connect(&replay_, &ReplayWatch::changed, this, &DriveControl::onReplay);
+    , sessions_(fleet) {
+    connect(&sessions_, &Sessions::replayChanged, this, &DriveControl::onReplay);
     connect(&odometry_, &TopicFeed::sourceChanged, this, [this] {
         measured_ = {};
         measuredAge_.forget();
@@ -128,9 +128,6 @@ QString DriveControl::objection(const Robot &robot) const {
         return tr("%1 is driven: let go first.").arg(robot.name());
     if (stop_.isPressedFor(robot))
         return tr("STOP was pressed for %1: release it first.").arg(robot.name());
-    if (replay_.isOwn(robot))
-        return tr("%1 shows a recording that is played here: choose it and press Live first.")
-            .arg(robot.name());
     return {};
 }
 
@@ -184,7 +181,7 @@ void DriveControl::driveBlindly() {
 
 // A drive that is under way when a replay begins ends: what is seen from now on is not what is.
 void DriveControl::onReplay() {
-    if (!replay_.isReplaying())
+    if (!sessions_.isReplaying())
         isBlindMeant_ = false;
     else if (refusesForReplay())
         inputs_.needRest();
@@ -383,6 +380,8 @@ void DriveControl::poll() {
 }
 
 void DriveControl::onOdometry(const TopicUpdate &update) {
+    if (update.replayed)
+        return;
     ReadReport report;
     const auto odometry = readMessage<OdometryMessage>(update.data, report);
     if (!odometry)

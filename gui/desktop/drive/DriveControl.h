@@ -3,9 +3,7 @@
 #include "common/client/ClockOffset.h"
 #include "gui/desktop/drive/DriveInputs.h"
 #include "gui/desktop/drive/StopControl.h"
-#include "gui/desktop/model/Freshness.h"
-#include "gui/desktop/model/ReplayWatch.h"
-#include "gui/desktop/model/TopicFeed.h"
+#include "gui/desktop/model/Sessions.h"
 #include "gui/desktop/widgets/SecondPress.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"
@@ -60,9 +58,8 @@ public:
     /// While a replay is shown nobody sees where the robot is: it is driven only once this was said, until
     /// that replay ends.
     void driveBlindly();
-    const ReplayWatch &replay() const { return replay_; }
-    ReplayWatch &replay() { return replay_; }
-    bool refusesForReplay() const { return replay_.isReplaying() && !isBlindMeant_; }
+    bool refusesForReplay() const { return sessions_.isReplaying() && !isBlindMeant_; }
+    Sessions &sessions() { return sessions_; }
 
     /// Somebody who can be driven is there.
     bool isPossible() const { return motors() != nullptr; }
@@ -136,7 +133,7 @@ private:
     int settings_ = 0;                     // subscription
     StopControl stop_;
     StopPhase shownPhase_ = StopPhase::None;
-    ReplayWatch replay_;
+    Sessions sessions_;
     QTimer timer_, pollTimer_;
     QTimer letGo_; ///< since nothing is held
     DriveInputs inputs_;

@@ -1,5 +1,6 @@
 #include "gui/desktop/model/DaemonLink.h"
 
+#include "common/OwnRobot.h"
 #include "common/Project.h"
 #include "common/Role.h"
 #include "common/client/DaemonAddress.h"
@@ -206,6 +207,8 @@ void DaemonLink::introduce() {
         const bool isSame = !description_.isEmpty() && !read->descriptionHash.isEmpty() &&
                             read->descriptionHash == info_.descriptionHash;
         info_ = *read;
+        if (info_.robot)
+            info_.robot->id = isRobotId(info_.robot->id) ? info_.robot->id.toLower() : QString();
         Q_EMIT changed();
         if (isSame) {
             Q_EMIT ready();

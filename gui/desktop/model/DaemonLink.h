@@ -35,6 +35,9 @@ public:
     const QString &address() const { return address_; }
     QString host() const { return address_.section(':', 0, -2); }
     quint16 port() const { return address_.section(':', -1).toUShort(); }
+    /// Id and name of the robot that it says it is of; empty: it knows none.
+    QString robotId() const { return info_.robot ? info_.robot->id : QString(); }
+    QString robotName() const { return info_.robot ? info_.robot->name : QString(); }
     /// The same for two links that lead to one process; empty: not known.
     QString identity() const;
     /// Its own name ("motorcontrol"); before it has answered, what its supervisor calls it, the usual one of

@@ -6,9 +6,16 @@
 
 #include <QHostAddress>
 #include <QRegularExpression>
+#include <QSet>
 #include <algorithm>
 
 namespace hermes::desktop {
+namespace {
+
+constexpr std::ptrdiff_t maxAtHost = 300; // daemons, as far as supervisors name them
+
+} // namespace
+
 Fleet::Fleet(QObject *parent)
     : QObject(parent) {
     changes_.setSingleShot(true);
@@ -47,7 +54,7 @@ Result<void> Fleet::add(const QString &address) {
     if (hasPort) {
         entryAt({host, url->port}).isAdded = true;
     } else {
-        setAt(host, host);
+        robotWith(host);
         for (const QString &daemon : daemonNames())
             entryAt({host, defaultPort(daemon)}).isSought = true;
     }
@@ -60,31 +67,26 @@ Fleet::Entry &Fleet::entryAt(const Place &place) {
     if (entry.link)
         return entry;
     entry.link = std::make_unique<DaemonLink>(QString("%1:%2").arg(place.first).arg(place.second));
-    connect(entry.link.get(), &DaemonLink::ready, this, [this, place] { onReady(place); });
+    connect(entry.link.get(), &DaemonLink::ready, this,
+            [this, link = entry.link.get()] { link->hasMethod("process.list") ? distribute() : touch(); });
     connect(entry.link.get(), &DaemonLink::changed, this, [this, place] { onChanged(place); });
     return entry;
 }
 
-void Fleet::onReady(const Place &place) {
-    Entry &entry = entries_.at(place);
-    if (entry.led || !entry.link->hasMethod("process.list"))
-        return touch();
-    entry.led = makeRobot(place.first, entry.link->address(), entry.link.get());
-    connect(entry.led, &Robot::namedChanged, this, [this] { distribute(); });
-    distribute();
-}
-
 void Fleet::onChanged(const Place &place) {
     const Entry &entry = entries_.at(place);
-    if (!entry.namedBy && entry.isOfHost() != bool(entry.robot))
+    if (entry.told != entry.tells() || (!entry.namedBy && entry.isShown() != bool(entry.robot)))
         distribute();
 }
 
-Robot *Fleet::makeRobot(const QString &host, const QString &address, DaemonLink *supervisor) {
-    robots_.push_back(std::make_unique<Robot>(host, address, supervisor));
+Robot *Fleet::robotWith(const QString &id) {
+    if (Robot *const known = robotAt(id))
+        return known;
+    robots_.push_back(std::make_unique<Robot>(id));
     Robot *const robot = robots_.back().get();
     connect(robot, &Robot::changed, this, &Fleet::touch);
-    robot->setGivenName(names_.value(robot->address()));
+    connect(robot, &Robot::namedChanged, this, [this] { distribute(); });
+    robot->setGivenName(names_.value(id));
     return robot;
 }
 
@@ -102,9 +104,10 @@ Robot *Fleet::robotOf(const DaemonLink *daemon) const {
 
 Robot *Fleet::robotAt(const QString &address) const {
     for (const auto &robot : robots_)
-        if (robot->address() == address)
+        if (robot->id() == address)
             return robot.get();
-    return nullptr;
+    const DaemonLink *const daemon = daemonAt(address);
+    return daemon && daemon->isKnown() ? robotOf(daemon) : nullptr;
 }
 
 QString Fleet::titleOf(const Robot &robot) const {
@@ -123,32 +126,27 @@ QString Fleet::titleOf(const DaemonLink &daemon) const {
 void Fleet::setNames(const QMap<QString, QString> &names) {
     names_ = names;
     for (const auto &robot : robots_)
-        robot->setGivenName(names_.value(robot->address()));
+        robot->setGivenName(names_.value(robot->id()));
 }
 
 void Fleet::rename(Robot &robot, const QString &name) {
     const QString given = shortLine(name.trimmed(), Robot::longestName);
     if (given.isEmpty())
-        names_.remove(robot.address());
+        names_.remove(robot.id());
     else
-        names_[robot.address()] = given;
+        names_[robot.id()] = given;
     robot.setGivenName(given);
 }
 
-void Fleet::prefer(const QString &address) {
-    const auto hostIn = [](const QString &one) {
-        return one.section('#', 0, 0).section(QRegularExpression(":\\d+$"), 0, 0);
-    };
-    const auto leadsThere = [&](const QString &added) { return hostIn(added) == hostIn(address); };
-    if (isMeant_ || address.isEmpty() ||
-        (!addresses_.isEmpty() && std::none_of(addresses_.begin(), addresses_.end(), leadsThere)))
+void Fleet::prefer(const QString &robot) {
+    if (isMeant_ || robot.isEmpty())
         return;
-    preferred_ = address;
+    preferred_ = robot;
     distribute();
 }
 
-QString Fleet::chosenAddress() const {
-    return !preferred_.isEmpty() ? preferred_ : robot_ ? robot_->address() : QString();
+QString Fleet::preferred() const {
+    return !preferred_.isEmpty() ? preferred_ : robot_ ? robot_->id() : QString();
 }
 
 void Fleet::choose(Robot *robot) {
@@ -194,6 +192,200 @@ void Fleet::touch() {
     namesakes_.clear();
     if (!changes_.isActive())
         changes_.start();
+}
+
+// As far as there are not too many: a supervisor may name what it likes. Who has it keeps it for as long as
+// it is named.
+void Fleet::findNamed() {
+    for (auto &[place, entry] : entries_)
+        entry.namedBy = nullptr;
+    for (const auto &robot : robots_)
+        for (const Place &place : robot->named()) {
+            const auto isThere = [&](const auto &entry) { return entry.first.first == place.first; };
+            if (!entries_.count(place) &&
+                std::count_if(entries_.begin(), entries_.end(), isThere) >= maxAtHost)
+                continue;
+            Entry &entry = entryAt(place);
+            if (!entry.namedBy || entry.robot == robot.get())
+                entry.namedBy = robot.get();
+        }
+}
+
+std::vector<Fleet::Move> Fleet::reassign() {
+    QHash<QString, QString> supervised; // the robots that have the supervisors of a host; empty: several
+    for (auto &[place, entry] : entries_) {
+        entry.told = entry.tells();
+        const QString id = entry.told.value_or(QString());
+        if (!id.isEmpty() && entry.link->hasMethod("process.list"))
+            supervised[place.first] = supervised.value(place.first, id) == id ? id : QString();
+    }
+    std::vector<Move> moves;
+    for (auto &[place, entry] : entries_) {
+        Robot *to = nullptr;
+        Robot *const from = entry.robot;
+        QString id = entry.told.value_or(QString());
+        if (id.isEmpty() && entry.namedBy) {
+            to = entry.namedBy;
+        } else if (entry.namedBy || entry.isShown()) {
+            if (id.isEmpty() && entry.told)
+                id = supervised.value(place.first);
+            id = id.isEmpty() ? place.first : id;
+            to = from && from->id() == id ? from : robotWith(id);
+        }
+        entry.robot = to;
+        if (from == to)
+            continue;
+        DaemonLink *const daemon = entry.link.get();
+        if (from)
+            from->release(daemon);
+        if (to)
+            to->take(daemon);
+        moves.push_back({daemon, from, to});
+    }
+    return moves;
+}
+
+// A host on which nothing was found is shown, unless another robot there stands for it.
+std::vector<std::unique_ptr<Robot>> Fleet::takeEmpty() {
+    QSet<QString> inhabited;
+    for (const auto &[place, entry] : entries_)
+        if (entry.robot)
+            inhabited.insert(place.first);
+    std::vector<std::unique_ptr<Robot>> gone;
+    for (auto &robot : robots_)
+        if (robot->daemons().empty() &&
+            (inhabited.contains(robot->id()) || !addresses_.contains(robot->id())))
+            gone.push_back(std::move(robot));
+    robots_.erase(std::remove(robots_.begin(), robots_.end(), nullptr), robots_.end());
+    return gone;
+}
+
+void Fleet::distribute(std::unique_ptr<Robot> removed) {
+    findNamed();
+    const std::vector<Move> moves = reassign();
+    Robots gone = takeEmpty();
+    namesakes_.clear();
+    for (const auto &[daemon, from, to] : moves)
+        if (from && to)
+            Q_EMIT moved(daemon, from, to);
+    const std::size_t empty = gone.size();
+    if (removed)
+        gone.push_back(std::move(removed));
+    followChoice(moves, gone);
+    if (!moves.empty())
+        touch();
+    for (std::size_t i = 0; i < gone.size(); ++i)
+        Q_EMIT robotGone(gone[i].get(), i < empty ? successorOf(*gone[i], moves) : nullptr);
+    for (const auto &robot : robots_)
+        for (const Move &move : moves)
+            if (robot.get() == move.from || robot.get() == move.to) {
+                Q_EMIT robot->capabilitiesChanged();
+                break;
+            }
+    if (gone.empty())
+        return;
+    Q_EMIT changed(); // at once: nobody is to look at them any more
+    for (auto &robot : gone)
+        robot.release()->deleteLater();
+}
+
+void Fleet::tellConflicts() {
+    QHash<QString, const DaemonLink *> known; // processes
+    for (const auto &robot : robots_) {
+        QStringList lines;
+        int drivable = 0;
+        for (const DaemonLink *daemon : robot->daemons()) {
+            const QString process = daemon->identity();
+            const DaemonLink *const twin = process.isEmpty() ? nullptr : known.value(process);
+            if (twin && lines.isEmpty()) // one stands for all
+                lines.append(tr("%1 is the same as %2 of the robot %3, by another address")
+                                 .arg(daemon->address(), twin->address(), titleOf(*robotOf(twin))));
+            drivable += !twin && daemon->hasMethod("motor.drive");
+            known.insert(process, twin ? twin : daemon);
+        }
+        const auto isMissing = [this](const Place &place) { return entries_.count(place) == 0; };
+        if (const auto missing = std::count_if(robot->named().begin(), robot->named().end(), isMissing))
+            lines.append(tr("%1 daemons are too many for one host").arg(missing));
+        if (drivable > 1)
+            lines.prepend(tr("%1 of its daemons can be driven, of which one is").arg(drivable));
+        robot->setConflicts(lines);
+    }
+}
+
+Result<QStringList> Fleet::remove(Robot *robot) {
+    if (const QString why = objection_ ? objection_(*robot) : QString(); !why.isEmpty())
+        return Error(ErrorCode::NotReady, why);
+    QStringList back = addresses_;
+    forgetHost(robot->id()); // where nothing was found
+    for (const DaemonLink *daemon : robot->daemons())
+        forgetHost(daemon->host());
+    std::vector<std::unique_ptr<DaemonLink>> links;
+    for (auto entry = entries_.begin(); entry != entries_.end();) {
+        if (entry->second.robot != robot) {
+            ++entry;
+            continue;
+        }
+        DaemonLink *const link = entry->second.link.get();
+        if (link->hasMethod("process.list") && !back.contains(link->address()))
+            back.append(link->address());
+        addresses_.removeAll(link->address());
+        link->disconnect(this);
+        links.push_back(std::move(entry->second.link));
+        entry = entries_.erase(entry);
+    }
+    for (const QString &address : qAsConst(addresses_))
+        back.removeAll(address);
+    const auto place =
+        std::find_if(robots_.begin(), robots_.end(), [robot](const auto &one) { return one.get() == robot; });
+    std::unique_ptr<Robot> removed = std::move(*place);
+    robots_.erase(place);
+    distribute(std::move(removed));
+    for (auto &link : links)
+        link.release()->deleteLater();
+    changes_.start(); // told once more when they are gone
+    return back;
+}
+
+// What was found there and stays is known by its own address from now on.
+void Fleet::forgetHost(const QString &host) {
+    if (addresses_.removeAll(host) == 0)
+        return;
+    for (auto &[place, entry] : entries_) {
+        if (place.first != host || !std::exchange(entry.isSought, false) || !entry.robot || entry.isAdded)
+            continue;
+        entry.isAdded = true;
+        addresses_.append(entry.link->address());
+    }
+}
+
+Robot *Fleet::successorOf(const Robot &gone, const std::vector<Move> &moves) const {
+    for (const Move &move : moves)
+        if (move.from == &gone && move.to)
+            return move.to;
+    for (const auto &[place, entry] : entries_)
+        if (place.first == gone.id() && entry.robot)
+            return entry.robot;
+    return nullptr;
+}
+
+void Fleet::followChoice(const std::vector<Move> &moves, const Robots &gone) {
+    Robot *next = robot_;
+    for (const auto &robot : gone) {
+        lastDaemons_.erase(robot.get());
+        if (robot.get() == robot_)
+            next = successorOf(*robot, moves);
+    }
+    if (Robot *const preferred = robotAt(preferred_)) {
+        next = preferred;
+        preferred_.clear();
+    } else if (!isMeant_ && preferred_.isEmpty()) {
+        for (const Move &move : moves)
+            if (move.to && move.from == robot_)
+                next = move.to;
+    }
+    if (!next && !robots_.empty())
+        next = robots_.front().get();
+    setChosen(next, next && next->has(daemon_) ? daemon_.data() : lastDaemonOf(next));
 }
 
 } // namespace hermes::desktop

@@ -10,8 +10,9 @@
 namespace hermes::desktop {
 
 /// All robots, which daemon belongs to which of them, and which robot and daemon the operator has chosen. A
-/// daemon is of the supervisor that named it first, else of its host. What the operator has chosen stays
-/// chosen while it is there.
+/// daemon is of the robot that it tells. One that tells none is of the robot whose supervisor names it, else
+/// of the only one that has a supervisor on its host, else of its host, as one that has not answered yet.
+/// What the operator has chosen stays chosen while it is there.
 class Fleet : public QObject {
     Q_OBJECT
 public:
@@ -35,20 +36,14 @@ public:
     DaemonLink *daemonAt(const QString &address) const;
     /// Whose daemon it is; null: nobody's.
     Robot *robotOf(const DaemonLink *daemon) const;
-    /// Puts a daemon that no supervisor names to another robot of its host that has none; null: to one of its
-    /// own. It stays there.
-    void place(DaemonLink *daemon, Robot *robot);
-    /// Addresses of daemons, and of the robots that they were put to.
-    const QMap<QString, QString> &places() const { return places_; }
-    void setPlaces(const QMap<QString, QString> &places);
-    /// Null: none has that address.
+    /// By its id, or by the address of a daemon that has said whose it is. Null: there is none.
     Robot *robotAt(const QString &address) const;
     /// Its name, and where another has the same its address too.
     QString titleOf(const Robot &robot) const;
     /// The name of a daemon, and where there are several robots that of its robot too.
     QString titleOf(const DaemonLink &daemon) const;
 
-    /// What the operator calls the robots, by their addresses, those too that are not here now.
+    /// What the operator calls the robots, by their ids, those too that are not here now.
     const QMap<QString, QString> &names() const { return names_; }
     void setNames(const QMap<QString, QString> &names);
     /// An empty name: what it calls itself.
@@ -58,16 +53,14 @@ public:
     DaemonLink *daemon() const { return daemon_; }
     void choose(Robot *robot);
     void choose(DaemonLink *daemon);
-    /// Chooses the robot of this address as soon as it is there, unless the operator has chosen before, or
-    /// nothing of its host was added.
-    void prefer(const QString &address);
+    /// Chooses the robot of this id or address as soon as it is there, unless the operator has chosen before.
+    void prefer(const QString &robot);
     /// What will be chosen, or is.
-    QString chosenAddress() const;
+    QString preferred() const;
     /// Chooses it for what has become of the chosen one, unless another is preferred.
     void goAlong(Robot *robot);
     /// Whatever is chosen is meant from now on, even if nobody has chosen it.
     void keepChoice();
-    bool isChoiceMeant() const { return isMeant_; }
 
 Q_SIGNALS:
     /// Robots or daemons came or went, or the condition of one changed.
@@ -76,23 +69,26 @@ Q_SIGNALS:
     void robotChosen(hermes::desktop::Robot *robot);
     /// Null: none of the chosen robot.
     void daemonChosen(hermes::desktop::DaemonLink *daemon);
-    /// A supervisor has named it, or does so no more.
+    /// It has told another robot than before, or its supervisor is another's.
     void moved(hermes::desktop::DaemonLink *daemon, hermes::desktop::Robot *from, hermes::desktop::Robot *to);
     /// It is not one of the robots any more; successor: who stands for it now, or null.
     void robotGone(hermes::desktop::Robot *robot, hermes::desktop::Robot *successor);
 
 private:
-    using Place = std::pair<QString, quint16>; // host and port
+    using Place = Robot::Place;
     struct Entry {
         std::unique_ptr<DaemonLink> link;
         bool isAdded = false;  ///< by its address: shown although it has never answered
         bool isSought = false; ///< at its usual port: shown once it has answered
         Robot *robot = nullptr;
-        Robot *led = nullptr;     ///< whose supervisor it is
-        Robot *namedBy = nullptr; ///< whose supervisor names it, or it is
+        Robot *namedBy = nullptr;
+        std::optional<QString> told; ///< when it was put to its robot: what it says whose it is
 
-        /// Shown there while no supervisor names it; one that was named before until it ends.
-        bool isOfHost() const { return isAdded || (isSought ? link->isKnown() : link->isConnected()); }
+        std::optional<QString> tells() const {
+            return link->isKnown() ? std::optional(link->robotId()) : std::nullopt;
+        }
+        /// Shown while no supervisor names it; one that was named before until it ends.
+        bool isShown() const { return isAdded || (isSought ? link->isKnown() : link->isConnected()); }
     };
     struct Move {
         DaemonLink *daemon;
@@ -102,12 +98,10 @@ private:
     using Robots = std::vector<std::unique_ptr<Robot>>;
 
     Entry &entryAt(const Place &place);
-    void onReady(const Place &place);
     void onChanged(const Place &place);
-    Robot *makeRobot(const QString &host, const QString &address, DaemonLink *supervisor);
+    Robot *robotWith(const QString &id);
 
-    void findNamers();
-    Robot *setAt(const QString &host, const QString &address);
+    void findNamed();
     std::vector<Move> reassign();
     Robots takeEmpty();
     /// Puts all daemons to their robots, and tells who has moved; removed: by the operator, or null.
@@ -126,7 +120,7 @@ private:
     QTimer changes_; // many that come together are told once
     std::map<Place, Entry> entries_;
     Robots robots_;
-    QMap<QString, QString> names_, places_;
+    QMap<QString, QString> names_;
     mutable QHash<QString, int> namesakes_; ///< how many robots have a name; empty: to be counted anew
     Objection objection_;
     Robot *robot_ = nullptr;

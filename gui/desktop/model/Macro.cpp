@@ -18,30 +18,20 @@ QByteArray compact(const QJsonDocument &json) {
     return json.toJson(QJsonDocument::Compact);
 }
 
-/// By which it is known in the next run, too.
-QString keyOf(const Robot &robot) {
-    return robot.address();
-}
-
 } // namespace
 
 MacroStep MacroStep::of(const Fleet &fleet, const DaemonLink &daemon, const QString &method,
                         const QJsonObject &params) {
-    for (const auto &robot : fleet.robots()) {
-        const auto all = robot->daemons();
-        if (std::find(all.begin(), all.end(), &daemon) != all.end())
-            return {keyOf(*robot), daemon.name(), method, params};
-    }
-    return {daemon.host(), daemon.name(), method, params};
+    const Robot *const robot = fleet.robotOf(&daemon);
+    return {robot ? robot->id() : daemon.host(), daemon.name(), method, params};
 }
 
 DaemonLink *MacroStep::target(const Fleet &fleet) const {
     std::vector<DaemonLink *> found;
-    for (const auto &one : fleet.robots())
-        if (keyOf(*one) == robot)
-            for (DaemonLink *const link : one->daemons())
-                if (link->name() == daemon)
-                    found.push_back(link);
+    if (const Robot *const one = fleet.robotAt(robot))
+        for (DaemonLink *const link : one->daemons())
+            if (link->name() == daemon)
+                found.push_back(link);
     return found.size() == 1 ? found.front() : nullptr; // of two nobody knows which was meant
 }
 

@@ -12,27 +12,29 @@ constexpr std::size_t maxProcesses = 100; // of one supervisor
 
 } // namespace
 
-Robot::Robot(const QString &host, const QString &address, DaemonLink *supervisor, QObject *parent)
+Robot::Robot(const QString &id, QObject *parent)
     : QObject(parent)
-    , host_(host)
-    , address_(address)
-    , isSupervised_(supervisor)
-    , supervisor_(supervisor) {
-    if (supervisor)
-        handle_ = supervisor->subscribe("processes", {{"max_rate_hz", 10}},
-                                        [this](const TopicUpdate &update) { takeProcesses(update.data); });
-}
+    , id_(id) {}
 
 Robot::~Robot() {
-    if (supervisor_)
-        supervisor_->unsubscribe(handle_);
+    for (const auto &[link, supervisor] : supervisors_)
+        link->unsubscribe(supervisor.handle);
 }
 
 QString Robot::name() const {
-    return !givenName_.isEmpty()  ? givenName_
-           : !toldName_.isEmpty() ? toldName_
-           : isSupervised_        ? host_
-                                  : address_;
+    return !givenName_.isEmpty() ? givenName_ : !toldName_.isEmpty() ? toldName_ : id_;
+}
+
+QString Robot::address() const {
+    QStringList places;
+    for (const auto &[link, supervisor] : supervisors_)
+        places.append(link->address());
+    if (places.isEmpty())
+        for (const auto &[place, daemon] : daemons_)
+            places.append(daemon->host());
+    places.removeDuplicates();
+    places.sort();
+    return places.join(", ");
 }
 
 void Robot::setGivenName(const QString &name) {
@@ -42,13 +44,13 @@ void Robot::setGivenName(const QString &name) {
 
 std::vector<DaemonLink *> Robot::daemons() const {
     std::vector<DaemonLink *> all;
-    for (const auto &[port, daemon] : daemons_)
+    for (const auto &[place, daemon] : daemons_)
         all.push_back(daemon);
     return all;
 }
 
 bool Robot::has(const DaemonLink *daemon) const {
-    const auto found = daemon ? daemons_.find(daemon->port()) : daemons_.end();
+    const auto found = daemon ? daemons_.find({daemon->port(), daemon->host()}) : daemons_.end();
     return found != daemons_.end() && found->second == daemon;
 }
 
@@ -59,51 +61,60 @@ DaemonLink *Robot::withMethod(const QString &method) const {
 
 std::vector<DaemonLink *> Robot::allWithMethod(const QString &method) const {
     std::vector<DaemonLink *> found;
-    for (const auto &[port, daemon] : daemons_)
+    for (const auto &[place, daemon] : daemons_)
         if (daemon->isConnected() && daemon->hasMethod(method))
             found.push_back(daemon);
     return found;
 }
 
 DaemonLink *Robot::withTopic(const QString &topic) const {
-    for (const auto &[port, daemon] : daemons_)
+    for (const auto &[place, daemon] : daemons_)
         if (daemon->isConnected() && daemon->hasTopic(topic))
             return daemon;
     return nullptr;
 }
 
 DaemonLink *Robot::withName(const QString &name) const {
-    for (const auto &[port, daemon] : daemons_)
+    for (const auto &[place, daemon] : daemons_)
         if (daemon->isKnown() && daemon->name() == name)
             return daemon;
     return nullptr;
 }
 
-DaemonLink *Robot::supervisor() const {
-    return supervisor_ && supervisor_->isConnected() && supervisor_->hasMethod("process.list")
-               ? supervisor_.data()
-               : nullptr;
+Robot::Found Robot::find(const DaemonLink &daemon) const {
+    if (has(&daemon))
+        for (const auto &[link, supervisor] : supervisors_)
+            if (link->host() == daemon.host())
+                for (const ProcessStatus &process : supervisor.processes)
+                    if (process.entry.port == daemon.port())
+                        return {link, &process};
+    return {};
 }
 
 const ProcessStatus *Robot::process(const DaemonLink &daemon) const {
-    if (has(&daemon))
-        for (const ProcessStatus &process : processes_)
-            if (process.entry.port == daemon.port())
-                return &process;
-    return nullptr;
+    return find(daemon).second;
+}
+
+DaemonLink *Robot::supervisorOf(const DaemonLink &daemon) const {
+    DaemonLink *const found = find(daemon).first;
+    return found && found->isConnected() && found->hasMethod("process.list") ? found : nullptr;
 }
 
 QString Robot::problem() const {
     QStringList lines = conflicts_;
-    if (!problem_.isEmpty())
-        lines.prepend(problem_);
+    for (const auto &[link, supervisor] : supervisors_)
+        if (!supervisor.problem.isEmpty())
+            lines.prepend(supervisor.problem);
     return lines.join('\n');
 }
 
 void Robot::take(DaemonLink *daemon) {
-    daemons_[daemon->port()] = daemon;
+    daemons_[{daemon->port(), daemon->host()}] = daemon;
+    if (toldName_.isEmpty())
+        toldName_ = shortLine(daemon->robotName(), longestName).trimmed();
     connect(daemon, &DaemonLink::changed, this, &Robot::changed);
-    connect(daemon, &DaemonLink::ready, this, [this] {
+    connect(daemon, &DaemonLink::ready, this, [this, daemon] {
+        watch(daemon);
         Q_EMIT changed();
         Q_EMIT capabilitiesChanged();
     });
@@ -111,13 +122,28 @@ void Robot::take(DaemonLink *daemon) {
         if (daemon->isKnown())
             Q_EMIT capabilitiesChanged();
     });
+    watch(daemon);
     nameDaemons();
 }
 
 void Robot::release(DaemonLink *daemon) {
-    daemons_.erase(daemon->port());
+    daemons_.erase({daemon->port(), daemon->host()});
     daemon->disconnect(this);
     daemon->client().disconnect(this);
+    if (const auto supervisor = supervisors_.find(daemon); supervisor != supervisors_.end()) {
+        daemon->unsubscribe(supervisor->second.handle);
+        supervisors_.erase(supervisor);
+        findNamed();
+    }
+}
+
+/// A supervisor.
+void Robot::watch(DaemonLink *daemon) {
+    if (!daemon->hasMethod("process.list") || supervisors_.count(daemon) > 0)
+        return;
+    supervisors_[daemon].handle =
+        daemon->subscribe("processes", {{"max_rate_hz", 10}},
+                          [this, daemon](const TopicUpdate &update) { takeProcesses(daemon, update.data); });
 }
 
 void Robot::setConflicts(const QStringList &conflicts) {
@@ -129,33 +155,44 @@ void Robot::setConflicts(const QStringList &conflicts) {
 
 /// Those that have not said their names.
 void Robot::nameDaemons() {
-    for (const auto &[port, daemon] : daemons_)
+    for (const auto &[place, daemon] : daemons_)
         if (const ProcessStatus *const process = this->process(*daemon))
             daemon->setSupervisedName(process->entry.name);
 }
 
-void Robot::takeProcesses(WireView data) {
+void Robot::takeProcesses(DaemonLink *link, WireView data) {
+    const auto found = supervisors_.find(link);
+    if (found == supervisors_.end())
+        return;
+    Supervisor &supervisor = found->second;
     ReadReport report;
     auto told = readMessage<ProcessesMessage>(data, report);
     if (!told) {
-        problem_ = tr("The supervisor's processes: %1").arg(report.text());
+        supervisor.problem = tr("The supervisor's processes: %1").arg(report.text());
         return Q_EMIT changed();
     }
-    const QString before = std::exchange(toldName_, shortLine(told->robot, longestName));
-    processes_ = std::move(told->processes);
-    const std::size_t all = processes_.size();
-    processes_.resize(std::min(all, maxProcesses));
-    problem_ = all > maxProcesses
-                   ? tr("%1 more processes of the supervisor are not shown").arg(all - maxProcesses)
-                   : QString();
-    std::set<quint16> named;
-    for (const ProcessStatus &process : processes_)
-        if (process.entry.port > 0 && process.entry.port != supervisor_->port())
-            named.insert(process.entry.port);
-    if (std::exchange(named_, named) != named || before != toldName_)
+    if (const QString name = shortLine(told->robot, longestName); !name.isEmpty())
+        toldName_ = name;
+    supervisor.processes = std::move(told->processes);
+    const std::size_t all = supervisor.processes.size();
+    supervisor.processes.resize(std::min(all, maxProcesses));
+    supervisor.problem = all > maxProcesses
+                             ? tr("%1 more processes of the supervisor are not shown").arg(all - maxProcesses)
+                             : QString();
+    if (findNamed())
         Q_EMIT namedChanged();
     nameDaemons();
     Q_EMIT changed();
+}
+
+/// Whether it is not as before.
+bool Robot::findNamed() {
+    std::set<Place> named;
+    for (const auto &[link, supervisor] : supervisors_)
+        for (const ProcessStatus &process : supervisor.processes)
+            if (process.entry.port > 0 && process.entry.port != link->port())
+                named.insert({link->host(), process.entry.port});
+    return std::exchange(named_, named) != named;
 }
 
 } // namespace hermes::desktop

@@ -10,22 +10,22 @@
 
 namespace hermes::desktop {
 
-/// One robot: a supervisor with the daemons that it names, or, without one, the daemons of a host that no
-/// supervisor names. Which daemons these are is the fleet's to say.
+/// One robot: the daemons that say so by its id, on whatever hosts; or those of a host that know no robot.
+/// Which these are is the fleet's to say.
 class Robot : public QObject {
     Q_OBJECT
 public:
+    using Place = std::pair<QString, quint16>; ///< host and port
     static constexpr int longestName = 30;
 
-    /// supervisor: null for the daemons that none names.
-    Robot(const QString &host, const QString &address, DaemonLink *supervisor, QObject *parent = nullptr);
+    explicit Robot(const QString &id, QObject *parent = nullptr);
     ~Robot() override;
 
-    const QString &host() const { return host_; }
-    /// What tells it from all others: "HOST:PORT" of its supervisor, or "HOST", or "HOST#2" and so on for
-    /// those that the operator has taken out of that.
-    const QString &address() const { return address_; }
-    /// What the operator calls it, else its supervisor, else its host.
+    /// What tells it from all others: its id, or the host.
+    const QString &id() const { return id_; }
+    /// Where its supervisors are, else its daemons.
+    QString address() const;
+    /// What the operator calls it, else it itself, else its id.
     QString name() const;
     void setGivenName(const QString &name);
 
@@ -38,17 +38,15 @@ public:
     std::vector<DaemonLink *> allWithMethod(const QString &method) const;
     DaemonLink *withTopic(const QString &topic) const;
     DaemonLink *withName(const QString &name) const;
-    /// What the supervisor tells of a daemon; null: nothing.
+    /// What a supervisor of its host tells of a daemon; null: nothing.
     const ProcessStatus *process(const DaemonLink &daemon) const;
-    /// Null: it has none, or none that can be spoken to.
-    DaemonLink *supervisor() const;
-    /// It has one, away or not.
-    bool isSupervised() const { return isSupervised_; }
-    /// What of the supervisor's list cannot be shown, and what else is not as it should be; empty: nothing.
+    /// That supervisor; null: there is none, or none that can be spoken to.
+    DaemonLink *supervisorOf(const DaemonLink &daemon) const;
+    /// What of the supervisors' lists cannot be shown, and what else is not as it should be; empty: nothing.
     QString problem() const;
 
-    /// The ports that its supervisor names.
-    const std::set<quint16> &named() const { return named_; }
+    /// Where its supervisors name daemons.
+    const std::set<Place> &named() const { return named_; }
     /// For the fleet; told to nobody.
     void take(DaemonLink *daemon);
     void release(DaemonLink *daemon);
@@ -59,22 +57,29 @@ Q_SIGNALS:
     void changed();
     /// A daemon can be looked up by what it can do: it was described, came back, or went.
     void capabilitiesChanged();
-    /// The supervisor names other ports than before, or itself otherwise.
+    /// The supervisors name others than before.
     void namedChanged();
 
 private:
-    void takeProcesses(WireView data);
-    void nameDaemons();
+    struct Supervisor {
+        int handle = 0;
+        std::vector<ProcessStatus> processes;
+        QString problem;
+    };
+    using Found = std::pair<DaemonLink *, const ProcessStatus *>;
 
-    const QString host_, address_;
-    const bool isSupervised_;
-    QPointer<DaemonLink> supervisor_;
-    int handle_ = 0;
-    QString givenName_, toldName_, problem_;
+    void watch(DaemonLink *daemon);
+    void takeProcesses(DaemonLink *supervisor, WireView data);
+    void nameDaemons();
+    bool findNamed();
+    Found find(const DaemonLink &daemon) const;
+
+    const QString id_;
+    QString givenName_, toldName_;
     QStringList conflicts_;
-    std::map<quint16, DaemonLink *> daemons_;
-    std::vector<ProcessStatus> processes_;
-    std::set<quint16> named_;
+    std::map<std::pair<quint16, QString>, DaemonLink *> daemons_;
+    std::map<DaemonLink *, Supervisor> supervisors_;
+    std::set<Place> named_;
 };
 
 } // namespace hermes::desktop

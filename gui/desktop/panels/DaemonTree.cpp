@@ -136,10 +136,7 @@ void DaemonTree::showRobot(QTreeWidgetItem &item, const Robot &robot) {
     if (state() == QAbstractItemView::EditingState)
         return; // what is typed would be lost
     item.setText(NameColumn, fleet_.titleOf(robot));
-    QStringList toolTip{robot.isSupervised()
-                            ? tr("A supervisor at %1 and the daemons that it names").arg(robot.address())
-                            : tr("Daemons at %1 that no supervisor names").arg(robot.host()),
-                        robot.problem()};
+    QStringList toolTip{tr("Robot %1 at %2").arg(robot.id(), robot.address()), robot.problem()};
     toolTip.removeAll(QString());
     item.setToolTip(NameColumn, toolTipOf(toolTip.join('\n')));
     const QVariant isWell = robot.problem().isEmpty();
@@ -242,17 +239,14 @@ void DaemonTree::mouseReleaseEvent(QMouseEvent *event) {
 }
 
 void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
-    QTreeWidgetItem *daemon = nullptr;
     while (item && item->parent())
-        item = (daemon = item)->parent();
+        item = item->parent();
     Robot *const robot = robotOf(item);
     if (!robot)
         return;
     auto *const menu = new QMenu(this);
     menu->setObjectName("rowMenu");
     menu->setAttribute(Qt::WA_DeleteOnClose);
-    if (daemon && !robot->isSupervised())
-        addPlaces(*menu, *robot, daemonIn(*daemon));
     const QString title = escaped(fleet_.titleOf(*robot));
     const QPointer<Robot> still(robot);
     add(*menu, tr("Re&name %1").arg(title), "renameRobot", [this, menu, still] {
@@ -262,30 +256,10 @@ void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
         });
     });
     add(*menu, tr("&Remove %1 from this window").arg(title), "removeRobot", [this, still] {
-        if (still && fleet_.robotAt(still->address()) == still)
+        if (still && fleet_.robotAt(still->id()) == still)
             Q_EMIT removalAsked(still);
     });
     menu->popup(viewport()->mapToGlobal(place));
-}
-
-/// Of what no supervisor names nobody but the operator knows which robot it is of.
-void DaemonTree::addPlaces(QMenu &menu, const Robot &robot, DaemonLink *daemon) {
-    const QString name = escaped(daemon->name());
-    const auto put = [this, &menu, link = QPointer<DaemonLink>(daemon)](const QString &text,
-                                                                        const QString &address) {
-        add(menu, text, "putTo " + address, [this, link, address] {
-            Robot *const to = fleet_.robotAt(address);
-            if (link && (to || address.isEmpty()))
-                fleet_.place(link, to);
-        });
-    };
-    if (robot.daemons().size() > 1)
-        put(tr("Make %1 a robot of its &own").arg(name), {});
-    for (const auto &other : fleet_.robots())
-        if (other.get() != &robot && !other->isSupervised() && other->host() == robot.host())
-            put(tr("Put %1 to the robot %2").arg(name, escaped(fleet_.titleOf(*other))), other->address());
-    if (!menu.isEmpty())
-        menu.addSeparator();
 }
 
 void DaemonTree::add(QMenu &menu, const QString &text, const QString &name,

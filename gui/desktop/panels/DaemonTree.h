@@ -44,7 +44,6 @@ private:
     void showChoice();
     void choose();
     void showMenu(QTreeWidgetItem *item, const QPoint &place);
-    void addPlaces(QMenu &menu, const Robot &robot, DaemonLink *daemon);
     void add(QMenu &menu, const QString &text, const QString &name, const std::function<void()> &work);
     void rename(QTreeWidgetItem *item);
     Robot *robotOf(const QTreeWidgetItem *item) const;

@@ -70,10 +70,6 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     connect(&fleet, &Fleet::changed, this, &DaemonsPanel::update);
     connect(&fleet, &Fleet::robotChosen, this, &DaemonsPanel::updateButtons);
     connect(&fleet, &Fleet::daemonChosen, this, &DaemonsPanel::updateButtons);
-    connect(&fleet, &Fleet::moved, this, [this](const DaemonLink *daemon, const Robot *, const Robot *to) {
-        if (fleet_.isChoiceMeant() && to->supervisor() != daemon) // at the start all find their places
-            message_->tell(tr("%1 belongs to the robot %2 now").arg(daemon->name(), fleet_.titleOf(*to)));
-    });
     update();
 }
 
@@ -106,9 +102,9 @@ void DaemonsPanel::updateButtons() {
     const Robot *const robot = fleet_.robot();
     const ProcessStatus *const process = daemon && robot ? robot->process(*daemon) : nullptr;
     const bool isRunning = process && process->pid > 0;
-    const bool isManaged = process && robot->supervisor();
-    const QString why = isManaged ? robot->supervisor()->refusal("process.start")
-                                  : tr("Only for daemons that the robot's supervisor runs");
+    const DaemonLink *const supervisor = process ? robot->supervisorOf(*daemon) : nullptr;
+    const QString why = supervisor ? supervisor->refusal("process.start")
+                                   : tr("Only for daemons that the robot's supervisor runs");
     start_->setEnabled(why.isEmpty() && !isRunning);
     stop_->setEnabled(why.isEmpty() && isRunning);
     restart_->setEnabled(why.isEmpty() && isRunning);
@@ -155,11 +151,11 @@ void DaemonsPanel::bringBack() {
 }
 
 void DaemonsPanel::ask(const QString &method) {
-    DaemonLink *const supervisor = fleet_.robot() ? fleet_.robot()->supervisor() : nullptr;
-    if (!supervisor || !fleet_.daemon())
-        return;
-    const ProcessStatus *const process = fleet_.robot()->process(*fleet_.daemon());
-    if (!process)
+    const Robot *const robot = fleet_.robot();
+    const DaemonLink *const daemon = fleet_.daemon();
+    const ProcessStatus *const process = robot && daemon ? robot->process(*daemon) : nullptr;
+    DaemonLink *const supervisor = process ? robot->supervisorOf(*daemon) : nullptr;
+    if (!supervisor)
         return;
     supervisor->call(method, {{"name", process->entry.name}}, this, [this](const Result<QJsonValue> &done) {
         if (done)

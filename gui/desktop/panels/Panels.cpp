@@ -33,6 +33,10 @@ QWidget *makeEventsPanel(const PanelContext &context) {
     return new EventsPanel(context.events, context.sounds);
 }
 
+QWidget *makeRecordPanel(const PanelContext &context) {
+    return new RecordPanel(context.fleet, context.drive.sessions());
+}
+
 std::vector<PanelKind> &known() {
     // A new panel is one line here.
     static std::vector<PanelKind> all = {
@@ -42,7 +46,7 @@ std::vector<PanelKind> &known() {
         {Qt::BottomDockWidgetArea, "Log", "log", makeLogPanel, "settings"},
         {Qt::BottomDockWidgetArea, "Plots", "plots", makePanel<PlotsPanel>, "settings"},
         {Qt::RightDockWidgetArea, "Drive", "drive", makeDrivePanel},
-        {Qt::LeftDockWidgetArea, "Recordings", "recordings", makePanel<RecordPanel>, "daemons"},
+        {Qt::LeftDockWidgetArea, "Recordings", "recordings", makeRecordPanel, "daemons"},
         {Qt::BottomDockWidgetArea, "Setup", "setup", makePanel<SetupPanel>, "settings"},
         {Qt::BottomDockWidgetArea, "Events", "events", makeEventsPanel, "settings"},
         {Qt::BottomDockWidgetArea, "Cloud", "cloud", makePanel<CloudPanel>, "settings"},

@@ -1,83 +1,111 @@
 #include "gui/desktop/panels/RecordPanel.h"
 
 #include "gui/desktop/Theme.h"
-#include "gui/desktop/panels/RecordTexts.h"
 #include "gui/desktop/panels/ReplayBar.h"
 #include "gui/desktop/panels/SessionTable.h"
 #include "gui/desktop/widgets/MessageLabel.h"
+#include "gui/desktop/widgets/Quantities.h"
+#include "protocol/wire/Fields.h"
 
 #include <QAction>
+#include <QFontDatabase>
 #include <QHBoxLayout>
 #include <QLineEdit>
+#include <QMessageBox>
+#include <QPlainTextEdit>
 #include <QPushButton>
 #include <QVBoxLayout>
 
 #include <algorithm>
 
 namespace hermes::desktop {
-RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
+namespace {
+
+constexpr int longestReport = 100000; // letters, of session.explain
+
+/// What each daemon lost; one packet may count as several.
+QString lossesText(const SessionState &now) {
+    QString text;
+    for (const SessionPart &part : now.parts) {
+        QStringList losses;
+        for (auto loss = part.losses.begin(); loss != part.losses.end(); ++loss)
+            if (loss.value() > 0)
+                losses.append(QString("%1 %2").arg(loss.key()).arg(loss.value(), 0, 'f', 0));
+        if (!losses.isEmpty())
+            text += RecordPanel::tr("; %1 lost: %2")
+                        .arg(shortLine(part.daemon, longestName),
+                             shortLine(losses.join(", ").replace('_', ' '), 100));
+    }
+    return text;
+}
+
+} // namespace
+
+RecordPanel::RecordPanel(Fleet &fleet, Sessions &sessions, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
-    , watch_(fleet)
-    , stops_(fleet, watch_)
-    , name_(new QLineEdit("run1"))
+    , sessions_(sessions)
+    , name_(new QLineEdit)
     , mark_(new QLineEdit)
     , record_(new QPushButton)
     , addMark_(new QPushButton(tr("Mark")))
     , replay_(new QPushButton(theme::icon("start"), tr("Repla&y")))
     , live_(new QPushButton(tr("&Live")))
+    , explain_(new QPushButton(tr("Explain")))
+    , startRecorder_(new QPushButton(tr("Start the recorder")))
     , takeMark_(new QAction(tr("Mark this moment of the recording"), this))
     , amount_(new PlainLabel)
-    , lost_(new PlainLabel)
+    , wrong_(new PlainLabel)
     , message_(new MessageLabel)
-    , sessions_(new SessionTable)
-    , bar_(new ReplayBar(player_)) {
+    , table_(new SessionTable) {
     nameAll();
     layOut();
     connectAll();
-    connect(&fleet, &Fleet::robotChosen, this, [this] { // what was recorded there is not here
-        if (!name_->isModified())
-            name_->setText("run1"); // the next free one of this robot is proposed
-        list_ = {};
-        ends_.clear();
-        sessions_->tell(list_);
-        message_->hide();
-        list();
-        update();
-    });
-    list();
     update();
 }
 
 void RecordPanel::nameAll() {
-    name_->setObjectName("name");
-    name_->setToolTip(tr("Of the folder in which all loggers record"));
-    record_->setObjectName("record");
-    replay_->setObjectName("replay");
-    replay_->setToolTip(tr("Plays the chosen recording through the same topics (double click)"));
-    live_->setObjectName("live");
+    const std::pair<QWidget *, const char *> named[]{
+        {name_, "name"},       {mark_, "markText"},
+        {record_, "record"},   {addMark_, "mark"},
+        {replay_, "replay"},   {live_, "live"},
+        {amount_, "amount"},   {wrong_, "wrong"},
+        {explain_, "explain"}, {startRecorder_, "startRecorder"}};
+    for (const auto &[widget, name] : named)
+        widget->setObjectName(name);
+    name_->setPlaceholderText(tr("Date and time"));
+    name_->setToolTip(tr("Name of the session; without one it is date and time"));
+    replay_->setToolTip(tr("Plays the chosen session through the same topics (double click)"));
     live_->setToolTip(tr("Ends the replay"));
-    amount_->setObjectName("amount");
+    explain_->setToolTip(tr("Who drove in the chosen session, why it stopped, what was wrong"));
     amount_->setWordWrap(true);
     amount_->setMinimumSize(1, 2 * fontMetrics().lineSpacing()); // else the list moves under the mouse
     amount_->setAlignment(Qt::AlignTop);
-    lost_->setObjectName("lost");
-    lost_->setWordWrap(true);
-    lost_->setMinimumWidth(1);
+    wrong_->setWordWrap(true);
+    wrong_->setMinimumWidth(1);
     QPalette fault;
     fault.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    lost_->setPalette(fault);
-    lost_->hide();
-    mark_->setObjectName("markText");
+    wrong_->setPalette(fault);
     mark_->setPlaceholderText(tr("What to remember of this moment"));
     mark_->setToolTip(tr("Without a text the mark gets a number"));
     mark_->setMaxLength(1000);
-    addMark_->setObjectName("mark");
     takeMark_->setObjectName("takeMark");
     takeMark_->setShortcut(Qt::CTRL + Qt::Key_M);
     takeMark_->setShortcutContext(Qt::ApplicationShortcut); // floating panels, too
     addMark_->setToolTip(tr("Puts a mark into the recording (%1)").arg(takeMark_->shortcut().toString()));
     addAction(takeMark_);
+    table_->setContextMenuPolicy(Qt::ActionsContextMenu);
+    addHand(tr("Repla&y"), "replaySession", [this] { replay(); });
+    addHand(tr("E&xplain"), "explainSession", [this] { explain(); });
+    addHand(tr("Re&name"), "renameSession", [this] { table_->askForName(); });
+    addHand(tr("&Remove..."), "removeSession", [this] { remove(); });
+}
+
+void RecordPanel::addHand(const QString &text, const char *name, const std::function<void()> &work) {
+    auto *const action = new QAction(text, table_);
+    action->setObjectName(name);
+    connect(action, &QAction::triggered, this, work);
+    table_->addAction(action);
 }
 
 void RecordPanel::layOut() {
@@ -88,16 +116,17 @@ void RecordPanel::layOut() {
     middle->addWidget(mark_, 1);
     middle->addWidget(addMark_);
     auto *const bottom = new QHBoxLayout;
-    bottom->addWidget(replay_);
-    bottom->addWidget(live_);
+    for (QPushButton *const button : {replay_, live_, explain_})
+        bottom->addWidget(button);
     auto *const layout = new QVBoxLayout(this);
     layout->addLayout(top);
     layout->addLayout(middle);
     layout->addWidget(amount_);
-    layout->addWidget(sessions_, 1); // gives its room to what is told below it: no button moves
-    layout->addWidget(lost_);
+    layout->addWidget(startRecorder_);
+    layout->addWidget(table_, 1); // gives its room to what is told below it: no button moves
+    layout->addWidget(wrong_);
     layout->addWidget(message_);
-    layout->addWidget(bar_);
+    layout->addWidget(new ReplayBar(sessions_));
     layout->addLayout(bottom);
     for (QWidget *const widget : std::initializer_list<QWidget *>{mark_, addMark_}) {
         QSizePolicy policy = widget->sizePolicy();
@@ -112,226 +141,212 @@ void RecordPanel::layOut() {
 }
 
 void RecordPanel::connectAll() {
-    connect(record_, &QPushButton::clicked, this, [this] { watch_.isRecording() ? stop() : start(); });
+    connect(record_, &QPushButton::clicked, this, &RecordPanel::record);
     connect(name_, &QLineEdit::returnPressed, record_, &QPushButton::click);
-    connect(name_, &QLineEdit::textChanged, this, &RecordPanel::update);
     connect(addMark_, &QPushButton::clicked, this, &RecordPanel::mark);
     connect(mark_, &QLineEdit::returnPressed, addMark_, &QPushButton::click);
     connect(takeMark_, &QAction::triggered, this, &RecordPanel::mark);
-    connect(replay_, &QPushButton::clicked, this, &RecordPanel::play);
-    connect(live_, &QPushButton::clicked, this,
-            [this] { isOwnShown() || !isReplaying_ ? player_.end() : Q_EMIT liveWanted(); });
-    connect(sessions_, &SessionTable::currentItemChanged, this, &RecordPanel::update);
-    connect(sessions_, &SessionTable::itemActivated, this, &RecordPanel::play);
-    connect(&watch_, &LoggerWatch::changed, this, [this] {
-        if (std::exchange(listed_, watch_.sessions()) != watch_.sessions()) // whoever began or ended one
-            list();
-        update();
+    connect(replay_, &QPushButton::clicked, this, &RecordPanel::replay);
+    connect(live_, &QPushButton::clicked, this, [this] { ask("session.live", {}); });
+    connect(explain_, &QPushButton::clicked, this, &RecordPanel::explain);
+    connect(startRecorder_, &QPushButton::clicked, this, &RecordPanel::startRecorder);
+    connect(table_, &SessionTable::currentItemChanged, this, &RecordPanel::update);
+    connect(table_, &SessionTable::itemActivated, this, &RecordPanel::replay);
+    connect(table_, &SessionTable::renameWanted, this, [this](const QString &name, const QString &to) {
+        ask("session.rename", {{"name", name}, {"to", to}}, [this](const auto &) { list(); });
     });
-    connect(&watch_, &LoggerWatch::ended, this, &RecordPanel::takeEnd);
-    connect(&watch_, &LoggerWatch::membersChanged, this, &RecordPanel::list);
-    connect(&stops_, &RecordingStops::changed, this, &RecordPanel::update);
-    connect(&stops_, &RecordingStops::ended, this, &RecordPanel::showStopped);
-    connect(&player_, &SessionPlayer::ended, this, [this](const Result<void> &result) {
-        const QString text =
-            result ? tr("The replay has ended; everything is live.") : result.error().message;
-        const QString here = fleet_.robot() ? fleet_.titleOf(*fleet_.robot()) : QString();
-        message_->tell(playedBy_ == here ? text : tr("%1: %2").arg(playedBy_, text), !result);
-        update();
+    connect(&sessions_, &Sessions::changed, this, &RecordPanel::update);
+    connect(&sessions_, &Sessions::refused, this, [this](const QString &why) { message_->tell(why, true); });
+    connect(&fleet_, &Fleet::robotChosen, this, [this] {
+        table_->tell({}); // what was told of another robot is not of this one
+        message_->hide();
+        dialog_.close();
     });
 }
 
-/// The chosen robot shows what is played from here.
-bool RecordPanel::isOwnShown() const {
-    const auto &all = watch_.members().all;
-    return player_.isPlaying() && std::any_of(all.begin(), all.end(), [this](const SessionMember &member) {
-               return member.client && player_.plays(*member.client);
-           });
-}
-
-/// With the loggers of this moment.
-SessionRecorder &RecordPanel::recorder() {
-    recorder_.setMembers(watch_.members());
-    return recorder_;
-}
-
-void RecordPanel::start() {
-    const QString name = name_->text().trimmed();
-    recorder().start(name, [this, name](const Result<SessionReplies> &replies) {
-        message_->tell(replies ? tr("Recording %1.").arg(name) : replies.error().message, !replies);
-        begun_ = replies ? message_->text() : QString();
-        if (replies) {
-            watch_.forgetLost();
-            name_->setModified(false); // the next one is proposed
-        } else {
-            stops_.expect(recorder_.takenBack(), recorder_.mayRecord()); // whose link broke may have begun
+void RecordPanel::ask(const QString &method, const QJsonObject &params, const Taken &taken) {
+    sessions_.call(method, params, this, [this, taken](const Result<QJsonValue> &answer) {
+        if (!answer) {
+            message_->tell(answer.error().message, true);
+            list(); // as it is, not as somebody wanted it
+        } else if (taken) {
+            taken(*answer);
         }
-        watch_.poll();
-        list();
     });
 }
 
-void RecordPanel::stop() {
-    stops_.begin();
-    update();
-}
-
-/// Unless it was ended from here.
-void RecordPanel::takeEnd(const QString &session, const QString &name) {
-    const RecordingStop *const stop = stops_.chosen();
-    if ((stop && stop->ends(session)) || recorder_.takenBack() == session)
+void RecordPanel::askOfChosen(const QString &method, QJsonObject params, const Taken &taken) {
+    if (!table_->chosen())
         return;
-    ends_[session] = name;
-    list();
+    params["name"] = table_->chosen()->name;
+    ask(method, params, taken);
 }
 
-/// As the list has them now.
-void RecordPanel::showEnds() {
-    QStringList lines;
-    const QMap<QString, QString> ends = std::exchange(ends_, {});
-    for (auto end = ends.begin(); end != ends.end(); ++end)
-        lines += endLines(end.key(), end.value(), watch_, list_);
-    if (!lines.isEmpty())
-        message_->tell(lines.join('\n'), lines.size() > ends.size()); // with reasons
+void RecordPanel::startRecorder() {
+    DaemonLink *const supervisor = fleet_.robot() ? fleet_.robot()->withMethod("process.start") : nullptr;
+    if (supervisor)
+        supervisor->call(
+            "process.start", {{"name", "recorder"}}, this, [this](const Result<QJsonValue> &answer) {
+                message_->tell(answer ? tr("The recorder starts.") : answer.error().message, !answer);
+            });
 }
 
-void RecordPanel::showStopped(const QString &text, bool isError, bool isChosen) {
-    message_->tell(text, isError);
-    if (!isChosen)
-        return;
-    sessions_->setCurrentItem(nullptr); // the latest is chosen
-    watch_.poll();
-    list();
+void RecordPanel::record() {
+    if (sessions_.isRecording())
+        return ask("session.stop", {});
+    const QString name = name_->text().trimmed();
+    ask("session.start", name.isEmpty() ? QJsonObject() : QJsonObject{{"name", name}},
+        [this](const QJsonValue &state) {
+            message_->tell(tr("Recording %1.").arg(shortLine(state["name"].toString(), longestName)));
+            name_->clear();
+        });
 }
 
 void RecordPanel::mark() {
-    if (!watch_.marks())
-        return message_->tell(
-            watch_.isRecording()
-                ? tr("No mark was taken: none of the loggers that record takes marks, as the "
-                     "serial logger does.")
-            : fleet_.robot()
-                ? tr("No mark was taken: %1 records nothing.").arg(fleet_.titleOf(*fleet_.robot()))
-                : tr("No mark was taken: there is no robot."),
-            true);
-    const QString typed = mark_->text(), text = markText();
-    recorder_.setMembers(watch_.markers()); // it waits for no others
-    recorder_.mark(text, [this, typed, text](const Result<SessionReplies> &replies) {
-        message_->tell(replies ? tr("Marked: %1").arg(text) : replies.error().message, !replies);
-        if (replies && mark_->text() == typed)
+    const QString typed = mark_->text();
+    marks_ = std::max(marks_, int(sessions_.state().marks.size()));
+    const QString text = typed.trimmed().isEmpty() ? tr("mark %1").arg(marks_ + 1) : typed.trimmed();
+    marks_ += sessions_.isRecording();
+    ask("session.mark", {{"text", text}}, [this, typed, text](const QJsonValue &) {
+        message_->tell(tr("Marked: %1").arg(text));
+        if (mark_->text() == typed)
             mark_->clear();
     });
 }
 
-/// As typed, or a number.
-QString RecordPanel::markText() {
-    if (markedIn_ != watch_.sessions())
-        markNumber_ = 0;
-    markedIn_ = watch_.sessions();
-    markNumber_ = std::max(markNumber_, watch_.markCount()) + 1;
-    const QString typed = mark_->text().trimmed();
-    return typed.isEmpty() ? tr("mark %1").arg(markNumber_) : typed;
+void RecordPanel::list() {
+    ++listing_;
+    if (!sessions_.isThere())
+        return table_->tell({});
+    sessions_.call("session.list", {{"max", maxSessions}}, this,
+                   [this, listing = listing_](const Result<QJsonValue> &answer) {
+                       if (listing != listing_)
+                           return; // asked for anew, maybe of another robot
+                       ReadReport report;
+                       std::vector<SessionSummary> found;
+                       if (answer)
+                           for (const QJsonValue &told : answer->toArray())
+                               if (auto one = readMessage<SessionSummary>(WireValue(told), report);
+                                   one && found.size() < maxSessions)
+                                   found.push_back(std::move(*one));
+                       if (!answer || report.hasFailed())
+                           message_->tell(
+                               tr("The list of sessions: %1")
+                                   .arg(answer ? shortLine(report.text()) : answer.error().message),
+                               true);
+                       table_->tell(found);
+                       update();
+                   });
 }
 
-void RecordPanel::list() {
-    recorder().list(maxRecordings, [this, listing = ++listing_](const SessionList &found) {
-        if (listing != listing_)
-            return; // asked for anew, maybe of another robot
-        list_ = found;
-        sessions_->tell(found);
-        proposeName();
-        showEnds();
-        update();
+void RecordPanel::remove() {
+    const SessionSummary *const session = table_->chosen();
+    if (!session)
+        return;
+    const QString name = session->name;
+    auto *const box = new QMessageBox(QMessageBox::Question, tr("Recordings"),
+                                      tr("Remove %1, %2 of %3? Nothing brings it back.")
+                                          .arg(shortLine(name, longestName), sizeText(session->bytes),
+                                               shortLine(session->daemons.join(", "))),
+                                      QMessageBox::Cancel, this);
+    box->setObjectName("removal");
+    box->setTextFormat(Qt::PlainText);
+    QPushButton *const accept = box->addButton(tr("&Remove"), QMessageBox::AcceptRole);
+    box->setDefaultButton(QMessageBox::Cancel);
+    connect(accept, &QPushButton::clicked, this, [this, name] {
+        ask("session.remove", {{"name", name}, {"confirm", true}}, [this, name](const QJsonValue &) {
+            message_->tell(tr("Removed: %1").arg(shortLine(name, longestName)));
+            list();
+        });
+    });
+    dialog_.show(box);
+}
+
+void RecordPanel::replay() {
+    askOfChosen("session.replay", {}, [this](const QJsonValue &) { message_->hide(); });
+}
+
+void RecordPanel::explain() {
+    askOfChosen("session.explain", {}, [this](const QJsonValue &answer) {
+        auto *const dialog = new QDialog(this);
+        dialog->setObjectName("explanation");
+        dialog->setWindowTitle(tr("What happened"));
+        auto *const text = new QPlainTextEdit(shortText(answer["text"].toString(), longestReport));
+        text->setReadOnly(true);
+        text->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
+        (new QVBoxLayout(dialog))->addWidget(text);
+        dialog->resize(80 * text->fontMetrics().averageCharWidth(), 30 * text->fontMetrics().lineSpacing());
+        dialog_.show(dialog);
     });
 }
 
-/// Unless somebody has typed one.
-void RecordPanel::proposeName() {
-    if (watch_.isRecording() && !name_->hasFocus())
-        name_->setText(shortLine(watch_.name(), longestName));
-    if (name_->isModified() || watch_.isRecording())
-        return;
-    const QString next = nextFreeName(name_->text().trimmed(), list_);
-    if (next != name_->text())
-        name_->setText(next);
-}
-
-void RecordPanel::play() {
-    const RecordedSession *const session = sessions_->chosen();
-    if (!session)
-        return;
-    if (watch_.isRecording())
-        return message_->tell(tr("The robot is recording: nothing is replayed until that has ended."), true);
-    QStringList lines = session->absent();
-    lines.prepend(tr("Replaying %1.").arg(shortLine(session->name, longestName)));
-    message_->tell(lines.join('\n'), lines.size() > 1);
-    played_ = session->id;
-    playedBy_ = fleet_.robot() ? fleet_.titleOf(*fleet_.robot()) : QString();
-    bar_->begin(*session);
-    player_.play(*session, {});
-    listMarks(*session, watch_.members().timeout, this,
-              [this, id = session->id](const std::vector<SessionMark> &marks, const QStringList &problems) {
-                  if (id != played_)
-                      return;
-                  bar_->setMarks(marks);
-                  if (!problems.isEmpty())
-                      message_->tell(tr("Its marks cannot be shown: %1").arg(problems.join('\n')), true);
-              });
-    update();
-}
-
-void RecordPanel::setReplaying(bool isReplaying) {
-    if (std::exchange(isReplaying_, isReplaying) != isReplaying)
-        update();
-}
-
 void RecordPanel::update() {
-    const bool isRecording = watch_.isRecording();
-    if (std::exchange(wasRecording_, isRecording) != isRecording) {
-        Q_EMIT recordingChanged(isRecording);
-        if (!isRecording && message_->text() == begun_)
-            message_->hide(); // whatever became of it
+    const SessionState &now = sessions_.state();
+    const bool isThere = sessions_.isThere(), isRecording = sessions_.isRecording();
+    const QString listFor =
+        isThere ? sessions_.recorder()->address() + ' ' + now.session + ' ' + now.state : QString();
+    if (std::exchange(listedFor_, listFor) != listFor) // whoever began or ended one
+        list();
+    const QString before = std::exchange(recorded_, isRecording ? now.session : QString());
+    if (before != recorded_)
+        marks_ = 0;
+    if (!isRecording && !before.isEmpty() && before == now.session) {
+        table_->setCurrentItem(nullptr); // the latest is chosen
+        message_->tell(now.problems.isEmpty()
+                           ? tr("%1 has ended, nothing missing.").arg(shortLine(now.name, longestName))
+                           : tr("%1 has ended.").arg(shortLine(now.name, longestName)),
+                       !now.problems.isEmpty());
     }
     record_->setText(isRecording ? tr("S&top") : tr("Re&cord"));
     record_->setIcon(theme::icon(isRecording ? "stop" : "record"));
-    record_->setEnabled(!watch_.members().all.empty() && (isRecording || !name_->text().trimmed().isEmpty()));
-    name_->setEnabled(!isRecording);
-    mark_->setVisible(watch_.marks());
-    addMark_->setVisible(watch_.marks());
-    showAmount();
-    showLost();
-    showStop();
-    replay_->setEnabled(sessions_->chosen() && !isRecording);
-    live_->setEnabled(player_.isPlaying() || isReplaying_);
+    record_->setEnabled(isThere);
+    mark_->setVisible(isRecording);
+    addMark_->setVisible(isRecording);
+    const DaemonLink *const supervisor =
+        fleet_.robot() ? fleet_.robot()->withMethod("process.start") : nullptr;
+    startRecorder_->setVisible(!isThere && supervisor && supervisor->may("process.start"));
+    const bool isChosen = isThere && table_->chosen();
+    for (QAction *const action : table_->actions())
+        action->setEnabled(isChosen);
+    explain_->setEnabled(isChosen);
+    replay_->setEnabled(isChosen && !isRecording);
+    live_->setEnabled(isThere && now.state == "replaying");
+    amount_->setEnabled(isThere && !sessions_.recorder()->isSilent()); // else it is old
+    amount_->setText(amount());
+    wrong_->setText(wrong());
+    wrong_->setVisible(!wrong_->text().isEmpty());
 }
 
-void RecordPanel::showStop() {
-    const RecordingStop *const stop = stops_.chosen();
-    if (!stop || !stop->isUnderWay())
-        return;
-    const QStringList silent = stop->silent();
-    message_->tell(silent.isEmpty()
-                       ? tr("Stopping.")
-                       : tr("%1 does not answer, and may go on recording. Stop is sent again until it "
-                            "answers.")
-                             .arg(silent.join(", ")),
-                   !silent.isEmpty(), true);
+QString RecordPanel::amount() const {
+    const SessionState &now = sessions_.state();
+    if (!sessions_.recorder())
+        return fleet_.robot() ? tr("The robot has no recorder: nothing is recorded.") : QString();
+    const QString name = shortLine(now.name, longestName);
+    QString text = tr("Records all that the daemons of the robot tell.");
+    if (sessions_.isRecording()) {
+        text = tr("%1: %2, %3").arg(name, durationText(now.duration_s), sizeText(now.bytes));
+        if (now.left_s)
+            text += tr(", the disk will do for %1").arg(durationText(*now.left_s));
+        text += lossesText(now);
+    } else if (now.state == "starting") {
+        text = tr("%1 begins.").arg(name);
+    } else if (now.state == "replaying") {
+        text = tr("%1 is replayed.").arg(name);
+    }
+    return sessions_.isThere() && !sessions_.recorder()->isSilent()
+               ? text
+               : tr("The recorder does not answer, and goes on by itself; last known: %1").arg(text);
 }
 
-void RecordPanel::showAmount() {
-    const QStringList silent = watch_.silent();
-    const QString amount = amountText(watch_, list_);
-    amount_->setEnabled(silent.isEmpty()); // else it is old
-    amount_->setText(
-        silent.isEmpty() ? amount : tr("%1 does not answer; last known: %2").arg(silent.join(", "), amount));
-}
-
-void RecordPanel::showLost() {
-    QStringList lines = stops_.silentElsewhere();
-    if (!watch_.lost().empty())
-        lines.append(lostText(watch_));
-    lost_->setText(lines.join('\n'));
-    lost_->setVisible(!lines.isEmpty());
+/// What is wrong with what is recorded, or was last.
+QString RecordPanel::wrong() const {
+    QStringList lines = sessions_.state().problems;
+    if (!sessions_.problem().isEmpty())
+        lines.prepend(sessions_.problem());
+    if (sessions_.isRecording())
+        for (const QString &daemon : sessions_.state().silent)
+            lines.append(tr("%1 does not answer.").arg(daemon));
+    return shortText(lines.join('\n'));
 }
 
 } // namespace hermes::desktop

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gui/desktop/model/RecordingStops.h"
-#include "gui/session/SessionPlayer.h"
+#include "gui/desktop/model/Sessions.h"
+#include "gui/desktop/widgets/OneDialog.h"
 
 #include <QWidget>
 
@@ -13,76 +13,53 @@ namespace hermes::desktop {
 
 class MessageLabel;
 class PlainLabel;
-class ReplayBar;
 class SessionTable;
 
-/// Records with all loggers of the robot as one session, puts marks into it, shows how much and how long the
-/// disk will do, lists what was recorded and plays it.
+/// Has the recorder of the robot record sessions, puts marks into them, shows how much and how long the disk
+/// will do, lists what was recorded, plays it and tells what happened in it.
 class RecordPanel : public QWidget {
     Q_OBJECT
 public:
-    /// Of each logger, the newest so many recordings are listed.
-    static constexpr int maxRecordings = 200;
+    /// The newest so many sessions are listed.
+    static constexpr int maxSessions = 200;
 
-    explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
-    /// Loggers replay, whoever began it.
-    void setReplaying(bool isReplaying);
-    SessionPlayer &player() { return player_; }
-    /// The chosen robot is recorded, whoever began it.
-    bool isRecording() const { return watch_.isRecording(); }
-
-Q_SIGNALS:
-    /// The replay of somebody else is to end.
-    void liveWanted();
-    /// The chosen robot is recorded from now on, or no more.
-    void recordingChanged(bool isRecording);
+    RecordPanel(Fleet &fleet, Sessions &sessions, QWidget *parent = nullptr);
 
 private:
+    using Taken = std::function<void(const QJsonValue &)>;
+
     void layOut();
     void nameAll();
     void connectAll();
-    SessionRecorder &recorder();
-    void start();
-    void stop();
-    void showStopped(const QString &text, bool isError, bool isChosen);
-    void takeEnd(const QString &session, const QString &name);
-    void showEnds();
+    void addHand(const QString &text, const char *name, const std::function<void()> &work);
+    /// Asks the recorder, and shows why it was refused.
+    void ask(const QString &method, const QJsonObject &params, const Taken &taken = {});
+    /// The same of the chosen session.
+    void askOfChosen(const QString &method, QJsonObject params, const Taken &taken = {});
+    void startRecorder();
+    void record();
     void mark();
-    QString markText();
     void list();
-    void proposeName();
-    void play();
+    void remove();
+    void replay();
+    void explain();
     void update();
-    void showStop();
-    void showAmount();
-    void showLost();
-
-    bool isOwnShown() const;
+    QString amount() const;
+    QString wrong() const;
 
     Fleet &fleet_;
-    bool wasRecording_ = false;
-    LoggerWatch watch_;
-    SessionRecorder recorder_;
-    RecordingStops stops_;
-    SessionPlayer player_;
-    SessionList list_;
-    bool isReplaying_ = false;
-    int listing_ = 0;             ///< counts the times that it was asked for
-    QSet<QString> listed_;        ///< the sessions that were under way then
-    QMap<QString, QString> ends_; ///< names of recordings that ended otherwise, by session; to be told
-    QString begun_;               ///< what was told of the recording that was begun here last
-    QString played_;              ///< the id of the session
-    QString playedBy_;            ///< the title of its robot
-    QSet<QString> markedIn_;      ///< the sessions that the number is of
-    int markNumber_ = 0;          ///< of the last mark
+    Sessions &sessions_;
+    OneDialog dialog_;
+    QString listedFor_; ///< what the recorder did as it was asked for the list
+    int listing_ = 0;   ///< counts the times that it was asked
+    QString recorded_;  ///< the id of the session that is recorded
+    int marks_ = 0;     ///< in it, with those that are on their way
     QLineEdit *name_, *mark_;
-    QPushButton *record_, *addMark_, *replay_, *live_;
+    QPushButton *record_, *addMark_, *replay_, *live_, *explain_, *startRecorder_;
     QAction *takeMark_;
-    PlainLabel *amount_;
-    PlainLabel *lost_;
+    PlainLabel *amount_, *wrong_;
     MessageLabel *message_;
-    SessionTable *sessions_;
-    ReplayBar *bar_;
+    SessionTable *table_;
 };
 
 } // namespace hermes::desktop

@@ -6,6 +6,7 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QPushButton>
 #include <QScrollArea>
@@ -30,9 +31,9 @@ QToolButton *makeButton(const char *name, const char *icon) {
 
 } // namespace
 
-ReplayBar::ReplayBar(SessionPlayer &player, QWidget *parent)
+ReplayBar::ReplayBar(Sessions &sessions, QWidget *parent)
     : QWidget(parent)
-    , player_(player)
+    , sessions_(sessions)
     , position_(new PlainLabel)
     , line_(new Timeline)
     , pause_(new QPushButton)
@@ -44,35 +45,34 @@ ReplayBar::ReplayBar(SessionPlayer &player, QWidget *parent)
     position_->setMinimumWidth(1);
     line_->setObjectName("timeline");
     pause_->setObjectName("pauseReplay");
-    pause_->setToolTip(tr("All loggers of the recording wait, or go on"));
+    pause_->setToolTip(tr("The replay waits, or goes on"));
     speed_->setObjectName("replaySpeed");
     speed_->setAccessibleName(tr("Speed of the replay"));
     for (const double speed : speeds)
         speed_->addItem(tr("%1 x").arg(speed), speed);
     speed_->addItem(tr("fastest"), 0.0);
     loop_->setObjectName("loopReplay");
-    loop_->setToolTip(tr("At its end the recording begins anew"));
+    loop_->setToolTip(tr("At its end the replay begins anew"));
     layOut();
-    showPosition();
-    showPaused();
-    hide();
 
-    connect(&player, &SessionPlayer::progress, this, &ReplayBar::showProgress);
-    connect(&player, &SessionPlayer::ended, this, &ReplayBar::hide);
+    connect(&sessions, &Sessions::changed, this, &ReplayBar::update);
     connect(line_, &Timeline::heldChanged, this, &ReplayBar::hold);
     connect(line_, &Timeline::sought, this, [this](double t_s) {
-        player_.seek(t_s);
+        sessions_.order("session.seek", {{"t_s", t_s}});
         showPosition();
     });
     connect(pause_, &QPushButton::clicked, this, [this] {
-        player_.setPaused(!player_.isPaused());
-        showPaused();
+        sessions_.order("session.pause", {{"paused", !isPaused_}});
     });
     connect(before_, &QToolButton::clicked, this, [this] { goTo(markBefore()); });
     connect(after_, &QToolButton::clicked, this, [this] { goTo(markAfter()); });
-    connect(speed_, QOverload<int>::of(&QComboBox::activated), this,
-            [this] { player_.setSpeed(speed_->currentData().toDouble()); });
-    connect(loop_, &QCheckBox::toggled, this, [this](bool isOn) { player_.setLoop(isOn); });
+    connect(speed_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        sessions_.order("session.speed", {{"speed", speed_->currentData().toDouble()}});
+    });
+    connect(loop_, &QCheckBox::clicked, this, [this](bool isOn) {
+        sessions_.order("session.loop", {{"loop", isOn}});
+    });
+    update();
 }
 
 void ReplayBar::layOut() {
@@ -114,37 +114,36 @@ void ReplayBar::comeInSight() {
     });
 }
 
-void ReplayBar::begin(const RecordedSession &session) {
-    recorded_s_ = session.end - session.start;
-    line_->setMarks({});
-    line_->setDuration(0);
-    speed_->setCurrentIndex(speed_->findData(1.0));
-    loop_->setChecked(false);
+/// What waits for an answer is shown as it was set.
+void ReplayBar::update() {
+    const SessionState &now = sessions_.state();
+    const SessionReplay replay = now.replay.value_or(SessionReplay());
+    line_->setDuration(replay.duration_s);
+    if (!sessions_.isOrdered("session.seek"))
+        line_->setPosition(replay.position_s);
+    std::vector<Timeline::Mark> marks;
+    for (const SessionMark &mark : now.marks)
+        marks.push_back({mark.t_s, shortLine(mark.text, longestName)});
+    line_->setMarks(std::move(marks));
+    isPaused_ = line_->isHeld() ? wasPaused_ : replay.paused;
+    pause_->setText(isPaused_ ? tr("Go on") : tr("Pause"));
+    pause_->setIcon(theme::icon(isPaused_ ? "start" : "pause"));
+    if (!sessions_.isOrdered("session.speed"))
+        showSpeed(replay.speed);
+    if (!sessions_.isOrdered("session.loop"))
+        loop_->setChecked(replay.loop);
+    showPosition();
+    setVisible(now.replay.has_value());
 }
 
-void ReplayBar::setMarks(const std::vector<SessionMark> &marks) {
-    std::vector<Timeline::Mark> shown;
-    for (const SessionMark &mark : marks)
-        shown.push_back({mark.t_s, shortLine(mark.text, longestName)});
-    line_->setMarks(std::move(shown));
-    showPosition();
-}
-
-void ReplayBar::showProgress(double position_s, double duration_s) {
-    const bool canSeek = player_.canSeek();
-    line_->setDuration(duration_s > 0 ? duration_s : recorded_s_); // until they have read it through
-    line_->setPosition(position_s);
-    line_->setEnabled(canSeek);
-    line_->setToolTip(canSeek ? QString() : tr("One of the loggers can only play it from its beginning"));
-    const bool canSetSpeed = player_.canSetSpeed();
-    speed_->setEnabled(canSetSpeed);
-    speed_->setToolTip(canSetSpeed
-                           ? tr("How many times faster than it was recorded; \"fastest\": as fast as the "
-                                "loggers can")
-                           : tr("One of the loggers cannot change its speed while it plays"));
-    showPosition();
-    showPaused();
-    show();
+/// One that others have set may be none of these.
+void ReplayBar::showSpeed(double speed) {
+    constexpr int other = int(std::size(speeds)) + 1;
+    if (speed_->findData(speed) < 0)
+        speed_->insertItem(other, tr("%1 x").arg(shortNumber(speed, 2)), speed);
+    speed_->setCurrentIndex(speed_->findData(speed));
+    while (speed_->count() > other + (speed_->currentIndex() == other))
+        speed_->removeItem(speed_->count() - 1);
 }
 
 void ReplayBar::showPosition() {
@@ -154,7 +153,7 @@ void ReplayBar::showPosition() {
     const auto tell = [this](QAbstractButton *button, const Timeline::Mark *mark, const QString &none) {
         const QString text =
             mark ? tr("To the mark \"%1\" at %2").arg(mark->text, durationText(mark->t_s)) : none;
-        button->setEnabled(mark && line_->isEnabled());
+        button->setEnabled(mark);
         button->setToolTip(toolTipOf(text));
         button->setAccessibleName(text);
     };
@@ -162,22 +161,17 @@ void ReplayBar::showPosition() {
     tell(after_, markAfter(), tr("There is no mark after this"));
 }
 
-void ReplayBar::showPaused() {
-    const bool isPaused = line_->isHeld() ? wasPaused_ : player_.isPaused();
-    pause_->setText(isPaused ? tr("Go on") : tr("Pause"));
-    pause_->setIcon(theme::icon(isPaused ? "start" : "pause"));
-}
-
-/// The recording waits while the mouse moves along it.
+/// The replay waits while the mouse moves along it.
 void ReplayBar::hold(bool isHeld) {
     if (isHeld)
-        wasPaused_ = player_.isPaused();
-    player_.setPaused(isHeld || wasPaused_);
+        wasPaused_ = isPaused_;
+    if (sessions_.state().replay) // else it has ended meanwhile
+        sessions_.order("session.pause", {{"paused", isHeld || wasPaused_}});
 }
 
 const Timeline::Mark *ReplayBar::markBefore() const {
     const auto &marks = line_->marks();
-    const double limit_s = line_->position_s() - (player_.isPaused() ? 0.01 : justPassed_s);
+    const double limit_s = line_->position_s() - (isPaused_ ? 0.01 : justPassed_s);
     const auto found = std::find_if(marks.rbegin(), marks.rend(),
                                     [limit_s](const Timeline::Mark &mark) { return mark.t_s < limit_s; });
     return found == marks.rend() ? nullptr : &*found;

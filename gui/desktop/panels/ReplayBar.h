@@ -1,8 +1,7 @@
 #pragma once
 
+#include "gui/desktop/model/Sessions.h"
 #include "gui/desktop/widgets/Timeline.h"
-#include "gui/session/SessionMarks.h"
-#include "gui/session/SessionPlayer.h"
 
 class QAbstractButton;
 class QCheckBox;
@@ -18,11 +17,7 @@ class PlainLabel;
 class ReplayBar : public QWidget {
     Q_OBJECT
 public:
-    explicit ReplayBar(SessionPlayer &player, QWidget *parent = nullptr);
-
-    /// This one is played now; its marks come later.
-    void begin(const RecordedSession &session);
-    void setMarks(const std::vector<SessionMark> &marks);
+    explicit ReplayBar(Sessions &sessions, QWidget *parent = nullptr);
 
 protected:
     void showEvent(QShowEvent *event) override;
@@ -31,17 +26,17 @@ protected:
 private:
     void comeInSight();
     void layOut();
-    void showProgress(double position_s, double duration_s);
+    void update();
+    void showSpeed(double speed);
     void showPosition();
-    void showPaused();
     void hold(bool isHeld);
     /// The mark before or after this time; null: none.
     const Timeline::Mark *markBefore() const;
     const Timeline::Mark *markAfter() const;
     void goTo(const Timeline::Mark *mark);
 
-    SessionPlayer &player_;
-    double recorded_s_ = 0;  ///< how long was recorded
+    Sessions &sessions_;
+    bool isPaused_ = false;
     bool wasPaused_ = false; ///< when the mouse took the line
     PlainLabel *position_;
     Timeline *line_;

@@ -7,7 +7,6 @@
 #include <QCollator>
 #include <QHeaderView>
 #include <QLocale>
-#include <QRegularExpression>
 #include <cmath>
 
 namespace hermes::desktop {
@@ -55,10 +54,6 @@ protected:
     }
 };
 
-QString keyOf(const RecordedSession &session) {
-    return session.id + '/' + session.name;
-}
-
 /// The tool tip has it in full.
 QString dateText(double stamp, bool hasRoom) {
     const auto start = timeOf(stamp);
@@ -71,32 +66,20 @@ QString dateText(double stamp, bool hasRoom) {
                               (isThisYear ? QString("d MMM") : "d MMM yyyy") + (hasRoom ? " HH:mm" : ""));
 }
 
-QString sessionToolTip(const RecordedSession &session) {
+QString sessionToolTip(const SessionSummary &session) {
     const auto start = timeOf(session.start);
-    QStringList lines{start ? QLocale().toString(*start, QLocale::ShortFormat)
-                            : SessionTable::tr("at an impossible time: %1").arg(session.start)};
-    for (const SessionPart &part : session.parts)
-        lines.append(SessionTable::tr("%1: %2, %3")
-                         .arg(part.member.name, countsText(part.entry["counts"]),
-                              part.fault().isEmpty() ? SessionTable::tr("complete") : part.fault()));
+    QStringList lines{shortLine(session.name)};
+    lines.append(start ? QLocale().toString(*start, QLocale::ShortFormat)
+                       : SessionTable::tr("at an impossible time: %1").arg(session.start));
+    if (session.end)
+        lines.append(SessionTable::tr("%1, %2").arg(durationText(*session.end - session.start),
+                                                    sizeText(session.bytes)));
+    lines.append(session.daemons.join(", "));
+    lines.append(session.problems.isEmpty() ? SessionTable::tr("complete") : session.problems.join('\n'));
     return toolTipOf(lines.join('\n'));
 }
 
 } // namespace
-
-QString nextFreeName(const QString &name, const SessionList &list) {
-    QStringList taken;
-    for (const RecordedSession &session : list.sessions)
-        taken.append(session.name);
-    static const QRegularExpression numbered("^(.*?)([0-9]{0,6})$",
-                                             QRegularExpression::DotMatchesEverythingOption);
-    const QRegularExpressionMatch match = numbered.match(name);
-    const QString digits = match.captured(2);
-    QString next = name;
-    for (int number = digits.isEmpty() ? 2 : digits.toInt() + 1; taken.contains(next); ++number)
-        next = match.captured(1) + QString("%1").arg(number, digits.size(), 10, QChar('0'));
-    return next;
-}
 
 SessionTable::SessionTable(QWidget *parent)
     : QTreeWidget(parent) {
@@ -109,10 +92,14 @@ SessionTable::SessionTable(QWidget *parent)
     header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     header()->setSectionResizeMode(Name, QHeaderView::Stretch);
     setRootIsDecorated(false);
+    setTextElideMode(Qt::ElideMiddle); // of a name that is a date both ends say something
     setUniformRowHeights(true);
     setMinimumHeight(70);
     setSortingEnabled(true);
     sortByColumn(Date, Qt::DescendingOrder);
+    setColumnHidden(Size, true);     // until there is room; the name needs it more
+    setEditTriggers(NoEditTriggers); // but by askForName()
+    connect(this, &QTreeWidget::itemChanged, this, &SessionTable::takeName);
 }
 
 /// As low as it can be: what is told below it is to be seen.
@@ -122,8 +109,10 @@ QSize SessionTable::sizeHint() const {
 
 void SessionTable::resizeEvent(QResizeEvent *event) {
     QTreeWidget::resizeEvent(event);
-    if (std::exchange(hasRoom_, viewport()->width() >= roomyWidth) != hasRoom_)
-        showDates();
+    if (std::exchange(hasRoom_, viewport()->width() >= roomyWidth) == hasRoom_)
+        return;
+    setColumnHidden(Size, !hasRoom_);
+    showDates();
 }
 
 void SessionTable::showDates() {
@@ -134,29 +123,45 @@ void SessionTable::showDates() {
     }
 }
 
-const RecordedSession *SessionTable::chosen() const {
-    const QTreeWidgetItem *const item = currentItem();
+const SessionSummary *SessionTable::sessionOf(const QTreeWidgetItem *item) const {
     const int index = item ? item->data(Name, indexRole).toInt() : -1;
     return index >= 0 && index < int(sessions_.size()) ? &sessions_[std::size_t(index)] : nullptr;
 }
 
+const SessionSummary *SessionTable::chosen() const {
+    return sessionOf(currentItem());
+}
+
+void SessionTable::askForName() {
+    if (currentItem())
+        editItem(currentItem(), Name);
+}
+
+void SessionTable::takeName(QTreeWidgetItem *item) {
+    const SessionSummary *const session = sessionOf(item);
+    const QString to = item->text(Name).trimmed();
+    if (session && !to.isEmpty() && to != shortLine(session->name, longestName))
+        Q_EMIT renameWanted(session->name, to);
+}
+
 /// Rows that stay are the same: a double click may be half done.
-void SessionTable::tell(const SessionList &list) {
+void SessionTable::tell(const std::vector<SessionSummary> &sessions) {
+    const auto keyOf = [](const SessionSummary &session) { return session.session + '/' + session.name; };
     const QString before = chosen() ? keyOf(*chosen()) : QString();
     QMultiHash<QString, QTreeWidgetItem *> rows;
-    for (int i = 0; i < topLevelItemCount(); ++i) {
-        QTreeWidgetItem *const row = topLevelItem(i);
-        rows.insert(keyOf(sessions_[std::size_t(row->data(Name, indexRole).toInt())]), row);
-    }
+    for (int i = 0; i < topLevelItemCount(); ++i)
+        rows.insert(keyOf(*sessionOf(topLevelItem(i))), topLevelItem(i));
     const QSignalBlocker silence(this);
     setSortingEnabled(false); // once, when all are here
-    sessions_ = list.sessions;
+    sessions_ = sessions;
     QTreeWidgetItem *current = nullptr;
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
         const QString key = keyOf(sessions_[i]);
         QTreeWidgetItem *row = rows.take(key);
-        if (!row)
+        if (!row) {
             addTopLevelItem(row = new Row);
+            row->setFlags(row->flags() | Qt::ItemIsEditable);
+        }
         row->setData(Name, indexRole, int(i));
         fill(*row, sessions_[i]);
         if (!current || key == before) // the latest is the first
@@ -168,17 +173,16 @@ void SessionTable::tell(const SessionList &list) {
         setCurrentItem(current);
 }
 
-void SessionTable::fill(QTreeWidgetItem &item, const RecordedSession &session) const {
+void SessionTable::fill(QTreeWidgetItem &item, const SessionSummary &session) const {
     auto &row = static_cast<Row &>(item);
-    const double duration_s = session.end - session.start;
+    const double duration_s = session.end.value_or(session.start) - session.start;
     row.setText(Name, shortLine(session.name, longestName));
-    row.setIcon(Name, theme::icon(session.faults().isEmpty() ? Condition::Ready
-                                  : session.goesOn()         ? Condition::Busy
-                                                             : Condition::Warning));
+    row.setIcon(Name, theme::icon(!session.end                 ? Condition::Busy
+                                  : session.problems.isEmpty() ? Condition::Ready
+                                                               : Condition::Warning));
     row.setValue(Date, session.start, dateText(session.start, hasRoom_));
-    row.setValue(Duration, duration_s, session.goesOn() ? tr("goes on") : durationText(duration_s));
-    // Of one that goes on it is what was known when it began.
-    row.setValue(Size, session.bytes(), session.goesOn() ? QString() : sizeText(session.bytes()));
+    row.setValue(Duration, duration_s, session.end ? durationText(duration_s) : tr("goes on"));
+    row.setValue(Size, session.bytes, sizeText(session.bytes));
     for (const SessionColumn column : {Name, Date, Duration, Size})
         row.setToolTip(column, sessionToolTip(session));
     for (const SessionColumn column : {Duration, Size})

@@ -1,35 +1,38 @@
 #pragma once
 
-#include "gui/session/SessionList.h"
+#include "protocol/messages/Sessions.h"
 
 #include <QTreeWidget>
 
 namespace hermes::desktop {
 
-/// The name with the next number that no recording has: run1, run2.
-QString nextFreeName(const QString &name, const SessionList &list);
-
-/// The recordings of a robot with date, duration and size, in the order that its header is clicked for.
+/// The sessions of a robot with date, duration and size, in the order that its header is clicked for.
 class SessionTable : public QTreeWidget {
     Q_OBJECT
 public:
     explicit SessionTable(QWidget *parent = nullptr);
 
     /// The one that was chosen stays so; where none was, the latest is.
-    void tell(const SessionList &list);
-    const std::vector<RecordedSession> &sessions() const { return sessions_; }
+    void tell(const std::vector<SessionSummary> &sessions);
     /// Null: none.
-    const RecordedSession *chosen() const;
+    const SessionSummary *chosen() const;
+    /// Has another name typed for the chosen one.
+    void askForName();
     QSize sizeHint() const override;
+
+Q_SIGNALS:
+    void renameWanted(const QString &name, const QString &to);
 
 protected:
     void resizeEvent(QResizeEvent *event) override;
 
 private:
     void showDates();
-    void fill(QTreeWidgetItem &item, const RecordedSession &session) const;
+    const SessionSummary *sessionOf(const QTreeWidgetItem *item) const;
+    void takeName(QTreeWidgetItem *item);
+    void fill(QTreeWidgetItem &item, const SessionSummary &session) const;
 
-    std::vector<RecordedSession> sessions_;
+    std::vector<SessionSummary> sessions_;
     bool hasRoom_ = false; ///< for dates with the time of the day
 };
 

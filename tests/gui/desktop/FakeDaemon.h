@@ -28,6 +28,7 @@ struct Mischief {
     bool hasTopics = true;
     bool isMotors = false;     ///< has the methods of a motor control
     bool isSupervisor = false; ///< so it is where it has something to say as `processes`, too
+    QByteArray robotId;        ///< that it tells; empty: one of its own where it is a supervisor, else none
     bool isEverywhere = false; ///< at all addresses of this computer: 127.0.0.2 is another host
     bool knowsCbor = true;     ///< and says the same in it when it is asked to
 };
@@ -211,20 +212,30 @@ private:
     }
     QByteArray good(const QString &method, const QByteArray &usual) const {
         static const QMap<QString, QByteArray> results{
-            {"daemon.info", "{\"name\":\"fake\",\"title\":\"Fake\",\"description_hash\":\"1\"}"},
             {"daemon.status", "{\"state\":\"running\",\"health\":[]}"},
             {"settings.schema", "{\"type\":\"object\",\"properties\":{\"a\":{\"type\":\"number\"}}}"},
             {"settings.get", "{\"a\":1}"},
-            {"record.status", "{\"recording\":false}"},
-            {"record.list", "[]"},
+            {"session.list", "[]"},
             {"log.tail", "[]"},
             {"motor.state", "{\"latched\":{},\"control\":{\"held\":false}}"}};
-        return method == "rpc.discover" ? description() : results.value(method, usual);
+        return method == "rpc.discover"  ? description()
+               : method == "daemon.info" ? info()
+                                         : results.value(method, usual);
+    }
+    QByteArray info() const {
+        const QByteArray own = "00000000-0000-4000-8000-0000000" + QByteArray::number(100000 + port_).mid(1);
+        const QByteArray processes = mischief_.topics.value("processes");
+        QJsonObject all{{"name", "fake"}, {"title", "Fake"}, {"description_hash", "1"}};
+        if (!mischief_.robotId.isEmpty() || !processes.isEmpty())
+            all["robot"] =
+                QJsonObject{{"id", QString(mischief_.robotId.isEmpty() ? own : mischief_.robotId)},
+                            {"name", QJsonDocument::fromJson(processes)["robot"].toString("fake")}};
+        return QJsonDocument(all).toJson(QJsonDocument::Compact);
     }
     /// The methods and topics of all daemons in one.
     QByteArray description() const {
-        QStringList methods{"fake.call",   "daemon.info",   "settings.schema", "record.start", "record.list",
-                            "source.open", "source.status", "pose.set",        "map.undo"};
+        QStringList methods{"fake.call",    "daemon.info", "settings.schema", "session.start",
+                            "session.list", "pose.set",    "map.undo"};
         if (mischief_.isSupervisor || mischief_.topics.contains("processes"))
             methods << "process.list"
                     << "process.start";
@@ -232,8 +243,8 @@ private:
             methods << "motor.drive"
                     << "motor.estop"
                     << "motor.state";
-        QStringList topics{"map",   "pose",   "scan",     "scan2d", "odometry",  "truth", "graph",
-                           "power", "status", "settings", "log",    "processes", "free",  "cloud"};
+        QStringList topics{"map",    "pose",     "scan", "scan2d",    "odometry", "truth", "graph",  "power",
+                           "status", "settings", "log",  "processes", "free",     "cloud", "session"};
         if (!mischief_.hasTopics)
             topics.clear();
         return "{\"openrpc\":\"1.2.6\",\"methods\":" + named(methods) + ",\"x-topics\":" + named(topics) +

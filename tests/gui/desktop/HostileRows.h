@@ -54,11 +54,15 @@ inline Mischief withoutNumbers(const QByteArray &word) {
         {"truth", R"({"stamp":#,"pose":{"x":#,"y":#,"theta":#},"twist":{"vx":#,"vy":#,"omega":#}})"},
         {"power", R"({"controllers":[{"ready":true,"battery_v":#,"temperature_c":#,"current_a":[#,#]}]})"},
         {"log", R"({"stamp":#,"level":"error","source":"a","text":"b"})"},
+        {"session", R"({"state":"replaying","name":"r","session":"s","start":#,"duration_s":#,"bytes":#,
+            "left_s":#,"parts":[],"marks":[{"t_s":#,"text":"m"}],"problems":[],"silent":[],
+            "replay":{"position_s":#,"duration_s":#,"speed":#,"paused":false,"loop":true}})"},
         {"free", R"({"a":#,"b":[#,#]})"}};
     for (QByteArray &topic : all.topics)
         topic.replace('\n', ' ').replace("#", word);
-    all.results["record.list"] = QByteArray(R"([{"name":"r","format":"x","start":#,"end":#,"bytes":#}])");
-    all.results["record.list"].replace("#", word);
+    all.results["session.list"] =
+        QByteArray(R"([{"name":"r","session":"s","start":#,"end":#,"bytes":#,"daemons":[],"problems":[]}])");
+    all.results["session.list"].replace("#", word);
     return all;
 }
 
@@ -124,11 +128,12 @@ inline void addNonsenseEverywhere() {
         {"many members", objectOf("1", 20000)}};
     for (const auto &[name, json] : nonsense) {
         Mischief topics, results;
-        for (const char *const topic : {"map", "graph", "pose", "scan", "scan2d", "odometry", "truth",
-                                        "power", "status", "settings", "log", "processes", "free", "cloud"})
+        for (const char *const topic :
+             {"map", "graph", "pose", "scan", "scan2d", "odometry", "truth", "power", "status", "settings",
+              "log", "processes", "free", "cloud", "session"})
             topics.topics[topic] = json;
-        for (const char *const method : {"daemon.status", "settings.schema", "record.status", "record.list",
-                                         "log.tail", "topics.subscribe", "fake.call"})
+        for (const char *const method : {"daemon.status", "settings.schema", "session.list", "log.tail",
+                                         "topics.subscribe", "fake.call"})
             results.results[method] = json;
         row(QString("every topic is ") + name) << topics;
         row(QString("every result is ") + name) << results;
@@ -260,7 +265,9 @@ inline Mischief namesOf(const QByteArray &letters, int count) {
                                      R"(:{"type":"number","title":)" + quoted + R"(,"group":)" + quoted +
                                      "}}}";
     all.results["settings.get"] = '{' + quoted + ":1}";
-    all.results["record.list"] = R"([{"name":)" + quoted + R"(,"start":1,"bytes":1}])";
+    all.results["session.list"] = R"([{"name":)" + quoted + R"(,"session":)" + quoted +
+                                  R"(,"start":1,"bytes":1,"daemons":[)" + quoted + R"(],"problems":[)" +
+                                  quoted + "]}]";
     return all;
 }
 
@@ -292,15 +299,20 @@ inline void addPanels() {
     row("long log") << ofTopic(
         "log", "{\"stamp\":-1,\"level\":\"error\",\"text\":\"" + QByteArray(100000, 'W') + "\"}", 30);
     row("log all the time") << ofTopic("log", R"({"stamp":%1,"level":"error","text":"%1"})", -1);
-    row("recordings without sense") << ofMethod(
-        "record.list",
+    row("sessions without sense") << ofMethod(
+        "session.list",
         R"([5,null,{"name":"<b>x","start":1e300,"end":-1e300,"bytes":1e300},{"name":7,"start":"x","bytes":-1}])");
-    row("many recordings") << ofMethod("record.list", listOf(R"({"name":"r%1","start":%1,"bytes":1})", 6000));
-    row("one recording many times") << ofMethod("record.list",
-                                                listOf(R"({"name":"r","start":%1,"bytes":1})", 6000));
-    row("recording beyond") << ofMethod(
-        "record.status",
-        R"({"recording":true,"name":"<b>r","start":-1e300,"bytes":1e300,"free_bytes":1e308,"losses":{"a":1e308,"b":1e308}})");
+    const QByteArray session = R"("session":"s","start":%1,"bytes":1,"daemons":["<b>"],"problems":["<i>"]})";
+    row("many sessions") << ofMethod("session.list", listOf(R"({"name":"r%1",)" + session, 3000));
+    row("one session many times") << ofMethod("session.list", listOf(R"({"name":"r",)" + session, 3000));
+    const QByteArray counted = R"("counts":{},"losses":{"<b>":1e308,"a":-1},"problem":"<i>"})";
+    row("sessions beyond") << ofTopic(
+        "session",
+        R"({"state":"recording","name":"<b>r","session":"","start":-1e300,"duration_s":1e300,"bytes":1e300,)"
+        R"("free_bytes":1e308,"left_s":1e300,"parts":)" +
+            listOf(R"({"daemon":"<b>%1","state":"failed","bytes":-1,)" + counted, 500) + R"(,"marks":)" +
+            listOf(R"({"t_s":1e300,"text":"<b>%1"})", 500) + R"(,"problems":)" + listOf(R"("<b>%1")", 500) +
+            R"(,"silent":)" + listOf(R"("<b>%1")", 500) + '}');
     row("numbers beyond") << ofTopic("free", R"({"a":1e308,"b":-1e308,"c":"NaN","d":%1e300})", 50);
     row("arrays of changing length") << ofTopic("free", R"([%1,[%1],{"a":%1}])", 50);
     row("numbers all the time") << ofTopic("free", R"({"a":%1,"b":-%1})", -1);

@@ -6,6 +6,7 @@
 
 #include <QJsonArray>
 #include <QJsonDocument>
+#include <QProcessEnvironment>
 #include <QTemporaryDir>
 #include <QtTest>
 #include <csignal>
@@ -38,6 +39,9 @@ public:
         for (const QString &setting : settings)
             arguments << "--set" << setting;
         daemon.process = std::make_unique<ChildProcess>();
+        QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+        environment.insert("XDG_STATE_HOME", folder_.path());
+        daemon.process->setProcessEnvironment(environment);
         daemon.process->setStandardOutputFile(QProcess::nullDevice());
         daemon.process->setStandardErrorFile(folder_.filePath(name + ".log"), QIODevice::Append);
         const QString beside = QCoreApplication::applicationDirPath() + "/hermes-" + name; // one of the tests
@@ -77,6 +81,14 @@ public:
         start("motorcontrol",
               {"controllers.1.url=" + url, "controllers.2.url=" + url, "safety.command_timeout_s=1"});
         daemons_.at("motorcontrol").process->goBeforeOthers();
+    }
+    /// A recorder of all that were started so far.
+    void startRecorder() {
+        QJsonArray all;
+        for (const auto &[name, daemon] : daemons_)
+            all.append(QString("127.0.0.1:%1").arg(daemon.port));
+        const QByteArray named = QJsonDocument(all).toJson(QJsonDocument::Compact);
+        start("recorder", {"record.folder=" + path("recordings"), "daemons=" + QString::fromUtf8(named)});
     }
     /// One that this object does not start.
     void add(const QString &name, quint16 port) { daemons_[name].port = port; }

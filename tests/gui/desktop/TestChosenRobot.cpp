@@ -58,10 +58,10 @@ private Q_SLOTS:
 
     void recordingsOfOneAreNotOfTheOther() {
         Mischief recorded = robot("red");
-        recorded.results["record.list"] =
-            R"([{"name":"corridor","format":"x","start":1700000000,"bytes":5}])";
+        recorded.results["session.list"] =
+            R"([{"name":"corridor","session":"x","start":1700000000,"bytes":5,"daemons":[],"problems":[]}])";
         Mischief slow = robot("blue"); // has recordings, too, but does not tell of them
-        slow.results["record.list"] = "[]},\"x\":{";
+        slow.results["session.list"] = "[]},\"x\":{";
         const FakeDaemon red(recorded), blue(slow);
         OpenWindow open;
         QVERIFY(open.fleet.add(addressOf(red)));

@@ -120,11 +120,12 @@ private Q_SLOTS:
         OpenWindow::type(field, QString(" localhost:%1").arg(port));
         QTest::keyClick(field, Qt::Key_Return);
         QVERIFY(field->text().isEmpty());
-        QCOMPARE(window_->fleet.robots().size(), size_t(2));
-        const Robot &other = *window_->fleet.robots().back();
-        QTRY_VERIFY_WITH_TIMEOUT(other.withName("velodynelogger"), 10000);
-        QVERIFY(window_->choose(other.withName("velodynelogger")));
-        QCOMPARE(window_->fleet.robot(), &other);
+        QCOMPARE(window_->fleet.robots().size(), size_t(2)); // until it has said that it knows none
+        const Robot &robot = *window_->fleet.robots().front();
+        QTRY_VERIFY_WITH_TIMEOUT(robot.withName("velodynelogger"), 10000);
+        QVERIFY(window_->choose(robot.withName("velodynelogger")));
+        QCOMPARE(window_->fleet.robot(), &robot);
+        QCOMPARE(window_->fleet.robots().size(), size_t(1));
     }
 
     void badAddressIsToldBesideIt() {

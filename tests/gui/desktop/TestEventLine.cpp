@@ -36,7 +36,9 @@ private Q_SLOTS:
         QCOMPARE(events.all().front().from, QString("alpha, motorcontrol"));
 
         RobotProcesses first, second;
+        qputenv("HERMES_ROBOT", "00000000-0000-4000-8000-000000000001 first");
         first.start("scanmatcher");
+        qunsetenv("HERMES_ROBOT");
         OpenWindow window(first);
         QVERIFY(window.show());
         QTRY_VERIFY(window.fleet.robot()->withName("scanmatcher")->isKnown());

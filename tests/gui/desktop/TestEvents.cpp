@@ -126,7 +126,7 @@ private Q_SLOTS:
         robot.start("supervisor", {"processes=" + entry});
         OpenWindow window(robot);
         QVERIFY(window.show());
-        DaemonLink *const supervisor = window.fleet.robot()->supervisor();
+        DaemonLink *const supervisor = window.fleet.robot()->withMethod("process.list");
         qint64 pid = 0;
         const auto askPid = [&] {
             supervisor->call("process.list", {}, this, [&pid](const Result<QJsonValue> &list) {

@@ -17,6 +17,7 @@ private Q_SLOTS:
             QSKIP("needs a display: tests/gui/desktop/with_display");
         robot_ = std::make_unique<RobotProcesses>();
         robot_->startAll();
+        robot_->startRecorder();
         const QString supervisor = QString("127.0.0.1:%1").arg(robot_->supervise("rover"));
         open_ =
             std::make_unique<OpenWindow>(); // as `hermes-gui` does, which finds the daemons of this computer
@@ -69,11 +70,11 @@ private Q_SLOTS:
     }
 
     void replayInThree() {
-        DaemonLink *const logger = open_->fleet.robot()->withMethod("record.start");
-        QVERIFY(logger);
+        QTRY_VERIFY_WITH_TIMEOUT(open_->fleet.robot()->withMethod("session.start"), 10000);
+        DaemonLink *const recorder = open_->fleet.robot()->withMethod("session.start");
         int answers = 0;
         const auto answered = [&answers](const Result<QJsonValue> &answer) { answers += answer.ok(); };
-        logger->call("record.start", {{"name", "yesterday"}}, this, answered);
+        recorder->call("session.start", {{"name", "yesterday"}}, this, answered);
         QTRY_COMPARE(answers, 1);
         const auto isTold = [this] { // on the tab, whatever lies before it
             return open_->window.findChild<QDockWidget *>("recordings")
@@ -83,7 +84,7 @@ private Q_SLOTS:
         QTRY_VERIFY(isTold());
         const auto *const amount = open_->window.findChild<QLabel *>("amount");
         TRY_CONTAINS(amount->text(), QRegularExpression(": [2-9] s"));
-        logger->call("record.stop", {}, this, answered);
+        recorder->call("session.stop", {}, this, answered);
         QTRY_COMPARE_WITH_TIMEOUT(answers, 2, 10000);
 
         clickTab("Recordings");
@@ -119,7 +120,7 @@ private:
     }
 
     QStringList maps() const { return QDir(robot_->path("maps")).entryList({"*.csv"}, QDir::Files); }
-    bool isReplaying() const { return open_->drive.replay().isReplaying(); }
+    bool isReplaying() const { return open_->drive.sessions().isReplaying(); }
 
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<OpenWindow> open_;

@@ -8,6 +8,83 @@ using namespace hermes::desktop;
 class TestFleet : public QObject {
     Q_OBJECT
 private Q_SLOTS:
+    void robotsTellWhoTheyAre() {
+        const FakeDaemon red(of(1)), sameHost(of(1)), blue(of(2)), plainOne(plain());
+        Fleet fleet;
+        for (const FakeDaemon *daemon : {&red, &sameHost, &blue, &plainOne})
+            QVERIFY(fleet.add(addressOf(*daemon)));
+        QVERIFY(fleet.add(farAddressOf(red)));
+        QTRY_VERIFY(fleet.robotAt(farAddressOf(red)) && fleet.robotAt(addressOf(blue)));
+        QTRY_COMPARE(int(fleet.robotAt(idOf(1))->daemons().size()), 3); // on two hosts
+        QCOMPARE(fleet.robotAt(farAddressOf(red)), fleet.robotAt(idOf(1)));
+        QCOMPARE(fleet.robotAt(addressOf(sameHost)), fleet.robotAt(idOf(1)));
+        QCOMPARE(fleet.robotAt(idOf(1))->address(), QString("127.0.0.1, 127.0.0.2"));
+        QCOMPARE(fleet.robotAt(addressOf(blue)), fleet.robotAt(idOf(2)));
+        QTRY_COMPARE(ownerOf(fleet, plainOne), QString("127.0.0.1")); // no robot of its host has a supervisor
+        QCOMPARE(int(fleet.robots().size()), 3);
+        for (const auto &robot : fleet.robots())
+            for (DaemonLink *daemon : robot->daemons())
+                QVERIFY(robot->has(daemon) && fleet.robotOf(daemon) == robot.get());
+    }
+
+    // Each with its supervisor; what runs there is told by that of its host.
+    void aRobotOfTwoComputers() {
+        FakeDaemon near(of(1, "rover", {})), far(of(1, "rover", {})), motors(of(1));
+        const auto hasIts = [&](const FakeDaemon &supervisor, const QString &motorsAddress, Fleet &fleet) {
+            const DaemonLink *const link = fleet.daemonAt(motorsAddress);
+            return link && fleet.robots().front()->process(*link) &&
+                   fleet.robots().front()->supervisorOf(*link)->port() == supervisor.port();
+        };
+        Fleet fleet;
+        QVERIFY(fleet.add(addressOf(near)));
+        QVERIFY(fleet.add(farAddressOf(far)));
+        QTRY_COMPARE(namesOf(fleet), QStringList("rover"));
+        QTRY_VERIFY(near.subscriptions("processes") == 1 && far.subscriptions("processes") == 1);
+        near.say("processes", list("rover", {motors.port()}));
+        QTRY_VERIFY(hasIts(near, addressOf(motors), fleet));
+        QVERIFY(!fleet.daemonAt(farAddressOf(motors)));
+        far.say("processes", list("rover", {motors.port()}));
+        QTRY_VERIFY(hasIts(far, farAddressOf(motors), fleet));
+        QVERIFY(hasIts(near, addressOf(motors), fleet));
+        QTRY_COMPARE(fleet.robot()->problem(), QString("2 of its daemons can be driven, of which one is"));
+        QVERIFY(fleet.remove(fleet.robot()));
+        QVERIFY(fleet.robots().empty() && fleet.addresses().isEmpty());
+    }
+
+    void whatIsNoIdIsNone_data() {
+        const Rows<QByteArray> row("robot");
+        row("text", R"({"id":"127.0.0.1","name":"x"})");
+        row("empty", R"({"id":"","name":"x"})");
+        row("long", R"({"id":")" + QByteArray(100000, '1') + R"(","name":"x"})");
+        row("nil", R"({"id":"00000000-0000-0000-0000-000000000000","name":"x"})");
+        row("in braces", R"({"id":"{11111111-2222-4333-8444-555555555555}","name":"x"})");
+    }
+    void whatIsNoIdIsNone() {
+        QFETCH(QByteArray, robot);
+        Mischief odd = plain();
+        odd.results["daemon.info"] = R"({"name":"odd","description_hash":"1","robot":)" + robot + '}';
+        const FakeDaemon daemon(odd);
+        Fleet fleet;
+        QVERIFY(fleet.add(addressOf(daemon)));
+        QTRY_VERIFY(fleet.robotAt(addressOf(daemon)));
+        QCOMPARE(fleet.robotAt(addressOf(daemon))->id(), QString("127.0.0.1"));
+    }
+
+    void toldAnotherRobotThanBefore() {
+        FakeDaemon daemon(of(1));
+        Fleet fleet;
+        QVERIFY(fleet.add(addressOf(daemon)));
+        QTRY_COMPARE(fleet.robotAt(addressOf(daemon)), fleet.robotAt(idOf(1)));
+        QVERIFY(fleet.robot());
+        QSignalSpy moved(&fleet, &Fleet::moved);
+        daemon.setResult("daemon.info", R"({"name":"fake","description_hash":"1","robot":{"id":")" +
+                                            idOf(2).toUtf8() + R"(","name":"\u001bb"}})");
+        daemon.dropAll();
+        QTRY_COMPARE(namesOf(fleet), QStringList("b"));
+        QCOMPARE(fleet.robot(), fleet.robotAt(idOf(2)));
+        QCOMPARE(moved.count(), 1);
+    }
+
     void whatASupervisorNamesIsItsRobot() {
         const FakeDaemon motors(plain()), stranger(plain());
         Fleet fleet;
@@ -20,10 +97,14 @@ private Q_SLOTS:
         QVERIFY(fleet.add(addressOf(rover))); // second
         QTRY_COMPARE(ownerOf(fleet, motors), QString("rover"));
         QCOMPARE(ownerOf(fleet, rover), QString("rover"));
-        QCOMPARE(ownerOf(fleet, stranger), QString("127.0.0.1"));
-        QCOMPARE(namesOf(fleet), QStringList({"127.0.0.1", "rover"}));
-        QVERIFY(fleet.robotAt(addressOf(rover))->has(link) || link->address() == addressOf(stranger));
-        QCOMPARE(moved.count(), 2); // the supervisor and the motors
+        QTRY_COMPARE(ownerOf(fleet, stranger), QString("rover")); // the only one there
+        QCOMPARE(namesOf(fleet), QStringList("rover"));
+        QVERIFY(fleet.robotAt(addressOf(rover))->has(link));
+        QCOMPARE(moved.count(), 3);
+        const FakeDaemon other(supervisor("other", {}));
+        QVERIFY(fleet.add(addressOf(other)));
+        QTRY_COMPARE(ownerOf(fleet, stranger), QString("127.0.0.1")); // of which one nobody knows
+        QCOMPARE(ownerOf(fleet, motors), QString("rover"));
     }
 
     void twoSupervisorsOfOneHostAreTwo() {
@@ -50,14 +131,10 @@ private Q_SLOTS:
         QTRY_COMPARE(ownerOf(fleet, motors), QString("one"));
         QVERIFY(fleet.add(addressOf(other)));
         QTRY_VERIFY(fleet.robotAt(addressOf(other)));
-        const Robot &loser = *fleet.robotAt(addressOf(other));
-        QTRY_COMPARE(loser.problem(),
-                     QString("Port %1 stays with the robot one, which names it too").arg(motors.port()));
+        QTRY_COMPARE(int(fleet.robotAt(addressOf(other))->named().size()), 1);
         QCOMPARE(ownerOf(fleet, motors), QString("one"));
-        QCOMPARE(fleet.robotAt(addressOf(one))->problem(), QString());
         one.say("processes", list("one", {}));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("other"));
-        QCOMPARE(loser.problem(), QString());
     }
 
     // Its own, the other supervisor's, none, one twice, and a thousand.
@@ -68,10 +145,11 @@ private Q_SLOTS:
         QVERIFY(fleet.add(addressOf(one)));
         QVERIFY(fleet.add(addressOf(other)));
         QTRY_COMPARE(namesOf(fleet), QStringList({"one", "other"}));
+        QTRY_COMPARE(one.subscriptions("processes"), 1);
         QVector<int> ports{one.port(), other.port(), other.port(), 0};
         one.say("processes", list("one", ports));
         const Robot &robot = *fleet.robotAt(addressOf(one));
-        QTRY_COMPARE(robot.problem(), QString("Port %1 is that of the robot other").arg(other.port()));
+        QTRY_COMPARE(int(robot.named().size()), 1);
         QCOMPARE(ownerOf(fleet, other), QString("other"));
         for (int port = 20000; port < 21000; ++port)
             ports.append(port);
@@ -84,30 +162,36 @@ private Q_SLOTS:
     void namedNoMore() {
         FakeDaemon known(plain()), unknown(plain()),
             rover(supervisor("rover", {known.port(), unknown.port(), 9}));
+        const FakeDaemon other(supervisor("other", {}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(known)));
-        QVERIFY(fleet.add(addressOf(rover)));
+        for (const FakeDaemon *daemon : std::initializer_list<const FakeDaemon *>{&known, &other, &rover})
+            QVERIFY(fleet.add(addressOf(*daemon)));
+        QTRY_VERIFY(fleet.robotAt(addressOf(other)));
         QTRY_COMPARE(ownerOf(fleet, unknown), QString("rover"));
-        QTRY_COMPARE(int(fleet.robot()->allWithMethod("motor.drive").size()), 2);
+        QTRY_COMPARE(int(fleet.robotAt(addressOf(rover))->allWithMethod("motor.drive").size()), 2);
         rover.say("processes", list("rover", {}));
         QTRY_COMPARE(ownerOf(fleet, known), QString("127.0.0.1"));
         QCOMPARE(ownerOf(fleet, unknown), QString("127.0.0.1")); // it is there
         QCOMPARE(int(fleet.robotAt("127.0.0.1")->daemons().size()), 2);
         rover.say("processes", list("rover", {known.port(), unknown.port()}));
-        QTRY_COMPARE(namesOf(fleet), QStringList("rover"));
+        QTRY_COMPARE(namesOf(fleet), QStringList({"other", "rover"}));
     }
 
     void whatIsChosenStaysChosen() {
-        FakeDaemon motors(plain()), stranger(plain());
+        FakeDaemon motors(plain()), stranger(plain()), rover(supervisor("rover", {}));
+        const FakeDaemon other(supervisor("other", {}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(motors)));
-        QVERIFY(fleet.add(addressOf(stranger)));
-        Robot *const host = fleet.robots().front().get();
-        DaemonLink *const chosen = host->daemons()[motors.port() < stranger.port() ? 0 : 1];
+        for (const FakeDaemon *daemon :
+             std::initializer_list<const FakeDaemon *>{&motors, &stranger, &rover, &other})
+            QVERIFY(fleet.add(addressOf(*daemon)));
+        QTRY_COMPARE(namesOf(fleet), QStringList({"127.0.0.1", "other", "rover"}));
+        QTRY_COMPARE(int(fleet.robotAt("127.0.0.1")->allWithMethod("motor.drive").size()), 2);
+        QTRY_COMPARE(rover.subscriptions("processes"), 1);
+        Robot *const host = fleet.robotAt("127.0.0.1");
+        DaemonLink *const chosen = fleet.daemonAt(addressOf(motors));
         fleet.choose(chosen);
         QSignalSpy daemonChosen(&fleet, &Fleet::daemonChosen), robotChosen(&fleet, &Fleet::robotChosen);
-        FakeDaemon rover(supervisor("rover", {motors.port()}));
-        QVERIFY(fleet.add(addressOf(rover)));
+        rover.say("processes", list("rover", {motors.port()}));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("rover"));
         QCOMPARE(fleet.robot(), host);
         QCOMPARE(robotChosen.count(), 0);
@@ -126,15 +210,16 @@ private Q_SLOTS:
         QVERIFY(!fleet.daemon()); // which is another robot's now
         fleet.choose(host);
         rover.say("processes", list("rover", {motors.port(), stranger.port()}));
-        QTRY_COMPARE(int(fleet.robots().size()), 1); // nobody is left there
+        QTRY_COMPARE(int(fleet.robots().size()), 2); // nobody is left there
         QCOMPARE(fleet.robot()->name(), QString("rover"));
     }
 
     void theRobotOfLastTimeIsChosen() {
         const FakeDaemon one(supervisor("one", {})), other(supervisor("other", {}));
-        for (const bool isMeant : {false, true}) {
+        QString last = addressOf(other); // as it was kept before robots had ids
+        for (const bool isMeant : {false, false, true}) {
             Fleet fleet;
-            fleet.prefer(addressOf(other));
+            fleet.prefer(last);
             QVERIFY(fleet.add(addressOf(one)));
             QTRY_VERIFY(fleet.robotAt(addressOf(one)));
             if (isMeant)
@@ -142,6 +227,7 @@ private Q_SLOTS:
             QVERIFY(fleet.add(addressOf(other)));
             QTRY_VERIFY(fleet.robotAt(addressOf(other)));
             QCOMPARE(fleet.robot(), fleet.robotAt(addressOf(isMeant ? one : other)));
+            last = fleet.preferred();
         }
     }
 
@@ -184,7 +270,7 @@ private Q_SLOTS:
         const auto problems = [&] {
             return fleet.robotAt(addressOf(one))->problem() + fleet.robotAt(addressOf(other))->problem();
         };
-        TRY_STARTS(problems(), "The same as the robot rover");
+        QTRY_COMPARE(problems().count(" of the robot rover, by another address"), 2); // it is one robot
     }
 
     void robotsOfOneNameAreToldApart() {
@@ -202,8 +288,9 @@ private Q_SLOTS:
     void givenNames() {
         const FakeDaemon one(supervisor("rover", {}));
         Fleet fleet;
-        fleet.setNames({{addressOf(one), "Red"}});
         QVERIFY(fleet.add(addressOf(one)));
+        QTRY_VERIFY(fleet.robotAt(addressOf(one)));
+        fleet.setNames({{fleet.robot()->id(), "Red"}});
         QTRY_COMPARE(namesOf(fleet), QStringList("Red"));
         fleet.rename(*fleet.robot(), "  " + QString(10000, 'x'));
         QVERIFY(fleet.robot()->name().size() < 40);
@@ -212,54 +299,11 @@ private Q_SLOTS:
         QVERIFY(fleet.names().isEmpty());
     }
 
-    void putToARobotOfItsOwn() {
-        const FakeDaemon one(plain()), other(plain()), third(plain());
-        QMap<QString, QString> places;
-        {
-            Fleet fleet;
-            for (const FakeDaemon *daemon : {&one, &other, &third})
-                QVERIFY(fleet.add(addressOf(*daemon)));
-            const auto link = [&](const FakeDaemon &daemon) {
-                for (const auto &robot : fleet.robots())
-                    for (DaemonLink *found : robot->daemons())
-                        if (found->address() == addressOf(daemon))
-                            return found;
-                return static_cast<DaemonLink *>(nullptr);
-            };
-            fleet.choose(link(other));
-            QSignalSpy moved(&fleet, &Fleet::moved);
-            fleet.place(link(other), nullptr);
-            QCOMPARE(moved.count(), 1);
-            QCOMPARE(ownerOf(fleet, other), QString("127.0.0.1#2"));
-            QCOMPARE(fleet.robot()->name(), QString("127.0.0.1")); // as it was
-            QVERIFY(!fleet.daemon());
-            fleet.place(link(third), fleet.robotAt("127.0.0.1#2"));
-            fleet.place(link(one), nullptr);
-            QCOMPARE(namesOf(fleet), QStringList({"127.0.0.1#2", "127.0.0.1#3"}));
-            places = fleet.places();
-            fleet.place(link(one), fleet.robotAt("127.0.0.1#2"));
-            QCOMPARE(namesOf(fleet), QStringList("127.0.0.1#2"));
-        }
-        Fleet next;
-        QVERIFY(next.add(addressOf(one)));
-        places["127.0.0.1:1"] = "127.0.0.1:7"; // nonsense
-        places["x"] = "10.0.0.1#2";
-        next.setPlaces(places);
-        for (const FakeDaemon *daemon : {&other, &third})
-            QVERIFY(next.add(addressOf(*daemon)));
-        QVERIFY(next.add("127.0.0.1:1"));
-        QCOMPARE(namesOf(next), QStringList({"127.0.0.1", "127.0.0.1#2", "127.0.0.1#3"}));
-        QCOMPARE(ownerOf(next, third), QString("127.0.0.1#2"));
-        const FakeDaemon rover(supervisor("rover", {third.port()}));
-        QVERIFY(next.add(addressOf(rover)));
-        QTRY_COMPARE(ownerOf(next, third), QString("rover")); // who names it knows better
-    }
-
     void removedAndBroughtBack() {
         const FakeDaemon motors(plain()), stranger(plain()), rover(supervisor("rover", {motors.port()}));
         Fleet fleet;
-        for (const FakeDaemon *daemon : {&motors, &stranger, &rover})
-            QVERIFY(fleet.add(addressOf(*daemon)));
+        for (const QString &address : {addressOf(motors), farAddressOf(stranger), addressOf(rover)})
+            QVERIFY(fleet.add(address));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("rover"));
         fleet.choose(fleet.robotAt(addressOf(rover)));
         fleet.setObjection([](const Robot &robot) { return robot.name() + " is busy"; });
@@ -268,9 +312,9 @@ private Q_SLOTS:
         QPointer<DaemonLink> link = fleet.robot()->daemons().front();
         const auto back = fleet.remove(fleet.robot());
         QVERIFY(back);
-        QCOMPARE(namesOf(fleet), QStringList("127.0.0.1"));
-        QCOMPARE(fleet.robot()->name(), QString("127.0.0.1"));
-        QCOMPARE(fleet.addresses(), QStringList(addressOf(stranger)));
+        QCOMPARE(namesOf(fleet), QStringList("127.0.0.2"));
+        QCOMPARE(fleet.robot()->name(), QString("127.0.0.2"));
+        QCOMPARE(fleet.addresses(), QStringList(farAddressOf(stranger)));
         QTRY_VERIFY(!link); // and no connection of it
         for (const QString &address : *back)
             QVERIFY(fleet.add(address));
@@ -288,7 +332,7 @@ private Q_SLOTS:
         QVERIFY(fleet.add(addressOf(one)));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("one"));
         QVERIFY(fleet.add(addressOf(other)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(other)) && !fleet.robotAt(addressOf(other))->problem().isEmpty());
+        QTRY_VERIFY(fleet.robotAt(addressOf(other)) && !fleet.robotAt(addressOf(other))->named().empty());
         QVERIFY(fleet.remove(fleet.robotAt(addressOf(one))));
         QCOMPARE(ownerOf(fleet, motors), QString("other"));
         QTRY_VERIFY(fleet.robot()->withMethod("motor.drive"));
@@ -310,8 +354,25 @@ private Q_SLOTS:
 
 private:
     static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
+    static QString farAddressOf(const FakeDaemon &daemon) {
+        return QString("127.0.0.2:%1").arg(daemon.port());
+    }
+    static QString idOf(int robot) { return QString("11111111-2222-4333-8444-55555555555%1").arg(robot); }
+    /// One that tells its robot.
+    static Mischief of(int robot) {
+        Mischief daemon = plain();
+        daemon.robotId = idOf(robot).toUtf8();
+        return daemon;
+    }
+    /// A supervisor of that robot.
+    static Mischief of(int robot, const QByteArray &name, const QVector<int> &ports) {
+        Mischief daemon = supervisor(name, ports);
+        daemon.robotId = idOf(robot).toUtf8();
+        return daemon;
+    }
     static Mischief plain() {
         Mischief daemon;
+        daemon.isEverywhere = true;
         daemon.hasTopics = false;
         daemon.isMotors = true;
         return daemon;
@@ -327,6 +388,7 @@ private:
     }
     static Mischief supervisor(const QByteArray &robot, const QVector<int> &ports) {
         Mischief daemon;
+        daemon.isEverywhere = true;
         daemon.topics["processes"] = list(robot, ports);
         return daemon;
     }

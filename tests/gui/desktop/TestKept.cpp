@@ -157,7 +157,7 @@ private:
     /// By hand, as far as a hand would do it otherwise.
     static void setAll(LayoutWindow &one) {
         const auto action = [&one](const char *name) { return one.window->findChild<QAction *>(name); };
-        QTRY_VERIFY(one.fleet.robot() && one.fleet.robot()->isSupervised());
+        QTRY_VERIFY(one.fleet.robot() && one.fleet.robot()->withMethod("process.list"));
         one.fleet.rename(*one.fleet.robot(), "Blue");
         one.saveAs("Field");
         one.window->resize(1180, 690);

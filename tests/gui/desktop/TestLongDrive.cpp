@@ -23,6 +23,7 @@ private Q_SLOTS:
             QSKIP("needs a display: tests/gui/desktop/with_display");
         robot_ = std::make_unique<RobotProcesses>();
         robot_->startAllWithGps();
+        robot_->startRecorder();
         open_ = std::make_unique<OpenWindow>(*robot_);
         open_->window.resize(1280, 800);
         QVERIFY(open_->show());
@@ -131,7 +132,7 @@ private:
         return seen && (seen == content || content->isAncestorOf(seen));
     }
 
-    int recordings() const { return QDir(robot_->path("recordings")).entryList({"run*"}, QDir::Dirs).size(); }
+    int recordings() const { return QDir(robot_->path("recordings")).entryList({"2*"}, QDir::Dirs).size(); }
 
     bool isMapSaved() const {
         const QDir maps(robot_->path("maps"));

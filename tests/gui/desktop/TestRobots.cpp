@@ -88,11 +88,11 @@ private Q_SLOTS:
         QCOMPARE(int(daemons.size()), 2);
         Robot *const before = robot(*red_);
         red_->processes.kill("supervisor");
-        QTRY_VERIFY(!before->supervisor());
+        QTRY_VERIFY(!before->withMethod("process.list"));
         drive(*red_);
         QTest::keyRelease(&open_->window, Qt::Key_W);
         QCOMPARE(red_->processes.supervise("crimson"), red_->processes.port("supervisor"));
-        QTRY_VERIFY_WITH_TIMEOUT(before->supervisor(), 10000);
+        QTRY_VERIFY_WITH_TIMEOUT(before->withMethod("process.list"), 10000);
         QTRY_COMPARE(before->name(), QString("crimson"));
         QVERIFY(robot(*red_) == before && before->daemons() == daemons);
         QCOMPARE(int(open_->fleet.robots().size()), 2);
@@ -118,11 +118,12 @@ private Q_SLOTS:
 
     void theSameWheelsAreDrivenAfterTheMove() {
         addBothMotors();
-        addSupervisor(*blue_); // who is not driven
-        QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withName("motorcontrol"), 20000);
-        QCOMPARE(open_->fleet.robot()->address(), QString("127.0.0.1"));
+        QCOMPARE(open_->fleet.robot()->id(), QString("127.0.0.1"));
         drive(*red_);
-        open_->fleet.place(motorLinkOf(*red_), nullptr);
+        addSupervisor(*blue_); // the only one there: both are of its robot
+        QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->daemons().size() == 3, 20000);
+        QCOMPARE(open_->fleet.robot(), robot(*blue_));
+        QTRY_VERIFY(robot(*blue_)->problem().startsWith("2 of its daemons can be driven"));
         QTRY_VERIFY(speed(*red_) < 0.01);
         QTest::keyRelease(&open_->window, Qt::Key_W);
         drive(*red_);
@@ -136,11 +137,10 @@ private Q_SLOTS:
         pressStop();
         QTRY_VERIFY(isStopped(*blue_)); // it is of the same set
         addSupervisor(*red_);
-        QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && open_->fleet.robotOf(robot(*red_)->withName("motorcontrol")),
-                                 20000);
+        QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && robot(*red_)->daemons().size() == 3, 20000);
         QCOMPARE(open_->fleet.robot(), robot(*red_)); // who would be driven
         QTRY_VERIFY(open_->drive.stopping().isLate());
-        TRY_CONTAINS(banner(), "motorcontrol of red");
+        TRY_CONTAINS(banner(), "motorcontrol");
         QVERIFY(open_->drive.isStopped());
         OpenWindow::click(&open_->window, "release"); // of a robot that does not answer: it is not lost
         QTest::qWait(300);
@@ -151,7 +151,7 @@ private Q_SLOTS:
         QVERIFY(isStopped(*red_));
         OpenWindow::click(&open_->window, "release");
         QTRY_VERIFY(!isStopped(*red_));
-        QVERIFY(isStopped(*blue_)); // it was stopped, too, and not released
+        QTRY_VERIFY(!isStopped(*blue_)); // it is of the same robot
     }
 
     void aStopForNobodyGoesToWhoIsFound() {
@@ -234,29 +234,6 @@ private Q_SLOTS:
         QVERIFY(!isStopped(*red_) && !isStopped(*blue_));
     }
 
-    // Without supervisors.
-    void partedByHand() {
-        QVERIFY(open_->fleet.add(motorsOf(*red_)));
-        QVERIFY(open_->fleet.add(motorsOf(*blue_)));
-        QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robot()->allWithMethod("motor.drive").size()), 2, 10000);
-        QTRY_VERIFY(open_->fleet.robot()->problem().startsWith("2 of its daemons can be driven"));
-        open_->panel<DaemonsPanel>("daemons");
-        QTRY_VERIFY(open_->row(motorLinkOf(*blue_)));
-        fromMenu(open_->row(motorLinkOf(*blue_)), "putTo ");
-        QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
-        Robot *const blue = open_->fleet.robotOf(motorLinkOf(*blue_));
-        QVERIFY(blue != open_->fleet.robotOf(motorLinkOf(*red_)));
-        QCOMPARE(blue->problem(), QString());
-        open_->fleet.choose(blue);
-        QTRY_VERIFY(open_->drive.isPossible());
-        drive(*blue_);
-        QCOMPARE(speed(*red_), 0.0);
-        QTest::keyRelease(&open_->window, Qt::Key_W);
-        pressStop();
-        QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
-        QVERIFY(isStopped(*blue_) && !isStopped(*red_));
-    }
-
 private:
     /// One of the robots, with an independent eye on its motors.
     struct One {
@@ -321,7 +298,7 @@ private:
         QCOMPARE(robots->currentIndex(), before);
         while (robots->view()->currentIndex().row() > 0)
             QTest::keyClick(robots->view(), Qt::Key_Up);
-        while (robots->itemData(robots->view()->currentIndex().row()) != robot(one)->address())
+        while (robots->itemData(robots->view()->currentIndex().row()) != robot(one)->id())
             QTest::keyClick(robots->view(), Qt::Key_Down);
         QTest::keyClick(robots->view(), Qt::Key_Return);
         QTRY_COMPARE(open_->fleet.robot(), robot(one));
@@ -339,13 +316,6 @@ private:
         for (int i = 0; i < tree->topLevelItemCount(); ++i)
             if (tree->topLevelItem(i)->toolTip(0).contains(one.supervisor))
                 return tree->topLevelItem(i);
-        return nullptr;
-    }
-    DaemonLink *motorLinkOf(const One &one) const {
-        for (const auto &robot : open_->fleet.robots())
-            for (DaemonLink *link : robot->daemons())
-                if (link->address() == motorsOf(one))
-                    return link;
         return nullptr;
     }
     /// Chooses from the menu of a row.

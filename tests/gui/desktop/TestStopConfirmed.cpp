@@ -206,7 +206,9 @@ private Q_SLOTS:
     void aReleaseIsOfTheChosenRobot() {
         openWindow(robot_->port());
         const FakeRobot other;
-        RobotProcesses processes;
+        RobotProcesses own, processes;
+        own.add("motorcontrol", robot_->port());
+        QVERIFY(open_->fleet.add(QString("127.0.0.1:%1").arg(own.supervise("first"))).ok());
         processes.add("motorcontrol", other.port());
         const QString supervisor = QString("127.0.0.1:%1").arg(processes.supervise("other"));
         QVERIFY(open_->fleet.add(supervisor).ok());

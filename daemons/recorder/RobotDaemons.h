@@ -1,0 +1,83 @@
+#pragma once
+
+#include "daemons/recorder/SessionMember.h"
+#include "protocol/messages/Daemons.h"
+
+#include <QSet>
+#include <QTimer>
+#include <map>
+#include <memory>
+
+namespace hermes::recorder {
+
+/// What the log says after the name of a daemon whose connection has ended: reports know by it.
+constexpr const char *goneText = " has ended, or does not answer any more";
+
+/// The daemons of a robot, and the connections to them. They are those at given addresses and those that its
+/// supervisor names; one that says that it belongs to another robot is left alone.
+class RobotDaemons : public QObject {
+    Q_OBJECT
+public:
+    struct Daemon {
+        QString address;
+        std::unique_ptr<Client> client;
+        bool isNamed = false;   ///< by a supervisor
+        double connected = 0;   ///< since then; of monotonicNow()
+        bool isKnown = false;   ///< it is connected, of this robot, and has told what follows
+        QString name;           ///< with "@HOST:PORT" where several have it
+        QJsonObject info;       ///< what daemon.info gives
+        QSet<QString> commands; ///< "record.stop", and "record.stop session" for each parameter
+        std::vector<TopicDescription> topics;
+        quint64 unreadable = 0; ///< messages that came and could not be read
+
+        /// For a logger.
+        SessionMember member() const;
+        bool isLogger() const { return commands.contains("record.start"); }
+    };
+
+    /// robot: the id of this robot; empty: none, and daemons of every robot belong to it.
+    explicit RobotDaemons(const QString &robot)
+        : robot_(robot) {
+        connect(&again_, &QTimer::timeout, this, &RobotDaemons::askAgain);
+        again_.start(std::chrono::seconds(2));
+    }
+
+    /// Connects to these, and to what a supervisor among them names; no more to others that were given
+    /// before.
+    void follow(const QStringList &addresses);
+
+    /// By address, also those that are not known.
+    const std::map<QString, std::unique_ptr<Daemon>> &all() const { return daemons_; }
+    /// The loggers among them that are known; and who has been connected for a while and does not say what it
+    /// is.
+    SessionMembers loggers() const;
+    /// Null: none that is known has this name.
+    Daemon *find(const QString &name) const;
+    /// Who was known and does not answer.
+    QStringList silent() const;
+    /// They are not expected any more.
+    void forgetSilent();
+
+Q_SIGNALS:
+    /// It is known now; also when it was known before and its connection is a new one.
+    void came(hermes::recorder::RobotDaemons::Daemon *daemon);
+    void went(hermes::recorder::RobotDaemons::Daemon *daemon);
+    /// What a daemon tells does not arrive; why, for people.
+    void missed(const QString &line);
+
+private:
+    void add(const QString &address, bool isNamed = false);
+    void ask(Daemon &daemon);
+    void take(Daemon &daemon, const QJsonObject &info, const QJsonValue &description);
+    bool isOurs(const QJsonObject &info) const;
+    void followSupervisor(Daemon &supervisor);
+    void askAgain();
+    void lose(Daemon &daemon);
+
+    const QString robot_;
+    QTimer again_;
+    std::map<QString, std::unique_ptr<Daemon>> daemons_;
+    QSet<QString> others_; ///< addresses of who is connected, and no daemon of this robot
+};
+
+} // namespace hermes::recorder

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "daemons/recorder/SessionReader.h"
+
+namespace hermes::recorder {
+
+/// Writes a session for other tools, into a folder, which is made where it is missing; files of these names
+/// there are replaced. topics: * stands for any text but a slash; none: all, or those of the format. Gives
+/// the paths.
+///  csv:    a file a topic; its columns are the fields of the schema, lists are JSON
+///  tum:    a file a topic that tells poses: stamp x y z qx qy qz qw; else scanmatcher/pose
+///  carmen: ODOM lines and a ROBOTLASER1 line a scan, of motorcontrol/odometry and velodynelogger/scan2d
+///  mcap:   everything in one file
+/// Errors: InvalidParams (format), NotReady (no such messages), InputOutput.
+Result<QStringList> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
+                                  const QString &into);
+
+} // namespace hermes::recorder

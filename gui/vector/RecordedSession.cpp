@@ -1,0 +1,197 @@
+#include "gui/vector/RecordedSession.h"
+
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "vectorlib/mapping/NamedSettings.h"
+#include "vectorlib/motion/OdometryFault.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace hermes::vector {
+
+namespace fs = std::filesystem;
+using JsonData = nlohmann::json;
+
+namespace {
+
+constexpr std::size_t partDigits = 4;
+constexpr double clockStep_s = 0.5;   // back: the clock was set
+constexpr double longestLead_s = 1.0; // of an odometry before a scan: else its stamp is wrong
+
+/// Where the number of a part begins in its path: NAME-0001.pcap.
+std::optional<std::size_t> partNumberAt(const std::string &path, const std::string &extension) {
+    const std::size_t end = path.rfind(extension);
+    if (end == std::string::npos || end <= partDigits || path[end - partDigits - 1] != '-' ||
+        !std::all_of(path.begin() + std::ptrdiff_t(end - partDigits), path.begin() + std::ptrdiff_t(end),
+                     [](char c) { return c >= '0' && c <= '9'; }))
+        return std::nullopt;
+    return end - partDigits;
+}
+
+/// The numbered files of a folder, in order.
+std::vector<std::string> partsIn(const std::string &folder, const std::string &extension) {
+    std::vector<std::string> parts;
+    std::error_code error;
+    for (fs::directory_iterator file(fs::u8path(folder), error), end; !error && file != end;
+         file.increment(error))
+        if (const std::string path = file->path().u8string();
+            hasExtension(path, extension) && partNumberAt(path, extension) && file->is_regular_file(error))
+            parts.push_back(path);
+    std::sort(parts.begin(), parts.end());
+    return parts;
+}
+
+/// The number at that place of a message; nothing: there is none.
+std::optional<double> numberAt(const JsonData &message, const std::string &place) {
+    const JsonData value =
+        message.is_object() ? message.value(JsonData::json_pointer(place), JsonData()) : JsonData();
+    if (value.is_boolean())
+        return value.get<bool>() ? 1 : 0;
+    return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+/// What a message of the topic `odometry` tells, when it has all members and a robot can do so.
+std::optional<vectorlib::OdometrySample> sampleFrom(const mcap::Message &message) {
+    const JsonData data = JsonData::parse(message.data, nullptr, false);
+    vectorlib::OdometrySample sample;
+    sample.stamp = 1e-9 * double(message.publishTime_ns);
+    sample.covariance.emplace();
+    bool isWhole = true;
+    const auto take = [&](const std::string &place, double &value) {
+        const auto found = numberAt(data, place);
+        isWhole = isWhole && found;
+        value = found.value_or(0);
+    };
+    take("/pose/x", sample.pose.x);
+    take("/pose/y", sample.pose.y);
+    take("/pose/theta", sample.pose.theta);
+    take("/twist/vx", sample.twist.vx);
+    take("/twist/vy", sample.twist.vy);
+    take("/twist/omega", sample.twist.omega);
+    for (int i = 0; i < 9; ++i)
+        take("/covariance/" + std::to_string(i), (*sample.covariance)(i / 3, i % 3));
+    return isWhole && vectorlib::faultOf(sample).empty() ? std::optional(sample) : std::nullopt;
+}
+
+} // namespace
+
+std::vector<std::string> partsFrom(const std::string &path) {
+    std::vector<std::string> parts{path};
+    const auto at = partNumberAt(path, ".pcap");
+    if (!at)
+        return parts;
+    std::error_code ignored;
+    for (unsigned long number = std::stoul(path.substr(*at, partDigits)) + 1;; ++number) {
+        const std::string digits = std::to_string(number);
+        std::string next = path;
+        next.replace(*at, partDigits,
+                     digits.size() < partDigits ? std::string(partDigits - digits.size(), '0') + digits
+                                                : digits);
+        if (!fs::exists(fs::u8path(next), ignored))
+            return parts;
+        parts.push_back(next);
+    }
+}
+
+std::optional<std::string> captureIn(const std::string &folder) {
+    const std::vector<std::string> parts = partsIn(folder, ".pcap");
+    if (parts.empty())
+        return std::nullopt;
+    const auto nameOf = [](const std::string &path) { return path.substr(0, *partNumberAt(path, ".pcap")); };
+    for (const std::string &part : parts)
+        if (nameOf(part) != nameOf(parts[0]))
+            throw Failure(folder + ": found two captures, " + parts[0] + " and " + part +
+                          ", expected one; name its first file");
+    return parts[0];
+}
+
+RecordedSession::RecordedSession(const std::string &folder)
+    : files_(partsIn(folder, ".mcap")) {
+    for (const std::string &file : files_)
+        readers_.push_back(valueOrFail(mcap::Reader::open(file)));
+    readSettings();
+    for (mcap::Reader &reader : readers_) {
+        reader.select([](const mcap::Channel &channel) { return channel.topic == "motorcontrol/odometry"; });
+        reader.seek(0);
+    }
+}
+
+void RecordedSession::readSettings() {
+    const std::map<std::string, std::string> daemons{{"scanmatcher/settings", "scanmatcher"},
+                                                     {"velodynelogger/settings", "velodynelogger"}};
+    for (mcap::Reader &reader : readers_) {
+        reader.select([&](const mcap::Channel &channel) {
+            return daemons.count(channel.topic) > 0 && settings_.count(daemons.at(channel.topic)) == 0;
+        });
+        while (const auto message = reader.next())
+            settings_.emplace(daemons.at(reader.channels().at(message->channel).topic),
+                              JsonData::parse(message->data, nullptr, false));
+    }
+}
+
+std::optional<double> RecordedSession::number(const char *daemon, std::string path) const {
+    const auto found = settings_.find(daemon);
+    std::replace(path.begin(), path.end(), '.', '/');
+    return found == settings_.end() ? std::nullopt : numberAt(found->second, '/' + path);
+}
+
+vectorlib::ScanTrackerSettings RecordedSession::tracker() const {
+    if (settings_.count("scanmatcher") == 0)
+        return {};
+    return vectorlib::namedTrackerSettings([&](const char *name) {
+        if (const auto value = number("scanmatcher", name))
+            return *value;
+        throw Failure(files_[0] + ": found no setting " + name +
+                      " in scanmatcher/settings, expected a number");
+    });
+}
+
+velodyne::TurnAssembler::Options RecordedSession::decoding() const {
+    velodyne::TurnAssembler::Options options;
+    if (const auto laser = number("velodynelogger", "decode.laser");
+        laser && *laser >= 0 && *laser < velodyne::maxLasers())
+        options.laser = int(*laser);
+    if (const auto offset = number("velodynelogger", "decode.stamp_offset_s");
+        offset && std::abs(*offset) <= 3600)
+        options.stampOffset_ns = std::int64_t(*offset * 1e9);
+    return options;
+}
+
+std::optional<vectorlib::OdometrySample> RecordedSession::nextSample() {
+    for (; reader_ < readers_.size(); ++reader_)
+        while (const auto message = readers_[reader_].next()) {
+            if (const auto sample = sampleFrom(*message))
+                return sample;
+            ++refused_;
+        }
+    return std::nullopt;
+}
+
+// Samples are taken until one is not earlier than the end of the scan. Where the clock was set back, those
+// that follow are of the scans that follow.
+std::optional<vectorlib::OdometryTrack> RecordedSession::over(double begin, double end) {
+    const bool goesBack = lastEnd_ && end < *lastEnd_ - clockStep_s;
+    lastEnd_ = end;
+    for (;;) {
+        if (!next_)
+            next_ = nextSample();
+        const bool isBehind = !newest_ || *newest_ < end;
+        const bool isSetBack = next_ && newest_ && next_->stamp < *newest_ - clockStep_s;
+        if (!next_ || !(isBehind || (isSetBack && (goesBack || *newest_ > end + longestLead_s))))
+            return buffer_.over(begin, end);
+        buffer_.add(*next_);
+        newest_ = next_->stamp;
+        next_.reset();
+    }
+}
+
+std::string RecordedSession::problems() const {
+    std::string text;
+    for (std::size_t i = 0; i < files_.size(); ++i)
+        if (const std::string problem = readers_[i].problem(); !problem.empty())
+            text += (text.empty() ? "" : "; ") + files_[i] + ": " + problem;
+    return text;
+}
+
+} // namespace hermes::vector

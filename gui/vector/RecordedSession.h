@@ -1,0 +1,59 @@
+#pragma once
+
+#include "protocol/mcap/Reader.h"
+#include "protocol/velodyne/TurnAssembler.h"
+#include "vectorlib/mapping/ScanTracker.h"
+#include "vectorlib/motion/Odometry.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hermes::vector {
+
+/// The files of a recording of which this is one, from it on: NAME-0001.pcap, NAME-0002.pcap and so on. Of
+/// any other file only itself.
+std::vector<std::string> partsFrom(const std::string &path);
+
+/// The first file of the capture in a folder, or nothing. Throws Failure where there are several captures.
+std::optional<std::string> captureIn(const std::string &folder);
+
+/// A session as the robot recorded it: a folder with the capture of its lidar and, in recorder-0001.mcap and
+/// on, its odometry and the settings of its daemons.
+class RecordedSession {
+public:
+    /// Throws Failure where a file of it cannot be read.
+    explicit RecordedSession(const std::string &folder);
+
+    /// As the daemons had them when the recording began; where that is not known, as they are by default.
+    vectorlib::ScanTrackerSettings tracker() const;
+    velodyne::TurnAssembler::Options decoding() const;
+    std::optional<double> sigma() const { return number("scanmatcher", "matcher.sigma_m"); }
+
+    /// The robot's way during a scan (seconds since the Unix epoch), when it is known. Scans in the order of
+    /// time.
+    std::optional<vectorlib::OdometryTrack> over(double begin, double end);
+    /// Messages of the odometry that tell what no robot can.
+    std::size_t refused() const { return refused_; }
+    /// What could not be read; empty: nothing.
+    std::string problems() const;
+
+private:
+    std::optional<double> number(const char *daemon, std::string path) const;
+    void readSettings();
+    std::optional<vectorlib::OdometrySample> nextSample();
+
+    std::vector<std::string> files_;
+    std::vector<mcap::Reader> readers_;
+    std::map<std::string, nlohmann::json> settings_; ///< by daemon
+    std::size_t reader_ = 0;
+    std::optional<vectorlib::OdometrySample> next_; ///< not yet in the buffer
+    vectorlib::OdometryBuffer buffer_;
+    std::optional<double> newest_, lastEnd_; ///< stamp in the buffer; of the last scan
+    std::size_t refused_ = 0;
+};
+
+} // namespace hermes::vector

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace hermes::mcap {
+
+/// Unpacks what zstd packed, to as many bytes as `to` has, or fewer. Gives why that fails; empty: it is done.
+std::string unpackZstd(std::string_view packed, std::string &to);
+
+} // namespace hermes::mcap

@@ -1,0 +1,140 @@
+#include "daemons/recorder/SessionExport.h"
+#include "protocol/mcap/Reader.h"
+#include "protocol/messages/Motion.h"
+#include "protocol/messages/Turns.h"
+#include "tests/support/Rows.h"
+#include "tests/support/SessionFolder.h"
+#include "vectorlib/io/CarmenLog.h"
+
+#include <sstream>
+
+using namespace hermes;
+using namespace hermes::recorder;
+
+class TestSessionExport : public QObject {
+    Q_OBJECT
+
+    SessionFolder folder_;
+
+    Result<QStringList> exported(const QString &format, const QStringList &topics = {}) const {
+        auto session = SessionReader::open(folder_.path());
+        return session ? exportSession(*session, format, topics, folder_.filePath("export"))
+                       : session.error();
+    }
+    /// What the only file of an export has.
+    QByteArray textOf(const QString &format, const QStringList &topics) const {
+        const auto paths = exported(format, topics);
+        if (!paths)
+            return paths.error().message.toUtf8();
+        return paths->size() == 1 ? contentOf(paths->first()) : "files: " + paths->join(", ").toUtf8();
+    }
+
+private Q_SLOTS:
+    void initTestCase() {
+        for (int i = 0; i < 10; ++i) {
+            folder_.add(0.1 * i, "motorcontrol/odometry",
+                        OdometryMessage{{0.1 * i, 0, 0.5}, {1, 0, 0}, {}, 7});
+            folder_.add(0.1 * i, "scanmatcher/pose",
+                        QByteArray(R"({"x":1,"y":2,"theta":3.141592653589793})"));
+            ScanMessage scan;
+            scan.header.stamp = SessionFolder::start + 0.1 * i;
+            scan.header.duration_s = 0.1;
+            scan.header.rays = 360;
+            for (int degree = -170; degree < 170; degree += 2) {
+                scan.x.push_back(float(5 * std::cos(degree * vectorlib::pi / 180)));
+                scan.y.push_back(float(5 * std::sin(degree * vectorlib::pi / 180)));
+            }
+            folder_.add(0.1 * i + 0.05, "velodynelogger/scan2d", scan);
+            if (i == 4) {
+                folder_.add(0.5, "x/../../y", compactJson(QJsonObject{{"a", "q\"u,"}, {"b", QJsonValue()}}),
+                            R"({"type":"object","properties":{"a":{},"b":{}}})");
+                folder_.nextFile();
+                folder_.add(0.5, "x/../../y", QByteArray(R"([1,2])"), "{}");
+            }
+        }
+        folder_.add(2, "scanmatcher/settings", QByteArray(R"({"sensor":{"x_m":0.2,"y_m":0,"theta_rad":0}})"));
+        folder_.finish();
+    }
+
+    void fieldsAreColumns() {
+        const QList<QByteArray> rows = textOf("csv", {"motorcontrol/odometry"}).trimmed().split('\n');
+        QCOMPARE(rows.size(), 11);
+        QCOMPARE(rows[0],
+                 QByteArray(
+                     "stamp,t_s,seq,covariance,mono,pose.theta,pose.x,pose.y,twist.omega,twist.vx,twist.vy"));
+        QCOMPARE(rows[2],
+                 QByteArray("1700000000.100000,0.100000,4,\"[0,0,0,0,0,0,0,0,0]\",7,0.5,0.1,0,0,1,0"));
+    }
+
+    // A schema that changes gives another file; a name leads nowhere.
+    void eachSchemaHasItsFile() {
+        const auto paths = exported("csv", {"x/*/*/y"});
+        QVERIFY2(paths.ok(), paths ? "" : qPrintable(paths.error().message));
+        QCOMPARE(paths->size(), 2);
+        QCOMPARE(QFileInfo(paths->at(0)).path(), folder_.filePath("export"));
+        QCOMPARE(contentOf(paths->at(0)).split('\n')[1].split(',').mid(3).join(','),
+                 QByteArray("\"q\"\"u,\","));
+        QCOMPARE(contentOf(paths->at(1)).split('\n')[0], QByteArray("stamp,t_s,seq,data"));
+        QVERIFY(contentOf(paths->at(1)).contains("\"[1,2]\""));
+        QCOMPARE(exported("csv")->size(), 6);
+    }
+
+    void posesAreATrajectory() {
+        const QList<QByteArray> rows = textOf("tum", {}).trimmed().split('\n');
+        QCOMPARE(rows.size(), 10);
+        QCOMPARE(rows[1], QByteArray("1700000000.100000 1.000000 2.000000 0 0 0 1.000000000 0.000000000"));
+        QVERIFY(textOf("tum", {"motorcontrol/odometry"})
+                    .startsWith("1700000000.000000 0.000000 0.000000 0 0 0 0.247"));
+    }
+
+    void carmenLogIsReadAgain() {
+        std::istringstream in(textOf("carmen", {}).toStdString());
+        const auto log = vectorlib::readCarmenLog(in, "log");
+        QVERIFY2(log.ok(), log ? "" : log.error().message().c_str());
+        QCOMPARE(log->odometry.size(), std::size_t(10));
+        QCOMPARE(log->scans.size(), std::size_t(10));
+        const vectorlib::CarmenScan &scan = log->scans[3];
+        QVERIFY(std::abs(scan.stamp - SessionFolder::start - 0.35) < 1e-6);
+        QVERIFY(std::abs(scan.robotPose.x - 0.35) < 0.06 && std::abs(scan.robotPose.theta - 0.5) < 1e-6);
+        std::vector<vectorlib::Vector2D<double>> points;
+        scan.appendPoints(points);
+        QCOMPARE(points.size(), std::size_t(170));
+        for (const auto &point : points)
+            QVERIFY(std::abs(point.norm() - 5) < 1e-3);
+        QVERIFY(std::abs(points[0].x - 5 * std::cos(170 * vectorlib::pi / 180)) < 1e-3);
+        QVERIFY(std::abs(points[0].y + 5 * std::sin(170 * vectorlib::pi / 180)) < 1e-3);
+    }
+
+    void allPartsBecomeOneFile() {
+        const auto paths = exported("mcap");
+        QVERIFY2(paths.ok(), paths ? "" : qPrintable(paths.error().message));
+        auto reader = mcap::Reader::open(paths->first().toStdString());
+        QVERIFY(reader.ok() && reader->isWhole());
+        QCOMPARE(reader->channels().size(), std::size_t(6));
+        std::map<std::string, int> counts;
+        while (const auto message = reader->next())
+            ++counts[reader->channels().at(message->channel).topic];
+        QCOMPARE(counts["velodynelogger/scan2d"], 10);
+        QCOMPARE(counts["x/../../y"], 2);
+        QCOMPARE(QString::fromStdString(reader->problem()), QString());
+    }
+
+    void whatIsNotThereIsTold_data() {
+        const Rows<QString, QStringList, QString> row("format", "topics", "told");
+        row("format", "xls", {}, "found xls, expected csv, tum, carmen or mcap");
+        row("topic", "csv", {"a/b"}, "found no messages of these topics");
+        row("no scan", "carmen", {"motorcontrol/odometry"}, "found no scan with odometry");
+    }
+    void whatIsNotThereIsTold() {
+        FETCH(QString, format, QStringList, topics, QString, told);
+        const auto paths = exported(format, topics);
+        QVERIFY(!paths);
+        QVERIFY2(paths.error().message.contains(told), qPrintable(paths.error().message));
+    }
+
+    void aFolderThatIsALinkIsRefused() {
+        QVERIFY(QFile::link("/tmp", folder_.filePath("link")));
+        auto session = SessionReader::open(folder_.path());
+        QVERIFY(!exportSession(*session, "csv", {}, folder_.filePath("link")));
+    }
+};

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""What a session of a whole robot tells afterwards: why the robot stopped, the map of its drive, files for other tools."""
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+from recorder import Robot
+from support import BINARIES, Daemon, DaemonError, wait_for
+
+
+class Driver(threading.Thread):
+    """A client that has the control and drives in a circle at 10 Hz, until it is told to be silent or is refused."""
+
+    def __init__(self, port, name):
+        super().__init__(daemon=True)
+        self.motors = Daemon(port=port)
+        self.motors.call("control.acquire", client=name, timeout_s=2)
+        self.silent = threading.Event()
+        self.start()
+
+    def run(self):
+        try:
+            while not self.silent.wait(0.1):
+                self.motors.call("motor.drive", vx=0.4, omega=0.3)
+        except (DaemonError, OSError):
+            pass
+
+
+class Reports(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        self.robot = Robot(folder)
+        self.addCleanup(self.robot.stop)
+        self.call = lambda method, **params: self.robot.recorder.call(method, **params)
+        self.motors = self.robot.daemons["motorcontrol"]
+
+    def drive(self):
+        driver = Driver(self.robot.ports["motorcontrol"], "anna")
+        state = lambda: self.motors.call("motor.state")  # what was measured last stays while a controller is silent
+        wait_for("a drive", lambda: not (now := state())["halted"] and abs(now["twist"]["vx"]) > 0.35)
+        return driver
+
+    def stopped_by(self, name, stop):
+        """What the recorder explains of a drive that this ends."""
+        self.call("session.start", name=name)
+        driver = self.drive()
+        stop(driver)
+        wait_for("the halt", lambda: self.motors.call("motor.state")["halted"])
+        driver.silent.set()
+        driver.join()
+        counts = self.counts()
+        wait_for("what comes after it", lambda: self.counts() > counts + 100)
+        self.call("session.stop")
+        return self.call("session.explain", name=name)["text"]
+
+    def counts(self):
+        return next(part["counts"] for part in self.call("session.state")["parts"] if part["daemon"] == "recorder")["messages"]
+
+    def test_causes_are_named(self):
+        simulator = self.robot.daemons["simulator"]
+        causes = {
+            "time-out": (lambda driver: driver.silent.set(), ("Cause: time-out", "no command for")),
+            "take-over": (lambda driver: self.motors.call("control.acquire", client="bert", take_over=True, timeout_s=5),
+                          ("Cause: take-over", "bert took the control over from anna")),
+            "stop": (lambda driver: self.motors.call("motor.stop", client="window"), ("Cause: STOP", "stopped by window")),
+            "estop": (lambda driver: self.motors.call("motor.estop", client="window"), ("Cause: STOP", "emergency stop by window")),
+            "controller": (lambda driver: simulator.call("sim.fault", device="controller2", kind="silence"),
+                           ("Cause: lost controller", "does not answer")),
+            "battery": (lambda driver: simulator.call("sim.fault", device="battery", kind="charge", share=0.01),
+                        ("Cause: low battery", "the battery has"))}
+        for name, (stop, expected) in causes.items():
+            with self.subTest(name):
+                text = self.stopped_by(name, stop)
+                for words in (*expected, "anna drove until then"):
+                    self.assertIn(words, text)
+                self.assertRegex(text, r"Commanded last: 0\.40 m/s ahead, 0\.00 m/s to the left, 0\.30 rad/s")
+                self.assertRegex(text, r"Measured last:  0\.[34]\d m/s ahead")
+                self.assertEqual(text.count("Cause:"), 1)
+                if os.environ.get("HERMES_SHOW"):
+                    print(text, file=sys.stderr)
+            if name == "take-over":
+                self.motors.call("control.release")
+            if name == "estop":
+                wait_for("the release", self.is_released)
+            if name == "controller":
+                simulator.call("sim.fault", device="controller2", kind="none")
+                wait_for("the controller", lambda: self.motors.call("motor.state")["ready"])
+        self.assertIn("motor.estop", self.call("session.info", name="estop")["stops"][-1])
+
+    def is_released(self):
+        try:
+            self.motors.call("motor.reset_estop", confirm=True)
+        except DaemonError:
+            return False
+        return True
+
+    def test_map_of_a_session_is_the_live_one(self):
+        self.call("session.start", name="drive")
+        driver = self.drive()
+        begin = self.robot.daemons["scanmatcher"].call("matcher.state")["scans"]
+        wait_for("scans", lambda: self.robot.daemons["scanmatcher"].call("matcher.state")["scans"] > begin + 60)
+        driver.silent.set()
+        self.call("session.stop")
+        folder = os.path.join(self.robot.records, "drive")
+        info = self.call("session.info", name="drive")
+        self.assertGreater(info["driven_m"], 1)
+        self.assertEqual(info["summary"]["problems"], [])
+        (live,) = self.call("session.export", name="drive", format="tum")["paths"]
+        out = os.path.join(folder, "mapped.tum")
+        done = subprocess.run([os.path.join(BINARIES, "hermes-vector"), "map", folder, "--loops", "leave", "--out-trajectory", out],
+                              check=True, stdout=subprocess.PIPE)
+        summary = json.loads(done.stdout)
+        self.assertGreater(summary["scans"], 60)
+        self.assertEqual(summary["by_odometry"], summary["scans"] - summary["skipped"] - 1)
+        self.assertLess(self.farthest(self.poses(live), self.poses(out)), 0.01)
+        for form, least in (("csv", 15), ("carmen", 1), ("mcap", 1)):
+            paths = self.call("session.export", name="drive", format=form)["paths"]
+            self.assertGreaterEqual(len(paths), least)
+            self.assertTrue(all(os.path.getsize(path) > 0 for path in paths))
+        log = self.call("session.export", name="drive", format="carmen")["paths"][0]
+        subprocess.run([os.path.join(BINARIES, "hermes-vector"), "map", log, "--summary", os.devnull, "--force"], check=True)
+
+    @staticmethod
+    def poses(path):
+        with open(path, encoding="utf-8") as file:
+            rows = [[float(word) for word in line.split()] for line in file if not line.startswith("#")]
+        return {round(row[0], 4): (row[1], row[2], 2 * math.atan2(row[6], row[7])) for row in rows}
+
+    def farthest(self, live, mapped):
+        """Distance of the poses of a scan, where the first is in place; metres."""
+        both = sorted(set(live) & set(mapped))
+        self.assertGreater(len(both), 0.9 * len(mapped), (sorted(live)[:3], sorted(mapped)[:3]))
+        a, b = live[both[0]], mapped[both[0]]
+        turn = a[2] - b[2]
+        worst = 0.0
+        for stamp in both:
+            dx, dy = mapped[stamp][0] - b[0], mapped[stamp][1] - b[1]
+            x = a[0] + math.cos(turn) * dx - math.sin(turn) * dy
+            y = a[1] + math.sin(turn) * dx + math.cos(turn) * dy
+            worst = max(worst, math.hypot(x - live[stamp][0], y - live[stamp][1]))
+        return worst
+
+
+if __name__ == "__main__":
+    unittest.main()
