@@ -31,9 +31,12 @@ EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measur
 EncoderMonitor::Mismatch EncoderMonitor::judge(double commanded, double measured, double now) {
     const double step = last_ > 0 ? std::clamp(now - last_, 0.0, longestPause_s) : 0;
     const double braked = last_ > 0 ? settings_.deceleration * step : HUGE_VAL;
+    if (last_ <= 0)
+        told_ = {commanded, commanded};
     last_ = now;
-    slowest_ = std::min(commanded, slowest_ + braked);
-    fastest_ = std::max(commanded, fastest_ - braked);
+    slowest_ = std::min({commanded, told_[0], told_[1], slowest_ + braked});
+    fastest_ = std::max({commanded, told_[0], told_[1], fastest_ - braked});
+    told_ = {commanded, told_[0]};
     const Mismatch found = compare(commanded, measured);
     const bool follows = std::abs(commanded) >= settings_.commanded && std::abs(measured) >= settings_.moving;
     const double share = found != Mismatch::None ? 1 : follows ? -1 : -forgetting;

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
+
 namespace hermes::motorcontrol {
 
 /// Compares the speed that one wheel was told with what its encoder says. Speeds in rad/s, times in seconds
 /// of a clock that never jumps.
 ///
 /// A command explains the speeds between itself and those that came before it, as far as braking leads from
-/// there. The time of motion that no command explains adds up, whatever is wrong and whatever is commanded
+/// there; the two before it still count whole, for a wheel learns of a command and shows it a cycle late
+/// each. The time of motion that no command explains adds up, whatever is wrong and whatever is commanded
 /// meanwhile; only as much time in which the wheel was seen to follow takes it away.
 class EncoderMonitor {
 public:
@@ -33,6 +36,7 @@ private:
 
     Settings settings_;
     double unexplained_s_ = 0;
+    std::array<double, 2> told_{};     // the last two commands
     double slowest_ = 0, fastest_ = 0; // that commands explain
     double last_ = 0;                  // 0: nothing was judged yet
 };

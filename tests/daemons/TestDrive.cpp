@@ -361,6 +361,12 @@ private Q_SLOTS:
                 return speed += std::clamp(told - speed, -step, step);
             });
         };
+        // As the bus tells it: what was commanded two cycles ago.
+        const Measured followsLate = [before = std::array<double, 2>{}](double, double told) mutable {
+            const double shown = before[1];
+            before = {told, before[0]};
+            return shown;
+        };
         row("backward, to and fro", toAndFro, runsAway, 0.7);
         row("backward, tapped", taps(0.4, 0.4, 2), runsAway, 0.7);
         row("backward, tapped fast", taps(0.06, 0.06, 2), runsAway, 0.7);
@@ -370,6 +376,7 @@ private Q_SLOTS:
         row("follows, to and fro", toAndFro, follows(), 0.0);
         row("follows, tapped", taps(0.1, 0.1, 5), follows(), 0.0);
         row("follows, full speed and stops", taps(1, 1, 20), follows(), 0.0);
+        row("follows late, creeping in short taps", taps(0.06, 0.1, 0.45), followsLate, 0.0);
     }
 
     void encoderMismatchAddsUp() {
