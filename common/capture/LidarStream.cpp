@@ -87,6 +87,8 @@ std::string toText(const SensorChoice::Sensor &sensor) {
            std::to_string(sensor.port);
 }
 
+using velodyne::ClockChoice;
+using velodyne::HostClock;
 using velodyne::PacketFault;
 using velodyne::TurnAssembler;
 
@@ -95,10 +97,9 @@ void LidarStream::take(const Datagram &datagram, std::initializer_list<TurnAssem
         if (!choice_.isFromTaken(datagram) ||
             gps_.feed(datagram.payload, datagram.size) != velodyne::PositionFault::None)
             return;
-        for (TurnAssembler *assembler : assemblers)
-            if (assembler)
-                assembler->follow(gps_.state().utc_ns);
-        return;
+        const bool usedHost = usesHost();
+        isSet_ = isSet_ || gps_.state().utc_ns;
+        return follow(assemblers, usedHost);
     }
     const PacketFault fault = velodyne::DataPacket::check(datagram.payload, datagram.size, options_.model);
     if (fault == PacketFault::None && !choice_.takes(datagram)) {
@@ -109,9 +110,44 @@ void LidarStream::take(const Datagram &datagram, std::initializer_list<TurnAssem
         ++other_;
         return;
     }
+    const bool usedHost = usesHost();
+    const auto host = fault == PacketFault::None ? hostTime(datagram) : std::nullopt;
+    if (usedHost != usesHost())
+        follow(assemblers, usedHost);
     for (TurnAssembler *assembler : assemblers)
         if (assembler)
-            assembler->feed(datagram.payload, datagram.size, datagram.stamp_ns);
+            assembler->feed(datagram.payload, datagram.size, datagram.stamp_ns, host);
+}
+
+/// What the GPS tells, or that it tells nothing. Another clock begins another time.
+void LidarStream::follow(std::initializer_list<TurnAssembler *> assemblers, bool usedHost) {
+    for (TurnAssembler *assembler : assemblers) {
+        if (assembler && usedHost != usesHost())
+            assembler->jump();
+        if (assembler)
+            assembler->follow(gps_.state().utc_ns);
+    }
+}
+
+bool LidarStream::usesHost() const {
+    return options_.clock == ClockChoice::Host || (options_.clock == ClockChoice::Auto && !isSet_);
+}
+
+/// Of a data packet, when the receiver's clock counts. A sensor whose clock jumps was started anew: what a
+/// GPS has told it is gone.
+std::optional<HostClock::Time> LidarStream::hostTime(const Datagram &datagram) {
+    const velodyne::DataPacket packet(datagram.payload);
+    const bool isNamed = packet.model() != velodyne::Model::Blank;
+    const velodyne::SensorModel *const model =
+        velodyne::findSensorModel(isNamed ? packet.model() : options_.model);
+    const std::uint64_t jumps = host_.jumps();
+    const HostClock::Time time =
+        host_.take(packet.stamp_us(), datagram.stamp_ns, packet.groups() * model->blockPeriod_ns());
+    if (host_.jumps() != jumps) {
+        isSet_ = false;
+        gps_.forget();
+    }
+    return usesHost() ? std::optional(time) : std::nullopt;
 }
 
 bool LidarStream::isDamaged(const Datagram &datagram, PacketFault fault) const {

@@ -79,6 +79,7 @@ public:
         /// To this port, or that of `sensor`, whatever comes should be a data packet; to others it is one
         /// when it can be read as one.
         std::uint16_t dataPort = velodyne::dataPort;
+        velodyne::ClockChoice clock = velodyne::ClockChoice::Gps;
     };
 
     LidarStream() = default;
@@ -90,8 +91,16 @@ public:
     /// or is one of a model or return mode that is not decoded: they count that. Null ones are left out.
     void take(const Datagram &datagram, std::initializer_list<velodyne::TurnAssembler *> assemblers);
     /// The datagrams that follow are of another time.
-    void jump() { choice_.jump(); }
+    void jump() {
+        choice_.jump();
+        steps_ = clockSteps();
+        host_ = velodyne::HostClock();
+        isSet_ = false;
+        gps_.forget();
+    }
 
+    /// How often a clock was set, by less than a second.
+    std::uint64_t clockSteps() const { return steps_ + host_.steps(); }
     const SensorChoice &sensors() const { return choice_; }
     const velodyne::GpsReader &gps() const { return gps_; }
     std::uint64_t other() const { return other_; } ///< nothing that could be read, of nobody in particular
@@ -99,10 +108,16 @@ public:
 
 private:
     bool isDamaged(const Datagram &datagram, velodyne::PacketFault fault) const;
+    bool usesHost() const;
+    std::optional<velodyne::HostClock::Time> hostTime(const Datagram &datagram);
+    void follow(std::initializer_list<velodyne::TurnAssembler *> assemblers, bool usedHost);
 
     Options options_;
     SensorChoice choice_;
     velodyne::GpsReader gps_;
+    velodyne::HostClock host_;
+    std::uint64_t steps_ = 0; ///< before the last jump
+    bool isSet_ = false;      ///< a GPS has set the sensor's clock
     std::uint64_t other_ = 0, otherSensors_ = 0;
 };
 

@@ -84,7 +84,7 @@ Result<Channel *> Channel::make(const QString &text, QObject *parent) {
     auto codec = makeCodec(url->protocol());
     if (!codec) {
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("address %1: unknown protocol \"%2\", known are: %3")
+                     QString("address %1: unknown protocol \"%2\", known are: %3")
                          .arg(text, url->protocol(), codecNames().join(QStringLiteral(", "))));
     }
     const auto interface = makeInterface(*url, nullptr);
@@ -99,10 +99,10 @@ Result<Sent> Channel::send(const Outgoing &message, Rank rank) {
         return *frame.error;
     if (const auto ticket = write(frame.bytes, rank))
         return Sent{frame.bytes, *ticket};
-    return Error(
-        isOpen() ? ErrorCode::OverLimit : ErrorCode::Disconnected,
-        QStringLiteral("%1: %2").arg(carrier_->name(), isOpen() ? QStringLiteral("too much waits to be sent")
-                                                                : QStringLiteral("not connected")));
+    return Error(isOpen() ? ErrorCode::OverLimit : ErrorCode::Disconnected,
+                 QString("%1: %2").arg(carrier_->name(), isOpen()
+                                                             ? QStringLiteral("too much waits to be sent")
+                                                             : QStringLiteral("not connected")));
 }
 
 std::optional<quint64> Channel::write(const QByteArray &frame, Rank rank) {

@@ -102,12 +102,12 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
         channel_->dropShortWaiting(); // a stop overtakes it, and a set-point must not come after its stop
     const bool wouldBeLate = mayBeSent && repeats == Repeats::None && channel_->hasShortWaiting();
     const auto sent =
-        wouldBeLate ? Result<Sent>(
-                          Error(ErrorCode::OverLimit,
-                                QStringLiteral("%1: not sent, the line is too slow for so many").arg(method)))
+        wouldBeLate
+            ? Result<Sent>(Error(ErrorCode::OverLimit,
+                                 QString("%1: not sent, the line is too slow for so many").arg(method)))
         : mayBeSent ? channel_->send(makeRequest(id, method, params), rank)
                     : Result<Sent>(Error(ErrorCode::Disconnected,
-                                         QStringLiteral("%1: not connected: %2").arg(method, problem())));
+                                         QString("%1: not connected: %2").arg(method, problem())));
     if (!sent) {
         QMetaObject::invokeMethod(
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
@@ -116,11 +116,9 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
     if (channel_->isLossy() && repeats != Repeats::None)
         repeater_.add(*channel_, id, *sent, rank);
     QTimer::singleShot(timeout, this, [this, id, method, timeout] {
-        finish(
-            id,
-            Error(
-                ErrorCode::TimedOut,
-                QStringLiteral("%1: no reply within %2 s").arg(method).arg(double(timeout.count()) / 1000)));
+        finish(id,
+               Error(ErrorCode::TimedOut,
+                     QString("%1: no reply within %2 s").arg(method).arg(double(timeout.count()) / 1000)));
     });
 }
 
@@ -171,7 +169,7 @@ Result<void> Client::waitConnected(std::chrono::milliseconds timeout) {
 }
 
 QString Client::problem() const {
-    return failure_.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure_;
+    return failure_.isEmpty() ? QString("%1: no answer").arg(address()) : failure_;
 }
 
 bool Client::isBeginning() const {
@@ -236,7 +234,7 @@ void Client::onOpened() {
 
 void Client::agree() {
     agreeing_ = true;
-    failure_ = QStringLiteral("%1: no answer yet").arg(address());
+    failure_ = QString("%1: no answer yet").arg(address());
     const auto done = [this](const Result<QJsonValue> &result) {
         agreeing_ = false;
         if (!channel_ || !channel_->isOpen())
@@ -296,9 +294,8 @@ void Client::onClosed(const QString &reason) {
 
 void Client::onMessage(const QJsonValue &message, const WireValue &topicData) {
     if (const int size = message.toArray().size(); size > maxOfBatch)
-        return refuse(
-            {ErrorCode::OverLimit,
-             QStringLiteral("a batch of %1 messages, expected %2 at most").arg(size).arg(maxOfBatch)});
+        return refuse({ErrorCode::OverLimit,
+                       QString("a batch of %1 messages, expected %2 at most").arg(size).arg(maxOfBatch)});
     for (const RpcMessage &one : readFrame(message).messages) {
         if (const auto *response = std::get_if<RpcResponse>(&one))
             onResponse(*response);
@@ -392,7 +389,7 @@ void Client::deliver(int handle, const QJsonObject &params, const WireValue &dat
     if (!(std::abs(update.stamp) <= latestStamp)) // NaN, too
         return refuse(
             {ErrorCode::InvalidParams,
-             QStringLiteral("topic %1: stamp: found %2, expected seconds since the Unix epoch")
+             QString("topic %1: stamp: found %2, expected seconds since the Unix epoch")
                  .arg(update.topic, QString::fromUtf8(compactJson(params.value(QStringLiteral("stamp")))))});
     update.replayed = params.value(QStringLiteral("replayed")).toBool();
     // Of a message in a batch they were read with the rest.

@@ -33,7 +33,7 @@ Command &Command::returns(const QJsonObject &schema) {
 }
 
 Command &Command::returnsNull() {
-    return returns({{QStringLiteral("type"), QStringLiteral("null")}});
+    return returns({{"type", "null"}});
 }
 
 Command &Command::example(const QJsonObject &params, const QJsonValue &result) {
@@ -87,28 +87,24 @@ Command &Command::asyncHandler(const AsyncHandler &function) {
 QJsonObject Command::description() const {
     QJsonArray params;
     for (const Field &field : fields_) {
-        params.append(QJsonObject{{nameKey, field.name()},
-                                  {QStringLiteral("required"), field.isRequired()},
-                                  {schemaKey, field.schema()}});
+        params.append(QJsonObject{
+            {nameKey, field.name()}, {"required", field.isRequired()}, {schemaKey, field.schema()}});
     }
     QJsonObject method = extra_;
     method.insert(nameKey, commandName_);
-    method.insert(QStringLiteral("summary"), summary_);
+    method.insert("summary", summary_);
     method.insert(roleKey, toString(role_));
-    method.insert(QStringLiteral("paramStructure"), QStringLiteral("either"));
-    method.insert(QStringLiteral("params"), params);
-    method.insert(QStringLiteral("result"),
-                  QJsonObject{{nameKey, QStringLiteral("result")}, {schemaKey, resultSchema_}});
+    method.insert("paramStructure", "either");
+    method.insert("params", params);
+    method.insert("result", QJsonObject{{nameKey, "result"}, {schemaKey, resultSchema_}});
     if (!exampleResult_.isUndefined()) {
         QJsonArray values;
         for (auto member = exampleParams_.begin(); member != exampleParams_.end(); ++member)
-            values.append(QJsonObject{{nameKey, member.key()}, {QStringLiteral("value"), member.value()}});
-        const QJsonObject pairing{
-            {nameKey, QStringLiteral("example")},
-            {QStringLiteral("params"), values},
-            {QStringLiteral("result"),
-             QJsonObject{{nameKey, QStringLiteral("result")}, {QStringLiteral("value"), exampleResult_}}}};
-        method.insert(QStringLiteral("examples"), QJsonArray{pairing});
+            values.append(QJsonObject{{nameKey, member.key()}, {"value", member.value()}});
+        const QJsonObject pairing{{nameKey, "example"},
+                                  {"params", values},
+                                  {"result", QJsonObject{{nameKey, "result"}, {"value", exampleResult_}}}};
+        method.insert("examples", QJsonArray{pairing});
     }
     return method;
 }
@@ -139,8 +135,8 @@ Result<QJsonObject> Command::accept(const QJsonValue &params) const {
     QJsonObject named = params.toObject();
     const QJsonArray positional = params.toArray();
     if (positional.size() > int(fields_.size()) && !isUrgent()) {
-        return invalidParams({{QStringLiteral("[%1]").arg(fields_.size()), positional.at(int(fields_.size())),
-                               QStringLiteral("at most %1 parameters").arg(fields_.size())}});
+        return invalidParams({{QString("[%1]").arg(fields_.size()), positional.at(int(fields_.size())),
+                               QString("at most %1 parameters").arg(fields_.size())}});
     }
     for (int i = 0; i < std::min(positional.size(), int(fields_.size())); ++i)
         named.insert(fields_[size_t(i)].name(), positional.at(i));
@@ -158,11 +154,10 @@ Result<QJsonObject> Command::accept(const QJsonValue &params) const {
 }
 
 Error Call::notFor(const QString &what, Role needed) const {
-    return {
-        ErrorCode::NotAuthorised,
-        QStringLiteral("%1 is for the role %2, this client has %3; %4")
-            .arg(what, toString(needed), toString(role), moreRights),
-        QJsonObject{{QStringLiteral("role"), toString(role)}, {QStringLiteral("needed"), toString(needed)}}};
+    return {ErrorCode::NotAuthorised,
+            QString("%1 is for the role %2, this client has %3; %4")
+                .arg(what, toString(needed), toString(role), moreRights),
+            QJsonObject{{"role", toString(role)}, {"needed", toString(needed)}}};
 }
 
 std::optional<Error> Command::refusal(const Call &call) const {
@@ -170,7 +165,7 @@ std::optional<Error> Command::refusal(const Call &call) const {
         const Field &field = fields_[index];
         const QJsonValue given = call.params.value(field.name());
         if (call.role < needed && !given.isUndefined() && given != field.defaultValue())
-            return call.notFor(commandName_ + QStringLiteral(" with ") + field.name(), needed);
+            return call.notFor(commandName_ + " with " + field.name(), needed);
     }
     return std::nullopt;
 }
@@ -185,7 +180,7 @@ void Command::warnOfAngles(const QJsonObject &params) const {
 }
 
 void Command::execute(const QJsonValue &params, Call call, const Reply &reply) const {
-    QString what = QStringLiteral("unknown exception");
+    QString what = "unknown exception";
     try {
         if (call.role < role_)
             return reply.error(call.notFor(commandName_, role_));
@@ -202,9 +197,8 @@ void Command::execute(const QJsonValue &params, Call call, const Reply &reply) c
     } catch (...) {
         // ends this call like any other exception
     }
-    logError(commandName_, QStringLiteral("exception in the handler: ") + what);
-    reply.error(
-        Error(ErrorCode::InternalError, QStringLiteral("internal error in %1: %2").arg(commandName_, what)));
+    logError(commandName_, "exception in the handler: " + what);
+    reply.error(Error(ErrorCode::InternalError, QString("internal error in %1: %2").arg(commandName_, what)));
 }
 
 } // namespace hermes

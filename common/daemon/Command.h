@@ -10,6 +10,7 @@
 #include <QJsonObject>
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace hermes {
@@ -32,6 +33,16 @@ struct Call {
     QString text(const char *name) const { return value(name).toString(); }
     /// NotAuthorised: `what` is for this role.
     Error notFor(const QString &what, Role needed) const;
+};
+
+/// What a handler gives when nothing goes wrong.
+template <typename T>
+struct Given {
+    using Type = T;
+};
+template <typename T>
+struct Given<Result<T>> {
+    using Type = T;
 };
 
 /// A command, declared once: description, validation, help and dispatch follow from it.
@@ -69,7 +80,33 @@ public:
     Command &unlisted();
     /// Sent again and again, so that the audit sums it up.
     Command &stream();
-    /// Answers at once.
+    /// Answers at once with what the function gives, or with its error: a struct with fields, a list, a text,
+    /// or null where it gives nothing. What the result is follows from that.
+    template <typename Function>
+    Command &answers(const Function &function) {
+        using Value = typename Given<std::invoke_result_t<Function, const Call &>>::Type;
+        if constexpr (std::is_void_v<Value>)
+            returnsNull();
+        else
+            gives<Value>();
+        return handler([function](const Call &call) -> Result<QJsonValue> {
+            if constexpr (std::is_void_v<std::invoke_result_t<Function, const Call &>>) {
+                function(call);
+                return QJsonValue();
+            } else {
+                const Result<Value> given = function(call);
+                if (!given)
+                    return given.error();
+                if constexpr (std::is_void_v<Value>)
+                    return QJsonValue();
+                else if constexpr (std::is_constructible_v<QJsonValue, const Value &>)
+                    return QJsonValue(*given); // a description of 32 kB is not copied
+                else
+                    return asJson(*given);
+            }
+        });
+    }
+    /// Answers at once with JSON of its own.
     Command &handler(const Handler &function);
     /// Answers at once or later, through the Reply.
     Command &asyncHandler(const AsyncHandler &function);

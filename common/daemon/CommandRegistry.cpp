@@ -24,10 +24,9 @@ void CommandRegistry::execute(const RpcRequest &request, const Call &call, const
         if (name.startsWith(group))
             near.append(name);
     }
-    const QString hint = near.isEmpty() ? QStringLiteral("rpc.discover lists what there is")
-                                        : QStringLiteral("there is ") + near.join(QStringLiteral(", "));
+    const QString hint = near.isEmpty() ? "rpc.discover lists what there is" : "there is " + near.join(", ");
     reply.error(Error(ErrorCode::MethodNotFound,
-                      QStringLiteral("method \"%1\" not found; %2").arg(request.method.left(80), hint)));
+                      QString("method \"%1\" not found; %2").arg(request.method.left(80), hint)));
 }
 
 QJsonArray CommandRegistry::description() const {

@@ -34,7 +34,7 @@ int printed(const QString &text) {
     print(stdout, text);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return 0;
-    print(stderr, QStringLiteral("stdout cannot be written: %1\n").arg(qt_error_string()));
+    print(stderr, QString("stdout cannot be written: %1\n").arg(qt_error_string()));
     return 1;
 }
 
@@ -58,31 +58,31 @@ Daemon::Daemon(const DaemonIdentity &identity)
     addCommonCommands(*this, commands_, topics_);
     connect(&channels_, &Server::clientGone, this, &Daemon::clientGone);
     connect(&channels_.audit(), &Audit::noted, this,
-            [this](const CommandMessage &entry) { publish(QStringLiteral("commands"), entry, entry.stamp); });
+            [this](const CommandMessage &entry) { publish("commands", entry, entry.stamp); });
     connect(&topics_, &TopicHub::replaysChanged, this, [this] {
-        const QString item = QStringLiteral("topics"), replays = topics_.replays();
+        const QString item = "topics", replays = topics_.replays();
         if (replays.isEmpty())
             healthItems_.remove(item);
         else
-            healthItems_.set(item, HealthLevel::Ok, QStringLiteral("replayed, not live: ") + replays);
+            healthItems_.set(item, HealthLevel::Warn, "replayed, not live: " + replays);
     });
     Log::instance().follow(this, [this](const LogRecord &record) {
         publish(
-            QStringLiteral("log"), [&record] { return record.message(); }, record.stamp);
+            "log", [&record] { return record.message(); }, record.stamp);
     });
     connect(&configuration_, &Settings::changed, this, [this](const QStringList &paths) {
         QJsonObject changes;
         for (const QString &path : paths)
             changes = withValueAt(changes, path, valueAt(configuration_.values(), path));
         for (const QString &text : beyondTurn(configuration_.schema(), changes))
-            logWarning(QStringLiteral("settings"), text);
+            logWarning("settings", text);
         if (!launched_)
             return;
         applyCommonSettings();
         settingsChanged(paths);
-        publish(QStringLiteral("settings"), [this] { return configuration_.values(); });
+        publish("settings", [this] { return configuration_.values(); });
     });
-    healthItems_.provide(QStringLiteral("channel"), [this] { updateChannelHealth(); });
+    healthItems_.provide("channel", [this] { updateChannelHealth(); });
 }
 
 Daemon::~Daemon() {
@@ -95,42 +95,41 @@ int Daemon::run(const QStringList &arguments) {
         return *status;
     SignalWatcher signalWatcher(this);
     connect(&signalWatcher, &SignalWatcher::received, this, [this](const QString &name) {
-        logInfo(self_.name, name + QStringLiteral(" received"));
+        logInfo(self_.name, name + " received");
         shutDown();
     });
     connect(this, &Daemon::finished, this, [](int status) { QCoreApplication::exit(status); });
     const auto launching = launch();
     if (!launching) {
-        print(stderr, QStringLiteral("hermes-%1: %2\n").arg(self_.name, launching.error().message));
+        print(stderr, QString("hermes-%1: %2\n").arg(self_.name, launching.error().message));
         return 1;
     }
     return QCoreApplication::exec();
 }
 
 std::optional<int> Daemon::prepare(const QStringList &arguments) {
-    const QString program = QStringLiteral("hermes-") + self_.name;
+    const QString program = "hermes-" + self_.name;
     const auto line = CommandLine::parse(arguments.mid(1));
     if (!line) {
-        print(stderr,
-              QStringLiteral("%1: %2; %1 --help tells what there is\n").arg(program, line.error().message));
+        print(stderr, QString("%1: %2; %1 --help tells what there is\n").arg(program, line.error().message));
         return 2;
     }
     if (line->action == CommandLine::Action::Help) {
         return printed(QString::fromStdString(fittedHelp(helpText().toStdString())));
     }
     if (line->action == CommandLine::Action::Version) {
-        return printed(QStringLiteral("%1 %2\n").arg(program, projectVersion()));
+        return printed(QString("%1 %2\n").arg(program, projectVersion()));
     }
     const auto configured = configure(*line);
     if (!configured) {
-        print(stderr, QStringLiteral("%1: %2\n").arg(program, configured.error().message));
+        print(stderr, QString("%1: %2\n").arg(program, configured.error().message));
         return configured.error().is(ErrorCode::InvalidParams) ? 2 : 1;
     }
     if (line->action == CommandLine::Action::PrintSettings) {
         return printed(QString::fromUtf8(QJsonDocument(configuration_.values()).toJson()));
     }
     if (line->action == CommandLine::Action::Check) {
-        return printed(QStringLiteral("%1: the settings are valid\n").arg(program));
+        return printed(QString("%1: the settings are valid\n").arg(program));
     }
     return std::nullopt;
 }
@@ -144,26 +143,22 @@ Result<void> Daemon::configure(const CommandLine &line) {
             return loaded;
         if (!loaded) {
             logError(self_.name, loaded.error().message);
-            healthItems_.set(QStringLiteral("settings file"), HealthLevel::Failed,
-                             loaded.error().message +
-                                 QStringLiteral("; the service restarts when the file is correct"));
+            healthItems_.set("settings file", HealthLevel::Failed,
+                             loaded.error().message + "; the service restarts when the file is correct");
             waitForMended(line.config);
         }
     }
     const auto set = configuration_.insist(line.settings);
     // What only a rule refuses may suit the file once that is mended: it is no wrong command line.
     if (!set && !line.config.isEmpty() && configuration_.suitsSchema(line.settings))
-        return Error(
-            ErrorCode::InvalidSetting,
-            QStringLiteral("settings file %1 with option --set: %2").arg(line.config, set.error().message));
+        return Error(ErrorCode::InvalidSetting,
+                     QString("settings file %1 with option --set: %2").arg(line.config, set.error().message));
     if (!set)
-        return Error(ErrorCode::InvalidParams, QStringLiteral("option --set: ") + set.error().message);
+        return Error(ErrorCode::InvalidParams, "option --set: " + set.error().message);
     if (!line.listen.isEmpty()) {
-        const auto listen =
-            configuration_.insist({{QStringLiteral("listen"), QJsonArray::fromStringList(line.listen)}});
+        const auto listen = configuration_.insist({{"listen", QJsonArray::fromStringList(line.listen)}});
         if (!listen)
-            return Error(ErrorCode::InvalidParams,
-                         QStringLiteral("option --listen: ") + listen.error().message);
+            return Error(ErrorCode::InvalidParams, "option --listen: " + listen.error().message);
     }
     applyCommonSettings();
     return {};
@@ -173,22 +168,22 @@ void Daemon::waitForMended(const QString &file) {
     connect(&mended_, &QTimer::timeout, this, [this, file] {
         if (!configuration_.read(file))
             return;
-        logInfo(self_.name, QStringLiteral("settings file %1: it is correct now").arg(file));
+        logInfo(self_.name, QString("settings file %1: it is correct now").arg(file));
         shutDown();
     });
     mended_.start(std::chrono::seconds(1));
 }
 
 Result<void> Daemon::launch() {
-    const bool insecure = configuration_.flag(QStringLiteral("insecure"));
+    const bool insecure = configuration_.flag("insecure");
     openAudit();
     if (qEnvironmentVariableIsSet(robotVariable) && !ownRobot())
-        logWarning(self_.name, QStringLiteral("%1 is ignored: expected the UUID of a robot, a space and its "
-                                              "name of up to %2 printable characters")
+        logWarning(self_.name, QString("%1 is ignored: expected the UUID of a robot, a space and its "
+                                       "name of up to %2 printable characters")
                                    .arg(QLatin1String(robotVariable))
                                    .arg(longestRobotName));
     Result<void> failed;
-    for (const QJsonValue &url : configuration_.value(QStringLiteral("listen")).toArray()) {
+    for (const QJsonValue &url : configuration_.value("listen").toArray()) {
         const auto listening = listen(url.toString());
         failed = listening ? failed : listening;
         if (!listening && listening.error().is(ErrorCode::InputOutput))
@@ -201,10 +196,9 @@ Result<void> Daemon::launch() {
         return channels_.close(), failed;
     listenLater();
     if (insecure) {
-        healthItems_.set(
-            QStringLiteral("insecure"), HealthLevel::Warn,
-            QStringLiteral("commands are accepted in plain text, from the network if a channel listens "
-                           "there (setting \"insecure\")"));
+        healthItems_.set("insecure", HealthLevel::Warn,
+                         "commands are accepted in plain text, from the network if a channel listens "
+                         "there (setting \"insecure\")");
     }
     launched_ = true;
     configuration_.begin();
@@ -232,7 +226,7 @@ Result<void> Daemon::launch() {
 }
 
 Result<void> Daemon::listen(const QString &url) {
-    const auto listening = channels_.listen(url, configuration_.flag(QStringLiteral("insecure")));
+    const auto listening = channels_.listen(url, configuration_.flag("insecure"));
     if (!listening)
         return listening;
     if (const auto port = AnnouncedPort::of(self_.name, url, channels_.addresses().last()))
@@ -246,7 +240,7 @@ void Daemon::listenLater() {
     if (unheard_.isEmpty())
         return;
     for (const QString &why : qAsConst(unheard_))
-        logError(self_.name, why + QStringLiteral("; it is tried again each second"));
+        logError(self_.name, why + "; it is tried again each second");
     connect(&listenAgain_, &QTimer::timeout, this, [this] {
         const auto before = reachable_.size();
         for (const QString &url : unheard_.keys()) {
@@ -275,7 +269,7 @@ void Daemon::shutDown(int status) {
     listenAgain_.stop();
     stop();
     announcement_.reset();
-    logInfo(self_.name, QStringLiteral("stopped"));
+    logInfo(self_.name, "stopped");
     channels_.close();
     Q_EMIT finished(status);
 }
@@ -300,12 +294,12 @@ void Daemon::feedWatchdog() {
 QJsonObject Daemon::description() const {
     if (!made_.isEmpty())
         return made_;
-    made_ = {{QStringLiteral("openrpc"), QStringLiteral("1.2.6")},
-             {QStringLiteral("info"), QJsonObject{{QStringLiteral("title"), self_.title},
-                                                  {QStringLiteral("version"), projectVersion()},
-                                                  {QStringLiteral("description"), self_.description}}},
-             {QStringLiteral("methods"), commands_.description()},
-             {QStringLiteral("x-topics"), asJson(topics_.description())}};
+    made_ = {{"openrpc", "1.2.6"},
+             {"info", QJsonObject{{"title", self_.title},
+                                  {"version", projectVersion()},
+                                  {"description", self_.description}}},
+             {"methods", commands_.description()},
+             {"x-topics", asJson(topics_.description())}};
     return made_;
 }
 
@@ -355,44 +349,44 @@ void Daemon::publishStatus() {
         return;
     toldState_ = now;
     toldLevels_ = levels;
-    publish(QStringLiteral("status"), [this] { return status(); });
+    publish("status", [this] { return status(); });
 }
 
 void Daemon::logHealth(const HealthItem &item) {
-    static const QRegularExpression numbers(QStringLiteral("[0-9.]+"));
+    static const QRegularExpression numbers("[0-9.]+");
     const bool isWell = item.level == toString(HealthLevel::Ok);
     const QString reason = isWell ? QString() : item.level + QString(item.message).remove(numbers);
     if (std::exchange(loggedReasons_[item.name], reason) == reason)
         return;
-    const QString text = QStringLiteral("%1 is %2: %3").arg(item.name, item.level, item.message);
+    const QString text = QString("%1 is %2: %3").arg(item.name, item.level, item.message);
     const bool isError = item.level == toString(HealthLevel::Failed);
-    (isWell ? logInfo : isError ? logError : logWarning)(QStringLiteral("health"), text);
+    (isWell ? logInfo : isError ? logError : logWarning)("health", text);
 }
 
 void Daemon::updateChannelHealth() {
     const QJsonObject counters = channels_.counters();
-    const double dropped = counters.value(QStringLiteral("dropped_topic_messages")).toDouble();
-    QString message = QStringLiteral("%1 clients, %2 topic messages dropped for slow readers")
-                          .arg(counters.value(QStringLiteral("clients")).toInt())
+    const double dropped = counters.value("dropped_topic_messages").toDouble();
+    QString message = QString("%1 clients, %2 topic messages dropped for slow readers")
+                          .arg(counters.value("clients").toInt())
                           .arg(dropped);
     const QStringList failures = channels_.failures() + unheard_.values();
     if (!failures.isEmpty())
-        message = QStringLiteral("no client is heard on: ") + failures.join(QStringLiteral("; "));
-    healthItems_.set(QStringLiteral("channel"), failures.isEmpty() ? HealthLevel::Ok : HealthLevel::Failed,
-                     message, counters);
+        message = "no client is heard on: " + failures.join("; ");
+    healthItems_.set("channel", failures.isEmpty() ? HealthLevel::Ok : HealthLevel::Failed, message,
+                     counters);
 }
 
 QString Daemon::helpText() const {
-    QString text = QStringLiteral("Usage: hermes-%1 [OPTION]...\n\n%2. %3\n\n")
-                       .arg(self_.name, self_.title, self_.description);
-    text += CommandLine::help() + QStringLiteral("\nSettings (PATH = default: meaning):\n");
+    QString text =
+        QString("Usage: hermes-%1 [OPTION]...\n\n%2. %3\n\n").arg(self_.name, self_.title, self_.description);
+    text += CommandLine::help() + "\nSettings (PATH = default: meaning):\n";
     for (const QString &path : leafPaths(configuration_.defaults())) {
         QJsonObject schema = configuration_.schema();
         for (const QString &key : path.split(QLatin1Char('.')))
-            schema = schema.value(QStringLiteral("properties")).toObject().value(key).toObject();
-        text += QStringLiteral("  %1 = %2: %3 (%4)\n")
-                    .arg(path, shown(schema.value(QStringLiteral("default"))),
-                         schema.value(QStringLiteral("description")).toString(), expectation(schema));
+            schema = schema.value("properties").toObject().value(key).toObject();
+        text += QString("  %1 = %2: %3 (%4)\n")
+                    .arg(path, shown(schema.value("default")), schema.value("description").toString(),
+                         expectation(schema));
     }
     return text;
 }

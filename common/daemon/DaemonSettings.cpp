@@ -14,27 +14,26 @@ const QStringList levels{QStringLiteral("debug"), QStringLiteral("info"), QStrin
 QString wrongListen(const QString &text, bool fromNetwork) {
     const auto url = InterfaceUrl::parse(text);
     if (!url)
-        return QStringLiteral("a URL like tcp://127.0.0.1:7410?protocol=json");
+        return "a URL like tcp://127.0.0.1:7410?protocol=json";
     if (!interfaceSchemes().contains(url->scheme))
-        return QStringLiteral("one of the schemes ") + interfaceSchemes().join(QStringLiteral(", "));
+        return "one of the schemes " + interfaceSchemes().join(", ");
     if (!codecNames().contains(url->protocol()))
-        return QStringLiteral("one of the protocols ") + codecNames().join(QStringLiteral(", "));
+        return "one of the protocols " + codecNames().join(", ");
     if (isOpenToNetwork(*url) && !fromNetwork)
-        return QStringLiteral(
-            "an address that only this computer reaches, as 127.0.0.1: in plain text others on "
-            "the network could command this daemon; \"insecure\": true accepts that "
-            "(--set insecure=true)");
+        return "an address that only this computer reaches, as 127.0.0.1: in plain text others on "
+               "the network could command this daemon; \"insecure\": true accepts that "
+               "(--set insecure=true)";
     return {};
 }
 
 // With addresses that cannot work the daemon would not start again.
 std::vector<SchemaViolation> checkListen(const QJsonObject &settings, bool fromNetwork) {
-    const QJsonArray listen = settings.value(QStringLiteral("listen")).toArray();
+    const QJsonArray listen = settings.value("listen").toArray();
     std::vector<SchemaViolation> wrong;
     for (int i = 0; i < listen.size(); ++i) {
         const QString expected = wrongListen(listen.at(i).toString(), fromNetwork);
         if (!expected.isEmpty())
-            wrong.push_back({QStringLiteral("listen.%1").arg(i), listen.at(i), expected});
+            wrong.push_back({QString("listen.%1").arg(i), listen.at(i), expected});
     }
     return wrong;
 }
@@ -43,7 +42,7 @@ std::vector<SchemaViolation> checkListen(const QJsonObject &settings, bool fromN
 struct CommonSettings : SettingsTable {
     bool insecure = false, audits = true;
     QString plainRole = toString(Role::Operator), otherRole = toString(Role::Observer);
-    QString auditFolder, logLevel = QStringLiteral("info");
+    QString auditFolder, logLevel = "info";
     int auditBytes = 1 << 20, auditFiles = 5, clients = 16, logRecords = 1000;
     SessionLimits limits;
 
@@ -90,16 +89,15 @@ CommonSettings::CommonSettings() {
 } // namespace
 
 void Daemon::declareCommonSettings() {
-    const QString address = QStringLiteral("tcp://127.0.0.1:%1?protocol=json").arg(self_.port);
-    addSetting(Field::array(QStringLiteral("listen"), QStringLiteral("URLs at which commands are accepted"),
-                            {{QStringLiteral("type"), QStringLiteral("string")}})
-                   .with(QStringLiteral("minItems"), 1)
-                   .group(QStringLiteral("Channels"))
+    const QString address = QString("tcp://127.0.0.1:%1?protocol=json").arg(self_.port);
+    addSetting(Field::array("listen", "URLs at which commands are accepted", {{"type", "string"}})
+                   .with("minItems", 1)
+                   .group("Channels")
                    .byDefault(QJsonArray{address})
                    .appliesOnRestart());
     configuration_.addRule([this](const QJsonObject &settings) {
         // At the start launch() says it, when all settings are known.
-        return checkListen(settings, !launched_ || settings.value(QStringLiteral("insecure")).toBool());
+        return checkListen(settings, !launched_ || settings.value("insecure").toBool());
     });
     CommonSettings().declare([this](const Field &field) { addSetting(field); });
 }
@@ -119,25 +117,21 @@ void Daemon::openAudit() {
                            : common.auditFolder.isEmpty() ? Audit::usualFolder()
                                                           : common.auditFolder,
                            self_.name, common.auditBytes, common.auditFiles);
-    healthItems_.provide(QStringLiteral("audit"), [this] {
+    healthItems_.provide("audit", [this] {
         const auto state = channels_.audit().state();
         if (!state)
-            return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, QStringLiteral("off"));
-        const QJsonObject values{{QStringLiteral("written"), double(state->written)},
-                                 {QStringLiteral("lost"), double(state->lost)}};
+            return healthItems_.set("audit", HealthLevel::Ok, "off");
+        const QJsonObject values{{"written", double(state->written)}, {"lost", double(state->lost)}};
         if (channels_.audit().isFlooded())
-            return healthItems_.set(
-                QStringLiteral("audit"), HealthLevel::Warn,
-                QStringLiteral("so many commands come that they are summed up: a line a minute for each "
-                               "client and command, without parameters"),
-                values);
+            return healthItems_.set("audit", HealthLevel::Warn,
+                                    "so many commands come that they are summed up: a line a minute for each "
+                                    "client and command, without parameters",
+                                    values);
         constexpr double told_s = 60;
         if (monotonicNow() - state->lostAt > told_s)
-            return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, channels_.audit().path(),
-                                    values);
-        healthItems_.set(QStringLiteral("audit"), HealthLevel::Warn,
-                         QStringLiteral("the audit of commands cannot be written: ") + state->problem,
-                         values);
+            return healthItems_.set("audit", HealthLevel::Ok, channels_.audit().path(), values);
+        healthItems_.set("audit", HealthLevel::Warn,
+                         "the audit of commands cannot be written: " + state->problem, values);
     });
 }
 

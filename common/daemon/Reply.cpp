@@ -12,16 +12,13 @@ class Reply::State {
 public:
     explicit State(Sink receiver)
         : sink_(std::move(receiver)) {}
-    ~State() {
-        give(Error(ErrorCode::InternalError, QStringLiteral("internal error: the command gave no answer")));
-    }
+    ~State() { give(Error(ErrorCode::InternalError, "internal error: the command gave no answer")); }
 
     void give(Result<QJsonValue> answer) {
         if (given_.exchange(true))
             return;
         if (answer && answer->isUndefined()) // of asJson()
-            answer = Error(ErrorCode::InternalError,
-                           QStringLiteral("internal error: a number of the result is not finite"));
+            answer = Error(ErrorCode::InternalError, "internal error: a number of the result is not finite");
         if (home_ && QThread::currentThread() != home_->thread()) {
             QMetaObject::invokeMethod(
                 home_, [target = std::move(sink_), answer] { target(answer); }, Qt::QueuedConnection);

@@ -27,19 +27,19 @@ void addTo(QJsonObject &sums, const QString &key, quint64 count) {
 
 void addSession(QJsonObject &sums, Session &session) {
     const CodecCounters &codec = session.codecCounters();
-    addTo(sums, QStringLiteral("requests"), session.counters().requests);
-    addTo(sums, QStringLiteral("error_replies"), session.counters().errors);
-    addTo(sums, QStringLiteral("ignored_responses"), session.counters().ignored);
-    addTo(sums, QStringLiteral("malformed_frames"), codec.malformed);
-    addTo(sums, QStringLiteral("oversized_frames"), codec.oversized);
-    addTo(sums, QStringLiteral("dropped_topic_messages"), session.topics().dropped());
+    addTo(sums, "requests", session.counters().requests);
+    addTo(sums, "error_replies", session.counters().errors);
+    addTo(sums, "ignored_responses", session.counters().ignored);
+    addTo(sums, "malformed_frames", codec.malformed);
+    addTo(sums, "oversized_frames", codec.oversized);
+    addTo(sums, "dropped_topic_messages", session.topics().dropped());
     const LinkCounters link = session.linkCounters();
-    addTo(sums, QStringLiteral("line_frames_in"), link.framesIn);
-    addTo(sums, QStringLiteral("line_frames_out"), link.framesOut);
-    addTo(sums, QStringLiteral("line_damaged_frames"), link.damaged);
-    addTo(sums, QStringLiteral("line_repeated_requests"), session.repeatedRequests());
-    addTo(sums, QStringLiteral("line_repeated_pieces"), link.repeatedPieces);
-    addTo(sums, QStringLiteral("line_abandoned_messages"), link.abandoned);
+    addTo(sums, "line_frames_in", link.framesIn);
+    addTo(sums, "line_frames_out", link.framesOut);
+    addTo(sums, "line_damaged_frames", link.damaged);
+    addTo(sums, "line_repeated_requests", session.repeatedRequests());
+    addTo(sums, "line_repeated_pieces", link.repeatedPieces);
+    addTo(sums, "line_abandoned_messages", link.abandoned);
 }
 
 /// In a virtual machine it may take 10 µs to get 4 kB from the system. Large replies would get and give back
@@ -59,16 +59,16 @@ qint64 memoryOfClients() {
 
 QString howToGetMore(const Peer &peer) {
     if (peer.certificate)
-        return QStringLiteral("the certificate of \"%1\" says so, hermesctl keys issue makes another one")
+        return QString("the certificate of \"%1\" says so, hermesctl keys issue makes another one")
             .arg(peer.certificate->name);
     if (peer.place == Peer::Place::Elsewhere)
-        return QStringLiteral("the setting access.plain says what clients without a certificate may do");
+        return "the setting access.plain says what clients without a certificate may do";
     if (roleOf(peer, {Role::Observer, Role::Engineer}) == Role::Engineer)
-        return QStringLiteral("the setting access.others, which the daemon's own user may change, says what "
-                              "other users of this computer may do");
-    return QStringLiteral(
-        "over its Unix socket, which hermesctl, the window and docs/examples/hermes.py use, the daemon's own "
-        "user has all rights; the setting access.plain says which over TCP");
+        return "the setting access.others, which the daemon's own user may change, says what "
+               "other users of this computer may do";
+    return "over its Unix socket, which hermesctl, the window and docs/examples/hermes.py use, the daemon's "
+           "own "
+           "user has all rights; the setting access.plain says which over TCP";
 }
 
 } // namespace
@@ -109,16 +109,16 @@ Result<void> Server::listen(const QString &text, bool insecure) {
         return url.error();
     if (!makeCodec(url->protocol())) {
         return Error(ErrorCode::InvalidSetting,
-                     QStringLiteral("cannot listen on %1: unknown protocol \"%2\", known are: %3")
-                         .arg(text, url->protocol(), codecNames().join(QStringLiteral(", "))));
+                     QString("cannot listen on %1: unknown protocol \"%2\", known are: %3")
+                         .arg(text, url->protocol(), codecNames().join(", ")));
     }
     if (isOpenToNetwork(*url) && !insecure) {
         return Error(
             ErrorCode::NotAuthorised,
-            QStringLiteral("will not listen on %1: others on the network could command this daemon in plain "
-                           "text. Listen on 127.0.0.1, or with certificates (tls://HOST:PORT, hermesctl "
-                           "keys), or accept that with \"insecure\": true in the settings "
-                           "(--set insecure=true)")
+            QString("will not listen on %1: others on the network could command this daemon in plain "
+                    "text. Listen on 127.0.0.1, or with certificates (tls://HOST:PORT, hermesctl "
+                    "keys), or accept that with \"insecure\": true in the settings "
+                    "(--set insecure=true)")
                 .arg(text));
     }
     // The one beside it first: who comes as soon as this one listens finds it.
@@ -133,12 +133,11 @@ Result<void> Server::listen(const QString &text, bool insecure) {
         own = listenForOwn({actual->scheme, actual->host, actual->port, actual->path, url->options});
     listeners_.append(*listener);
     if (!own)
-        logWarning(source, QStringLiteral("%1; hermesctl and the window connect over TCP instead, as %2")
+        logWarning(source, QString("%1; hermesctl and the window connect over TCP instead, as %2")
                                .arg(own.error().message, toString(access_.plain)));
     else if (*own)
         ownListeners_.append(*own);
-    logInfo(source,
-            QStringLiteral("listening on %1, protocol %2").arg((*listener)->address(), url->protocol()));
+    logInfo(source, QString("listening on %1, protocol %2").arg((*listener)->address(), url->protocol()));
     return {};
 }
 
@@ -175,7 +174,7 @@ void Server::close() {
         listener->close();
     const auto all = sessions_.values();
     for (Session *session : all)
-        session->close(QStringLiteral("the daemon is stopping"));
+        session->close("the daemon is stopping");
 }
 
 QStringList Server::addresses() const {
@@ -197,10 +196,10 @@ QJsonObject Server::counters() const {
     QJsonObject sums = past_;
     for (Session *session : sessions_)
         addSession(sums, *session);
-    sums.insert(QStringLiteral("clients"), sessions_.size());
-    sums.insert(QStringLiteral("clients_in_all"), double(lastId_));
-    sums.insert(QStringLiteral("clients_in_kept_places"), restricted().size());
-    sums.insert(QStringLiteral("clients_turned_away"), double(turnedAway_));
+    sums.insert("clients", sessions_.size());
+    sums.insert("clients_in_all", double(lastId_));
+    sums.insert("clients_in_kept_places", restricted().size());
+    sums.insert("clients_turned_away", double(turnedAway_));
     return sums;
 }
 
@@ -225,10 +224,10 @@ bool Server::mayStay(Session *session) {
     const int most = maxPlaces();
     if (places() < most)
         return true;
-    session->restrictTo(QStringLiteral("%1 clients are connected already (%2)")
-                            .arg(places())
-                            .arg(most < clientLimit_ ? QStringLiteral("there are no more file descriptors")
-                                                     : QStringLiteral("limits.clients")));
+    session->restrictTo(
+        QString("%1 clients are connected already (%2)")
+            .arg(places())
+            .arg(most < clientLimit_ ? "there are no more file descriptors" : "limits.clients"));
     return makeKeptPlace();
 }
 
@@ -249,11 +248,10 @@ void Server::saveMemory() {
         Session *const largest = *std::max_element(sessions_.begin(), sessions_.end(),
                                                    [&](auto *a, auto *b) { return held(a) < held(b); });
         all -= held(largest);
-        largest->expel(
-            QStringLiteral("%1 MiB wait for or from this client, and all clients together may take "
-                           "%2 MiB of this computer's memory")
-                .arg(held(largest) >> 20)
-                .arg(memoryOfClients() >> 20));
+        largest->expel(QString("%1 MiB wait for or from this client, and all clients together may take "
+                               "%2 MiB of this computer's memory")
+                           .arg(held(largest) >> 20)
+                           .arg(memoryOfClients() >> 20));
         if (sessions_.contains(largest->id()))
             return; // it ends with the batch that is being carried out
     }
@@ -271,8 +269,7 @@ bool Server::makeKeptPlace() {
         return a->lastSignOfLife() < b->lastSignOfLife();
     });
     turnAway(longest,
-             {ErrorCode::OverLimit,
-              longest->restriction() + QStringLiteral("; its place is given to another client now")});
+             {ErrorCode::OverLimit, longest->restriction() + "; its place is given to another client now"});
     return true;
 }
 
@@ -281,9 +278,9 @@ void Server::turnAway(Session *session, const RpcError &reason) {
     // Many may come; a record of each would bury all others.
     if (const double now = monotonicNow(); now - turnAwayTold_ > 1) {
         turnAwayTold_ = now;
-        logWarning(source, QStringLiteral("%1 turned away: %2; %3 in all")
-                               .arg(session->name(), reason.message)
-                               .arg(turnedAway_));
+        logWarning(
+            source,
+            QString("%1 turned away: %2; %3 in all").arg(session->name(), reason.message).arg(turnedAway_));
     }
     session->refuse(reason);
     session->close(reason.message);
@@ -318,7 +315,7 @@ void Server::giveMemoryBack() {
 void Server::remove(Session *session, const QString &reason) {
     if (sessions_.remove(session->id()) == 0)
         return;
-    logDebug(source, QStringLiteral("client %1 gone: %2").arg(session->name(), reason));
+    logDebug(source, QString("client %1 gone: %2").arg(session->name(), reason));
     addSession(past_, *session);
     topics_.forget(&session->topics());
     session->deleteLater();

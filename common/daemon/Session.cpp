@@ -47,7 +47,7 @@ QString methodOf(const RpcMessage &message) {
 QString userText(const Peer &peer) {
     if (peer.place != Peer::Place::Computer)
         return {};
-    return QStringLiteral(" (user %1)")
+    return QString(" (user %1)")
         .arg(peer.user ? ServiceAccount::nameOf(*peer.user) : QStringLiteral("unknown"));
 }
 
@@ -100,7 +100,7 @@ void Session::checkIdle() {
     // A line has nobody else to make place for; closed it would be deaf to a stop.
     if (limits_.idle_s > 0 && !waitsForTopics && !channel_->isLine() &&
         monotonicNow() - lastSignOfLife() > limits_.idle_s)
-        expel(QStringLiteral("nothing came for %1 s").arg(limits_.idle_s));
+        expel(QString("nothing came for %1 s").arg(limits_.idle_s));
 }
 
 void Session::close(const QString &reason) {
@@ -112,7 +112,7 @@ void Session::close(const QString &reason) {
 }
 
 void Session::expel(const QString &reason) {
-    logWarning(QStringLiteral("server"), QStringLiteral("closing client %1: %2").arg(name(), reason));
+    logWarning(QStringLiteral("server"), QString("closing client %1: %2").arg(name(), reason));
     if (channel_->bytesToWrite() <= limits_.replyBytes)
         channel_->send(makeError(QJsonValue(), RpcError(ErrorCode::OverLimit, reason)));
     close(reason);
@@ -231,10 +231,9 @@ bool Session::isBeforeStop(const QJsonValue &id) const {
 void Session::begin(const QJsonArray &messages, const QByteArray &key) {
     if (messages.size() > limits_.batch) {
         replies_.forget(key);
-        return refuse(
-            RpcError(ErrorCode::OverLimit, QStringLiteral("a batch of %1 messages; at most %2 are allowed")
-                                               .arg(messages.size())
-                                               .arg(limits_.batch)));
+        return refuse(RpcError(ErrorCode::OverLimit, QString("a batch of %1 messages; at most %2 are allowed")
+                                                         .arg(messages.size())
+                                                         .arg(limits_.batch)));
     }
     batch_ = std::make_shared<Batch>(messages, channel_->arrived(), key);
     updateReceiving();
@@ -279,9 +278,9 @@ bool Session::runNextOfBatch() {
 void Session::finish(const std::shared_ptr<Batch> &done) {
     if (done->isTooLarge()) {
         ++counts_.errors;
-        const RpcError error(ErrorCode::OverLimit,
-                             QStringLiteral("the replies to the batch are larger than %1 bytes together")
-                                 .arg(Batch::maxBytes));
+        const RpcError error(
+            ErrorCode::OverLimit,
+            QString("the replies to the batch are larger than %1 bytes together").arg(Batch::maxBytes));
         return send(makeError(QJsonValue(), error), done->key);
     }
     if (!makeRoom())
@@ -333,8 +332,7 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
     int left = most;
     countValues(request.params, left);
     if (left < 0)
-        return Error(ErrorCode::OverLimit,
-                     QStringLiteral("the parameters hold more than %1 values").arg(most));
+        return Error(ErrorCode::OverLimit, QString("the parameters hold more than %1 values").arg(most));
     return std::nullopt;
 }
 
@@ -411,7 +409,7 @@ bool Session::makeRoom() {
         channel_->flush();
     if (channel_->bytesToWrite() <= limits_.replyBytes || channel_->isLine())
         return true;
-    expel(QStringLiteral("does not read its replies: %1 bytes are unsent (limits.reply_bytes)")
+    expel(QString("does not read its replies: %1 bytes are unsent (limits.reply_bytes)")
               .arg(channel_->bytesToWrite()));
     return false;
 }
@@ -420,9 +418,9 @@ bool Session::makeRoom() {
 std::optional<Error> Session::overfull() const {
     if (!channel_->isLine() || channel_->bytesToWrite() <= limits_.replyBytes)
         return std::nullopt;
-    return Error(ErrorCode::OverLimit,
-                 QStringLiteral("%1 bytes of replies wait to be sent (limits.reply_bytes)")
-                     .arg(channel_->bytesToWrite()));
+    return Error(
+        ErrorCode::OverLimit,
+        QString("%1 bytes of replies wait to be sent (limits.reply_bytes)").arg(channel_->bytesToWrite()));
 }
 
 void Session::send(const QJsonValue &reply, const QByteArray &key, Channel::Rank rank) {

@@ -36,9 +36,7 @@ SignalWatcher::SignalWatcher(QObject *parent)
     connect(notifier, &QSocketNotifier::activated, this, [this] {
         char byte = 0;
         if (::read(pipeEnds[0], &byte, 1) == 1)
-            Q_EMIT received(byte == SIGINT   ? QStringLiteral("SIGINT")
-                            : byte == SIGHUP ? QStringLiteral("SIGHUP")
-                                             : QStringLiteral("SIGTERM"));
+            Q_EMIT received(byte == SIGINT ? "SIGINT" : byte == SIGHUP ? "SIGHUP" : "SIGTERM");
     });
     owner = ::getpid();
     for (const int number : ends)

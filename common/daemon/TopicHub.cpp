@@ -25,7 +25,7 @@ void TopicHub::publish(const QString &topic, const std::function<Outgoing()> &ma
     const auto entry = topics_.find(topic);
     if (entry == topics_.end())
         return logError(QStringLiteral("topics"),
-                        QStringLiteral("published \"%1\", which is not declared").arg(topic));
+                        QString("published \"%1\", which is not declared").arg(topic));
     if (entry->replay)
         return;
     ++entry->seq;
@@ -44,7 +44,7 @@ Result<TopicHub::Entry *> TopicHub::find(const QString &topic) {
     const QStringList known = topics_.keys();
     return Error(
         ErrorCode::NoSuchTopic,
-        QStringLiteral("no topic \"%1\"; there is %2").arg(topic.left(80), known.join(QStringLiteral(", "))));
+        QString("no topic \"%1\"; there is %2").arg(topic.left(80), known.join(QStringLiteral(", "))));
 }
 
 Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions &options,
@@ -113,7 +113,7 @@ Result<TopicHub::Entry *> TopicHub::findFor(const QString &topic, const TopicQue
     const auto entry = find(topic);
     if (entry && (*entry)->replay && (*entry)->replay->client != client)
         return Error(ErrorCode::NotReady,
-                     QStringLiteral("the topic \"%1\" is replayed by %2").arg(topic, (*entry)->replay->name));
+                     QString("the topic \"%1\" is replayed by %2").arg(topic, (*entry)->replay->name));
     return entry;
 }
 
@@ -121,7 +121,7 @@ Result<void> TopicHub::replay(const QString &topic, const Outgoing &data, double
                               const QString &name) {
     if (isAlwaysLive(topic))
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("the topic \"%1\" tells of now and is never replayed").arg(topic));
+                     QString("the topic \"%1\" tells of now and is never replayed").arg(topic));
     const auto entry = findFor(topic, client);
     if (!entry)
         return entry.error();
@@ -151,7 +151,7 @@ QString TopicHub::replays() const {
     QStringList texts;
     for (const Entry &entry : topics_)
         if (entry.replay)
-            texts << QStringLiteral("%1 (by %2)").arg(entry.topic.name(), entry.replay->name);
+            texts << QString("%1 (by %2)").arg(entry.topic.name(), entry.replay->name);
     return texts.join(QStringLiteral(", "));
 }
 

@@ -9,14 +9,30 @@
 
 namespace hermes {
 
-bool AppendFile::create(const QString &path) {
+bool AppendFile::open(const QString &path, int flags) {
     close();
     path_ = path;
-    size_ = 0;
     file_ =
-        ::open(QFile::encodeName(path).constData(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
+        ::open(QFile::encodeName(path).constData(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | flags, 0644);
     isNamed_ = file_ >= 0 && isAtPath();
+    struct stat status {};
+    size_ = file_ >= 0 && ::fstat(file_, &status) == 0 ? quint64(status.st_size) : 0;
     return file_ >= 0 || fail("cannot be made");
+}
+
+bool AppendFile::create(const QString &path) {
+    return open(path, O_EXCL);
+}
+
+bool AppendFile::resume(const QString &path) {
+    if (!open(path, O_NOFOLLOW | O_NONBLOCK))
+        return false;
+    struct stat status {};
+    if (::fstat(file_, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 1)
+        return true;
+    close();
+    error_ = path + ": not a regular file, or one with another name";
+    return false;
 }
 
 bool AppendFile::append(const void *bytes, std::size_t size) {

@@ -4,7 +4,7 @@
 
 namespace hermes {
 
-/// A new file that only grows, written without buffers of its own, so that what was written survives the end
+/// A file that only grows, written without buffers of its own, so that what was written survives the end
 /// of the process. Blocks.
 class AppendFile {
 public:
@@ -15,6 +15,9 @@ public:
 
     /// Fails on an existing file, with errno EEXIST.
     bool create(const QString &path);
+    /// Goes on behind what is in it; makes it where there is none. Fails on a link, on what is no file, and
+    /// on a file that has a second name.
+    bool resume(const QString &path);
     /// False when not all of it could be written; size() tells how much was.
     bool append(const void *bytes, std::size_t size);
     bool truncate(quint64 size);
@@ -33,6 +36,7 @@ public:
     const QString &error() const { return error_; }
 
 private:
+    bool open(const QString &path, int flags);
     bool fail(const char *what);
     bool isAtPath() const;
 

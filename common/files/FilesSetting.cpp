@@ -5,17 +5,16 @@
 namespace hermes {
 
 Field namedFilesField() {
-    return Field::array(QStringLiteral("files.folders"),
-                        QStringLiteral("Folders below which clients may name files to be read"),
-                        {{QStringLiteral("type"), QStringLiteral("string")}})
-        .byDefault(QJsonArray{QStringLiteral("/")})
+    return Field::array("files.folders", "Folders below which clients may name files to be read",
+                        {{"type", "string"}})
+        .byDefault(QJsonArray{"/"})
         .appliesOnRestart()
-        .group(QStringLiteral("Files"));
+        .group("Files");
 }
 
 QStringList namedFilesFolders(const Settings &settings) {
     QStringList folders;
-    for (const QJsonValue &folder : settings.value(QStringLiteral("files.folders")).toArray())
+    for (const QJsonValue &folder : settings.value("files.folders").toArray())
         folders.append(folder.toString());
     return folders;
 }

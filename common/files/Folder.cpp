@@ -19,8 +19,8 @@ Result<void> makeFolder(const QString &path) {
     if (::mkdir(QFile::encodeName(first.filePath()).constData(), 0777) == 0)
         return makeFolder(path);
     return Error(ErrorCode::InputOutput,
-                 QStringLiteral("%1: the folder cannot be made: %2").arg(path, qt_error_string()),
-                 QJsonObject{{QStringLiteral("path"), path}});
+                 QString("%1: the folder cannot be made: %2").arg(path, qt_error_string()),
+                 QJsonObject{{"path", path}});
 }
 
 QString stateFolder() {
@@ -28,8 +28,7 @@ QString stateFolder() {
     if (!service.isEmpty())
         return service;
     const QString state = qEnvironmentVariable("XDG_STATE_HOME");
-    return (state.isEmpty() ? QDir::homePath() + QStringLiteral("/.local/state") : state) +
-           QStringLiteral("/hermes");
+    return (state.isEmpty() ? QDir::homePath() + "/.local/state" : state) + "/hermes";
 }
 
 } // namespace hermes

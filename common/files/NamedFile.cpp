@@ -46,12 +46,11 @@ private:
 Error fileError(const QString &path, const QString &what) {
     const bool isRelative = !path.isEmpty() && QDir::isRelativePath(path);
     const QString whole = isRelative ? absolutePath(path) : path;
-    const QString where = isRelative
-                              ? QStringLiteral(" (\"%1\" was looked for in %2, where this program runs)")
-                                    .arg(path, QDir::currentPath())
-                              : QString();
-    return {ErrorCode::InputOutput, QStringLiteral("%1: %2%3").arg(whole, what, where),
-            QJsonObject{{QStringLiteral("path"), whole}}};
+    const QString where = isRelative ? QString(" (\"%1\" was looked for in %2, where this program runs)")
+                                           .arg(path, QDir::currentPath())
+                                     : QString();
+    return {ErrorCode::InputOutput, QString("%1: %2%3").arg(whole, what, where),
+            QJsonObject{{"path", whole}}};
 }
 
 /// Without links; empty, and errno says why.
@@ -76,10 +75,9 @@ Result<void> checkPath(const QString &path) {
                c == QChar::ParagraphSeparator;
     });
     const QString name = path.section(QLatin1Char('/'), -1);
-    if (name.isEmpty() || name == QStringLiteral(".") || name == QStringLiteral("..") || hasControls ||
-        path.toUtf8().size() >= PATH_MAX) {
-        return fileError(path.left(100), QStringLiteral("expected the path of a file, without control "
-                                                        "characters and of less than %1 bytes")
+    if (name.isEmpty() || name == "." || name == ".." || hasControls || path.toUtf8().size() >= PATH_MAX) {
+        return fileError(path.left(100), QString("expected the path of a file, without control "
+                                                 "characters and of less than %1 bytes")
                                              .arg(PATH_MAX));
     }
     return {};
@@ -88,7 +86,7 @@ Result<void> checkPath(const QString &path) {
 /// What a name leads to, where that is another file.
 QString whereLinked(const QString &named, const QString &path) {
     const bool isLinked = path != absolutePath(named);
-    return isLinked ? QStringLiteral("this is %1, ").arg(path) : QString();
+    return isLinked ? QString("this is %1, ").arg(path) : QString();
 }
 
 /// path: without links.
@@ -96,8 +94,8 @@ Result<void> checkFolders(const QString &named, const QString &path, const QStri
     if (std::any_of(folders.begin(), folders.end(),
                     [&path](const QString &folder) { return isBelow(path, folder); }))
         return {};
-    return fileError(named, QStringLiteral("%1not below %2, where files may be named")
-                                .arg(whereLinked(named, path), folders.join(QStringLiteral(" or "))));
+    return fileError(named, QString("%1not below %2, where files may be named")
+                                .arg(whereLinked(named, path), folders.join(" or ")));
 }
 
 /// The folder of the path, which has no links, for openat(); nothing: errno says why.
@@ -121,15 +119,15 @@ Result<Descriptor> openRegular(const QString &named, const QString &path) {
     const QByteArray name = QFile::encodeName(file.fileName());
     struct stat status {};
     if (folder < 0 || ::fstatat(folder, name.constData(), &status, AT_SYMLINK_NOFOLLOW) != 0)
-        return failed(QStringLiteral("cannot be read: ") + qt_error_string());
+        return failed("cannot be read: " + qt_error_string());
     if (!S_ISREG(status.st_mode))
-        return failed(QStringLiteral("not a regular file"));
+        return failed("not a regular file");
     Descriptor opened(
         ::openat(folder, name.constData(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
     if (opened < 0 || ::fstat(opened, &status) != 0)
-        return failed(QStringLiteral("cannot be read: ") + qt_error_string());
+        return failed("cannot be read: " + qt_error_string());
     if (!S_ISREG(status.st_mode))
-        return failed(QStringLiteral("not a regular file"));
+        return failed("not a regular file");
     return opened;
 }
 
@@ -144,7 +142,7 @@ Result<Opened> openNamed(const QString &path, const QStringList &folders) {
         return fine.error();
     const QString found = realPath(path);
     if (found.isEmpty())
-        return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+        return fileError(path, "cannot be read: " + qt_error_string());
     if (const Result<void> fine = checkFolders(path, found, folders); !fine)
         return fine.error();
     Result<Descriptor> file = openRegular(path, found);
@@ -160,7 +158,7 @@ Result<void> syncNamesIn(const QString &path) {
     const Descriptor folder(::open(QFile::encodeName(path).constData(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (folder >= 0 && ::fsync(folder) == 0)
         return {};
-    return fileError(path, QStringLiteral("cannot be synchronized: ") + qt_error_string());
+    return fileError(path, "cannot be synchronized: " + qt_error_string());
 }
 
 } // namespace
@@ -174,14 +172,13 @@ Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders
     if (!opened)
         return opened.error();
     if (opened->bytes == 0 || opened->bytes > maxBytes)
-        return fileError(
-            path, QStringLiteral("it has %1 bytes, expected 1 to %2").arg(opened->bytes).arg(maxBytes));
+        return fileError(path, QString("it has %1 bytes, expected 1 to %2").arg(opened->bytes).arg(maxBytes));
     QByteArray bytes(int(opened->bytes), Qt::Uninitialized);
     int done = 0;
     while (done < bytes.size()) {
         const ssize_t read = ::read(opened->file, bytes.data() + done, size_t(bytes.size() - done));
         if (read < 0 && errno != EINTR)
-            return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+            return fileError(path, "cannot be read: " + qt_error_string());
         if (read == 0) // it was cut meanwhile
             break;
         done += int(std::max<ssize_t>(read, 0));
@@ -195,8 +192,8 @@ Result<QString> findNamedFile(const QString &path, const QStringList &folders, q
     if (!opened)
         return opened.error();
     if (opened->bytes < leastBytes)
-        return fileError(
-            path, QStringLiteral("it has %1 bytes, expected at least %2").arg(opened->bytes).arg(leastBytes));
+        return fileError(path,
+                         QString("it has %1 bytes, expected at least %2").arg(opened->bytes).arg(leastBytes));
     return opened->path;
 }
 
@@ -207,13 +204,11 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
     const QFileInfo named(path);
     const QString parent = realPath(named.path());
     if (parent.isEmpty())
-        return fileError(path, QStringLiteral("cannot be written: its folder: ") + qt_error_string());
+        return fileError(path, "cannot be written: its folder: " + qt_error_string());
     const QString target = QDir(parent).filePath(named.fileName());
     if (const Result<void> fine = checkFolders(path, target, folders); !fine)
         return fine.error();
-    const auto failed = [&path] {
-        return fileError(path, QStringLiteral("cannot be written: ") + qt_error_string());
-    };
+    const auto failed = [&path] { return fileError(path, "cannot be written: " + qt_error_string()); };
     const Descriptor folder = openFolder(parent);
     if (folder < 0)
         return failed();
@@ -221,9 +216,9 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
     struct stat status {};
     const bool exists = ::fstatat(folder, name.constData(), &status, AT_SYMLINK_NOFOLLOW) == 0;
     if (exists && !S_ISREG(status.st_mode))
-        return fileError(path, QStringLiteral("not a regular file"));
+        return fileError(path, "not a regular file");
     if (exists && !replace)
-        return fileError(path, QStringLiteral("exists already, expected a new name or force: true"));
+        return fileError(path, "exists already, expected a new name or force: true");
     const QByteArray draft = ".hermes-" + QUuid::createUuid().toByteArray(QUuid::Id128);
     const Descriptor file(
         ::openat(folder, draft.constData(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
@@ -244,7 +239,7 @@ Result<void> checkReplaceable(const QString &path) {
     struct stat status {};
     if (::stat(QFile::encodeName(path).constData(), &status) != 0 || S_ISREG(status.st_mode))
         return {};
-    return fileError(path, whereLinked(path, realPath(path)) + QStringLiteral("not a regular file"));
+    return fileError(path, whereLinked(path, realPath(path)) + "not a regular file");
 }
 
 Result<void> openOwnFile(QFile &file, const QString &path, bool make) {
@@ -253,10 +248,9 @@ Result<void> openOwnFile(QFile &file, const QString &path, bool make) {
                              0644));
     struct stat status {};
     if (opened < 0 || ::fstat(opened, &status) != 0)
-        return fileError(path, errno == ELOOP ? QStringLiteral("it is a link")
-                                              : QStringLiteral("cannot be opened: ") + qt_error_string());
+        return fileError(path, errno == ELOOP ? "it is a link" : "cannot be opened: " + qt_error_string());
     if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
-        return fileError(path, QStringLiteral("not a regular file, or one with another name"));
+        return fileError(path, "not a regular file, or one with another name");
     file.setFileName(path);
     file.open(opened.release(), QIODevice::ReadWrite, QFileDevice::AutoCloseHandle);
     return {};

@@ -19,7 +19,7 @@ int timerIn(QFile &file) {
 // Of the Linux driver ftdi_sio: device/latency_timer, 1 to 255 ms.
 AdapterLatency AdapterLatency::lower(const QString &device, const QString &system) {
     const QString port = QFileInfo(QFileInfo(device).canonicalFilePath()).fileName();
-    QFile timer(QStringLiteral("%1/class/tty/%2/device/latency_timer").arg(system, port));
+    QFile timer(QString("%1/class/tty/%2/device/latency_timer").arg(system, port));
     AdapterLatency latency;
     latency.milliseconds = port.isEmpty() ? 0 : timerIn(timer);
     if (latency.milliseconds <= 1)
@@ -29,10 +29,10 @@ AdapterLatency AdapterLatency::lower(const QString &device, const QString &syste
     timer.close();
     latency.milliseconds = timerIn(timer);
     if (latency.milliseconds > 1)
-        latency.advice = QStringLiteral("its adapter delays bytes by up to %1 ms, and this program may not "
-                                        "write 1 to %2 (%3): do so as root, or by a udev rule")
+        latency.advice = QString("its adapter delays bytes by up to %1 ms, and this program may not "
+                                 "write 1 to %2 (%3): do so as root, or by a udev rule")
                              .arg(latency.milliseconds)
-                             .arg(timer.fileName(), written ? QStringLiteral("it stays as it is") : failure);
+                             .arg(timer.fileName(), written ? "it stays as it is" : failure);
     return latency;
 }
 

@@ -20,8 +20,8 @@ const Kind *findKind(const QString &scheme) {
 
 Error unknownScheme(const InterfaceUrl &url) {
     return Error(ErrorCode::InvalidParams,
-                 QStringLiteral("address %1: unknown scheme \"%2\", known are: %3")
-                     .arg(url.toString(), url.scheme, interfaceSchemes().join(QStringLiteral(", "))));
+                 QString("address %1: unknown scheme \"%2\", known are: %3")
+                     .arg(url.toString(), url.scheme, interfaceSchemes().join(", ")));
 }
 
 } // namespace
@@ -38,15 +38,15 @@ Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent) {
     if (!kind)
         return unknownScheme(url);
     if (!kind->listen)
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("address %1: this system can connect to it, but not listen there")
-                         .arg(url.toString()));
+        return Error(
+            ErrorCode::InvalidParams,
+            QString("address %1: this system can connect to it, but not listen there").arg(url.toString()));
     return kind->listen(url, parent);
 }
 
 bool isReachable(const InterfaceUrl &url) {
     const Kind *kind = findKind(url.scheme);
-    return !(kind && kind->reach == Reach::Computer) && url.host != QStringLiteral("localhost") &&
+    return !(kind && kind->reach == Reach::Computer) && url.host != "localhost" &&
            !QHostAddress(url.host).isLoopback();
 }
 

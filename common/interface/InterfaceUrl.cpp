@@ -9,22 +9,21 @@ namespace hermes {
 namespace {
 
 Error wrongAddress(const QString &text, const QString &why) {
-    return Error(ErrorCode::InvalidParams, QStringLiteral("address \"%1\": expected HOST:PORT or a URL like "
-                                                          "tcp://127.0.0.1:7410?protocol=json (%2)")
+    return Error(ErrorCode::InvalidParams, QString("address \"%1\": expected HOST:PORT or a URL like "
+                                                   "tcp://127.0.0.1:7410?protocol=json (%2)")
                                                .arg(text, why));
 }
 
 } // namespace
 
 Result<InterfaceUrl> InterfaceUrl::parse(const QString &text) {
-    static const QRegularExpression number(QStringLiteral("^([a-z]+://)?\\d+([/?]|$)"));
+    static const QRegularExpression number("^([a-z]+://)?\\d+([/?]|$)");
     if (number.match(text).hasMatch()) // QUrl takes it for an address: 7490 for 0.0.29.66
-        return wrongAddress(text, QStringLiteral("a number alone tells no host"));
-    static const QRegularExpression host(QStringLiteral("^([a-z]+://)?[^/?]*:(\\d+)([/?]|$)"));
+        return wrongAddress(text, "a number alone tells no host");
+    static const QRegularExpression host("^([a-z]+://)?[^/?]*:(\\d+)([/?]|$)");
     if (const QString port = host.match(text).captured(2); port.size() > 5 || port.toInt() > 65535)
-        return wrongAddress(text, QStringLiteral("the port is %1, at most 65535").arg(port));
-    const QUrl url(text.contains(QStringLiteral("://")) ? text : QStringLiteral("tcp://") + text,
-                   QUrl::StrictMode);
+        return wrongAddress(text, QString("the port is %1, at most 65535").arg(port));
+    const QUrl url(text.contains("://") ? text : "tcp://" + text, QUrl::StrictMode);
     if (!url.isValid() || url.scheme().isEmpty())
         return wrongAddress(text, url.errorString());
     InterfaceUrl result;
@@ -43,7 +42,7 @@ QString InterfaceUrl::option(const QString &name, const QString &fallback) const
 }
 
 QString InterfaceUrl::toString() const {
-    QString text = scheme + QStringLiteral("://");
+    QString text = scheme + "://";
     text += host.contains(QLatin1Char(':')) ? QLatin1Char('[') + host + QLatin1Char(']') : host;
     if (port != 0)
         text += QLatin1Char(':') + QString::number(port);

@@ -22,7 +22,7 @@ public:
         if (name.isEmpty() || name.contains('\0') ||
             std::size_t(name.size()) >= sizeof made.address_.sun_path)
             return Error(ErrorCode::InvalidParams,
-                         QStringLiteral("the path of a socket has 1 to %1 bytes, \"%2\" has %3")
+                         QString("the path of a socket has 1 to %1 bytes, \"%2\" has %3")
                              .arg(sizeof made.address_.sun_path - 1)
                              .arg(path.left(200))
                              .arg(name.size()));

@@ -40,8 +40,8 @@ LocalServerInterface::~LocalServerInterface() {
 }
 
 Error LocalServerInterface::refuse(const QString &why) const {
-    return {ErrorCode::InputOutput, QStringLiteral("cannot listen on %1: %2").arg(url_.toString(), why),
-            QJsonObject{{QStringLiteral("path"), url_.path}}};
+    return {ErrorCode::InputOutput, QString("cannot listen on %1: %2").arg(url_.toString(), why),
+            QJsonObject{{"path", url_.path}}};
 }
 
 Result<void> LocalServerInterface::makeFree(const LocalAddress &address) const {
@@ -49,9 +49,9 @@ Result<void> LocalServerInterface::makeFree(const LocalAddress &address) const {
     if (before.st_ino == 0)
         return {};
     if (!S_ISSOCK(before.st_mode))
-        return refuse(QStringLiteral("a file of this name exists, and it is not a socket"));
+        return refuse("a file of this name exists, and it is not a socket");
     if (isAlive(address))
-        return refuse(QStringLiteral("another program listens there"));
+        return refuse("another program listens there");
     ::unlink(address.path());
     return {};
 }
@@ -61,10 +61,10 @@ Result<void> LocalServerInterface::listen() {
     if (!address)
         return refuse(address.error().message);
     bool isMode = true;
-    const QString modeText = url_.option(QStringLiteral("mode"));
+    const QString modeText = url_.option("mode");
     const uint mode = modeText.isEmpty() ? ownerOnly : modeText.toUInt(&isMode, 8);
     if (!isMode || mode > 0777)
-        return refuse(QStringLiteral("mode \"%1\", expected permissions as 0660").arg(modeText));
+        return refuse(QString("mode \"%1\", expected permissions as 0660").arg(modeText));
     if (const auto free = address->isFile() ? makeFree(*address) : Result<void>(); !free)
         return free;
     descriptor_ = LocalAddress::makeSocket();
@@ -112,8 +112,8 @@ void LocalServerInterface::take(int descriptor) {
     auto *socket = new QTcpSocket;
     socket->setSocketDescriptor(descriptor);
     auto *carrier = new LocalInterface(
-        socket, QStringLiteral("%1 (process %2 of user %3)").arg(address()).arg(peer.pid).arg(peer.uid),
-        peer.uid, this);
+        socket, QString("%1 (process %2 of user %3)").arg(address()).arg(peer.pid).arg(peer.uid), peer.uid,
+        this);
     carrier->open();
     Q_EMIT accepted(carrier);
 }

@@ -38,8 +38,7 @@ QString choose(const InterfaceUrl &url, const char *option, const char *fallback
         }
         known.append(QLatin1String(choice.text));
     }
-    return QStringLiteral("%1 is \"%2\", expected one of: %3")
-        .arg(QLatin1String(option), text, known.join(QStringLiteral(", ")));
+    return QString("%1 is \"%2\", expected one of: %3").arg(QLatin1String(option), text, known.join(", "));
 }
 
 } // namespace
@@ -55,13 +54,13 @@ SerialInterface::SerialInterface(const InterfaceUrl &address, QObject *parent)
 }
 
 QString SerialInterface::configure() {
-    const QString baudText = url_.option(QStringLiteral("baud"), QString::number(usualBaud));
+    const QString baudText = url_.option("baud", QString::number(usualBaud));
     const int baud = baudText.toInt();
     if (baud <= 0)
-        return QStringLiteral("baud \"%1\" is not a number above 0").arg(baudText);
-    const QString pace = url_.option(QStringLiteral("pace"), baudText);
+        return QString("baud \"%1\" is not a number above 0").arg(baudText);
+    const QString pace = url_.option("pace", baudText);
     if (pace.toInt() <= 0)
-        return QStringLiteral("pace \"%1\" is not a number above 0").arg(pace);
+        return QString("pace \"%1\" is not a number above 0").arg(pace);
     QSerialPort::DataBits data = QSerialPort::Data8;
     QSerialPort::Parity parity = QSerialPort::NoParity;
     QSerialPort::StopBits stop = QSerialPort::OneStop;
@@ -83,21 +82,20 @@ QString SerialInterface::configure() {
 void SerialInterface::doOpen() {
     if (url_.path.isEmpty())
         return nowClosed(
-            QStringLiteral("%1: a device is missing, as in serial:///dev/ttyS1?baud=115200").arg(name()),
-            true);
+            QString("%1: a device is missing, as in serial:///dev/ttyS1?baud=115200").arg(name()), true);
     const QString wrong = configure();
     if (!wrong.isEmpty())
-        return nowClosed(QStringLiteral("%1: %2").arg(name(), wrong), true);
+        return nowClosed(QString("%1: %2").arg(name(), wrong), true);
     const QString device = serialDevice(url_.path);
     if (device.isEmpty())
-        return nowClosed(QStringLiteral("cannot open %1: there is no such device").arg(name()), true);
+        return nowClosed(QString("cannot open %1: there is no such device").arg(name()), true);
     port_.setPortName(device);
     if (!port_.open(QIODevice::ReadWrite)) {
         const QString reason =
             port_.error() == QSerialPort::PermissionError
-                ? QStringLiteral("in use by another program, or not permitted (%1)").arg(port_.errorString())
+                ? QString("in use by another program, or not permitted (%1)").arg(port_.errorString())
                 : port_.errorString();
-        return nowClosed(QStringLiteral("cannot open %1: %2").arg(name(), reason), true);
+        return nowClosed(QString("cannot open %1: %2").arg(name(), reason), true);
     }
     port_.clear();
     errorsAtOpening_ = driverErrors();
@@ -123,8 +121,7 @@ double SerialInterface::bytesPerSecond() const {
     const auto bits = [this](const char *option, int usual) {
         return url_.option(QLatin1String(option), QString::number(usual)).toInt();
     };
-    const int parity =
-        url_.option(QStringLiteral("parity"), QStringLiteral("none")) != QStringLiteral("none");
+    const int parity = url_.option("parity", "none") != "none";
     const int baud = bits("baud", usualBaud),
               frame = 1 + bits("data_bits", 8) + parity + bits("stop_bits", 1);
     return double(std::min(baud, bits("pace", baud))) / std::max(frame, 1);
@@ -138,11 +135,11 @@ void SerialInterface::doClose() {
 Result<void> SerialInterface::setSignal(Signal signal, bool on) {
     const char *const text = signal == Signal::Rts ? "RTS" : "DTR";
     if (!isOpen())
-        return Error(ErrorCode::NotReady, QStringLiteral("%1 is not open").arg(name()));
+        return Error(ErrorCode::NotReady, QString("%1 is not open").arg(name()));
     const SerialLine line = signal == Signal::Rts ? SerialLine::Rts : SerialLine::Dtr;
     if (const QString wrong = setSerialLine(port_.handle(), line, on); !wrong.isEmpty())
         return Error(ErrorCode::DeviceFault,
-                     QStringLiteral("%1: cannot set %2: %3").arg(name(), QLatin1String(text), wrong));
+                     QString("%1: cannot set %2: %3").arg(name(), QLatin1String(text), wrong));
     return {};
 }
 
@@ -151,7 +148,7 @@ void SerialInterface::fail(QSerialPort::SerialPortError error) {
         return; // doOpen() tells what goes wrong there
     const QString reason = port_.errorString();
     port_.close();
-    nowClosed(QStringLiteral("%1: the device is gone or failed: %2").arg(name(), reason), true);
+    nowClosed(QString("%1: the device is gone or failed: %2").arg(name(), reason), true);
 }
 
 } // namespace hermes

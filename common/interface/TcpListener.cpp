@@ -27,17 +27,15 @@ TcpListener::TcpListener(const InterfaceUrl &address, int atOnce, int silent_s, 
 
 Result<void> TcpListener::listen() {
     const auto cannot = [this](const QString &why) {
-        return Error(ErrorCode::InputOutput,
-                     QStringLiteral("cannot listen on %1: %2").arg(url_.toString(), why));
+        return Error(ErrorCode::InputOutput, QString("cannot listen on %1: %2").arg(url_.toString(), why));
     };
-    const QHostAddress host(url_.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1")
-                                                                     : url_.host);
+    const QHostAddress host(url_.host == "localhost" ? "127.0.0.1" : url_.host);
     if (host.isNull())
-        return cannot(QStringLiteral("\"%1\" is not an IP address").arg(url_.host));
+        return cannot(QString("\"%1\" is not an IP address").arg(url_.host));
     if (!server_.listen(host, url_.port))
         return cannot(server_.serverError() == QAbstractSocket::AddressInUseError
-                          ? QStringLiteral("port %1 of %2 is already in use; end the program that uses it or "
-                                           "listen elsewhere (--listen URL)")
+                          ? QString("port %1 of %2 is already in use; end the program that uses it or "
+                                    "listen elsewhere (--listen URL)")
                                 .arg(url_.port)
                                 .arg(url_.host)
                           : server_.errorString());

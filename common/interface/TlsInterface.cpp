@@ -20,7 +20,7 @@ QString textOf(const QList<QSslError> &errors) {
         if (!isAccepted(error))
             texts.append(error.errorString());
     texts.removeDuplicates();
-    return texts.join(QStringLiteral("; "));
+    return texts.join("; ");
 }
 
 } // namespace
@@ -32,7 +32,7 @@ TlsInterface::TlsInterface(const InterfaceUrl &address, QObject *parent)
             [this](const QList<QSslError> &errors) {
                 if (std::all_of(errors.begin(), errors.end(), isAccepted))
                     return socket_->ignoreSslErrors();
-                refused_ = QStringLiteral("the certificate there is not accepted: ") + textOf(errors);
+                refused_ = "the certificate there is not accepted: " + textOf(errors);
             });
 }
 
@@ -50,7 +50,7 @@ TlsInterface::TlsInterface(QSslSocket *encrypted, QObject *theHost)
 }
 
 QString TlsInterface::folder() const {
-    return url_.option(QStringLiteral("keys"), KeyFolder::usual());
+    return url_.option("keys", KeyFolder::usual());
 }
 
 void TlsInterface::noteRead() {
@@ -65,7 +65,7 @@ QString TlsInterface::name() const {
     if (!url_.scheme.isEmpty())
         return url_.toString();
     const PeerCertificate theirs = toPeer(socket_->peerCertificate());
-    return QStringLiteral("tls://%1:%2 (%3, %4)")
+    return QString("tls://%1:%2 (%3, %4)")
         .arg(socket_->peerAddress().toString())
         .arg(socket_->peerPort())
         .arg(theirs.name, theirs.role);
@@ -80,7 +80,7 @@ void TlsInterface::doOpen() {
         return TcpInterface::doOpen(); // a peer of a server
     const auto keys = KeyFolder::load(folder());
     if (!keys)
-        return nowClosed(QStringLiteral("%1: %2").arg(name(), keys.error().message), true);
+        return nowClosed(QString("%1: %2").arg(name(), keys.error().message), true);
     refused_.clear();
     setReceiving(true);
     socket_->setSslConfiguration(*keys);
@@ -93,16 +93,15 @@ void TlsInterface::onEncrypted() {
     const auto revoked = KeyFolder::revoked(folder());
     QString wrong;
     if (theirs.role != PeerCertificate::daemonRole())
-        wrong =
-            QStringLiteral("is of \"%1\" with the role %2, not of a daemon").arg(theirs.name, theirs.role);
+        wrong = QString("is of \"%1\" with the role %2, not of a daemon").arg(theirs.name, theirs.role);
     else if (!revoked)
-        wrong = QStringLiteral("may be revoked: ") + revoked.error().message;
+        wrong = "may be revoked: " + revoked.error().message;
     else if (revoked->contains(theirs.serial.toLatin1()))
-        wrong = QStringLiteral("of \"%1\" is revoked").arg(theirs.name);
+        wrong = QString("of \"%1\" is revoked").arg(theirs.name);
     if (wrong.isEmpty())
         return begin();
     socket_->abort();
-    nowClosed(QStringLiteral("%1: the certificate there %2").arg(name(), wrong), true);
+    nowClosed(QString("%1: the certificate there %2").arg(name(), wrong), true);
 }
 
 } // namespace hermes

@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds revokedPeriod{300};
 
 TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
     : TcpListener(address, 1, silent_s, parent)
-    , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual())) {
+    , folder_(address.option("keys", KeyFolder::usual())) {
     revokedTimer_.setInterval(revokedPeriod);
     connect(&revokedTimer_, &QTimer::timeout, this, [this] {
         lookAtRevoked();
@@ -35,8 +35,7 @@ TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *par
 
 Result<void> TlsServerInterface::listen() {
     const auto cannot = [this](const QString &why) {
-        return Error(ErrorCode::InputOutput,
-                     QStringLiteral("cannot listen on %1: %2").arg(url_.toString(), why));
+        return Error(ErrorCode::InputOutput, QString("cannot listen on %1: %2").arg(url_.toString(), why));
     };
     const auto keys = KeyFolder::load(folder_);
     if (!keys)
@@ -44,8 +43,8 @@ Result<void> TlsServerInterface::listen() {
     if (const PeerCertificate own = toPeer(keys->localCertificate());
         own.role != PeerCertificate::daemonRole())
         return cannot(
-            QStringLiteral("%1/%2: is of \"%3\" with the role %4, and no client speaks to it; hermesctl keys "
-                           "issue NAME --role daemon makes keys for a robot")
+            QString("%1/%2: is of \"%3\" with the role %4, and no client speaks to it; hermesctl keys "
+                    "issue NAME --role daemon makes keys for a robot")
                 .arg(folder_, KeyFolder::ownFile(), own.name, own.role));
     keys_ = *keys;
     lookAtRevoked();
@@ -58,8 +57,8 @@ Result<void> TlsServerInterface::listen() {
     constexpr double soon_s = 30.0 * 24 * 3600;
     if (const double left_s = toPeer(keys_.localCertificate()).until - stampNow(); left_s < soon_s)
         logWarning(serverSource,
-                   QStringLiteral("%1: its certificate expires in %2 days; hermesctl keys issue makes a "
-                                  "new one")
+                   QString("%1: its certificate expires in %2 days; hermesctl keys issue makes a "
+                           "new one")
                        .arg(address())
                        .arg(int(left_s / 24 / 3600)));
     return {};
@@ -73,7 +72,7 @@ void TlsServerInterface::close() {
 }
 
 void TlsServerInterface::noteGone(const QHostAddress &from) {
-    countRefused(from, QStringLiteral("it had gone before its handshake"));
+    countRefused(from, "it had gone before its handshake");
 }
 
 void TlsServerInterface::take(qintptr descriptor) {
@@ -85,11 +84,11 @@ void TlsServerInterface::take(qintptr descriptor) {
             [this, socket] { refuse(socket, socket->errorString()); });
     QTimer::singleShot(longestHandshake, socket, [this, socket] {
         if (std::find(handshakes_.begin(), handshakes_.end(), socket) != handshakes_.end())
-            refuse(socket, QStringLiteral("no handshake of TLS within %1 s").arg(longestHandshake.count()));
+            refuse(socket, QString("no handshake of TLS within %1 s").arg(longestHandshake.count()));
     });
     handshakes_.push_back(socket);
     if (handshakes_.size() > maxHandshakes)
-        refuse(oldestOfTheMost(), QStringLiteral("%1 others came during its handshake").arg(maxHandshakes));
+        refuse(oldestOfTheMost(), QString("%1 others came during its handshake").arg(maxHandshakes));
     socket->startServerEncryption();
 }
 
@@ -106,14 +105,14 @@ QSslSocket *TlsServerInterface::oldestOfTheMost() const {
 void TlsServerInterface::finish(QSslSocket *socket) {
     const PeerCertificate theirs = toPeer(socket->peerCertificate());
     const auto what =
-        QStringLiteral("the certificate of \"%1\" (serial number %2) ").arg(theirs.name, theirs.serial);
+        QString("the certificate of \"%1\" (serial number %2) ").arg(theirs.name, theirs.serial);
     if (!revokedProblem_.isEmpty())
         return refuse(socket, revokedProblem_);
     if (revoked_.contains(theirs.serial.toLatin1()))
-        return refuse(socket, what + QStringLiteral("is revoked"));
+        return refuse(socket, what + "is revoked");
     if (!roleFrom(theirs.role) && theirs.role != PeerCertificate::daemonRole())
-        return refuse(socket, what + QStringLiteral("has the role \"%1\", expected one of %2, daemon")
-                                         .arg(theirs.role, roleNames().join(QStringLiteral(", "))));
+        return refuse(socket, what + QString("has the role \"%1\", expected one of %2, daemon")
+                                         .arg(theirs.role, roleNames().join(", ")));
     handshakes_.remove(socket);
     socket->disconnect(this);
     auto *peer = new TlsInterface(socket, this);
@@ -137,14 +136,14 @@ void TlsServerInterface::countRefused(const QHostAddress &from, const QString &w
     if (now - refusedTold_ < 1) // many may come
         return;
     refusedTold_ = now;
-    logWarning(serverSource, QStringLiteral("%1: a client at %2 is refused: %3; %4 in all")
+    logWarning(serverSource, QString("%1: a client at %2 is refused: %3; %4 in all")
                                  .arg(address(), from.toString(), why)
                                  .arg(refused_));
 }
 
 void TlsServerInterface::lookAtRevoked() {
     const QFileInfo file(folder_ + QLatin1Char('/') + KeyFolder::revokedFile());
-    const QString state = QStringLiteral("%1 %2 %3 %4")
+    const QString state = QString("%1 %2 %3 %4")
                               .arg(file.exists() || file.isSymLink())
                               .arg(file.size())
                               .arg(file.metadataChangeTime().toMSecsSinceEpoch())
@@ -154,12 +153,12 @@ void TlsServerInterface::lookAtRevoked() {
     revokedState_ = state;
     auto revoked = KeyFolder::revoked(folder_);
     if (revoked && revoked->isEmpty() && !revoked_.isEmpty())
-        revoked = Error(ErrorCode::InputOutput,
-                        file.filePath() + QStringLiteral(": is empty or missing now, and was not before"));
+        revoked =
+            Error(ErrorCode::InputOutput, file.filePath() + ": is empty or missing now, and was not before");
     revokedProblem_ = revoked ? QString() : revoked.error().message;
     if (!revoked)
         return logError(serverSource,
-                        QStringLiteral("%1: new clients are refused: %2").arg(address(), revokedProblem_));
+                        QString("%1: new clients are refused: %2").arg(address(), revokedProblem_));
     revoked_ = *revoked;
 }
 
@@ -172,9 +171,8 @@ void TlsServerInterface::closeBad() {
         const bool isRevoked = revoked_.contains(theirs->serial.toLatin1());
         if (!isRevoked && stampNow() < theirs->until)
             continue;
-        const QString why = isRevoked ? QStringLiteral("its certificate is revoked")
-                                      : QStringLiteral("its certificate has expired");
-        logWarning(serverSource, QStringLiteral("closing client %1: %2").arg(peer->name(), why));
+        const QString why = isRevoked ? "its certificate is revoked" : "its certificate has expired";
+        logWarning(serverSource, QString("closing client %1: %2").arg(peer->name(), why));
         peer->close(why);
     }
 }

@@ -16,14 +16,14 @@ constexpr double longest_s = 0.001; // to read at once
 UdpInterface::UdpInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
     , url_(address) {
-    const auto remote = InterfaceUrl::parse(url_.option(QStringLiteral("peer")));
+    const auto remote = InterfaceUrl::parse(url_.option("peer"));
     if (remote && remote->port != 0) {
         peer_ = QHostAddress(remote->host);
         peerPort_ = remote->port;
         peerFixed_ = true;
     }
-    const QString from = url_.option(QStringLiteral("from"));
-    keepsToFirst_ = from == QStringLiteral("first");
+    const QString from = url_.option("from");
+    keepsToFirst_ = from == "first";
     if (!keepsToFirst_) {
         from_ = QHostAddress(from.section(QLatin1Char(':'), 0, 0));
         fromPort_ = quint16(from.section(QLatin1Char(':'), 1).toUInt());
@@ -48,24 +48,22 @@ QMap<QString, quint64> UdpInterface::systemErrors() const {
     const auto descriptor = socket_.socketDescriptor();
     if (descriptor < 0 || getsockopt(int(descriptor), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0)
         return {};
-    return {{QStringLiteral("datagrams"), memory[SK_MEMINFO_DROPS]}};
+    return {{"datagrams", memory[SK_MEMINFO_DROPS]}};
 }
 
 void UdpInterface::doOpen() {
     const QHostAddress host =
         url_.host.isEmpty() ? QHostAddress(QHostAddress::AnyIPv4) : QHostAddress(url_.host);
-    const QString peerText = url_.option(QStringLiteral("peer"));
+    const QString peerText = url_.option("peer");
     if (!peerText.isEmpty() && peer_.isNull())
-        return nowClosed(QStringLiteral("%1: peer \"%2\" is not IP:PORT").arg(url_.toString(), peerText),
-                         true);
-    const QString from = url_.option(QStringLiteral("from"));
+        return nowClosed(QString("%1: peer \"%2\" is not IP:PORT").arg(url_.toString(), peerText), true);
+    const QString from = url_.option("from");
     if (!from.isEmpty() && !keepsToFirst_ && from_.isNull())
-        return nowClosed(
-            QStringLiteral("%1: from \"%2\" is not IP, IP:PORT or first").arg(url_.toString(), from), true);
-    if (!socket_.bind(host, url_.port))
-        return nowClosed(QStringLiteral("cannot bind %1: %2").arg(url_.toString(), socket_.errorString()),
+        return nowClosed(QString("%1: from \"%2\" is not IP, IP:PORT or first").arg(url_.toString(), from),
                          true);
-    const int room = url_.option(QStringLiteral("receive_buffer")).toInt();
+    if (!socket_.bind(host, url_.port))
+        return nowClosed(QString("cannot bind %1: %2").arg(url_.toString(), socket_.errorString()), true);
+    const int room = url_.option("receive_buffer").toInt();
     if (room > 0)
         socket_.setSocketOption(QAbstractSocket::ReceiveBufferSizeSocketOption, room);
     nowOpen();
@@ -120,7 +118,7 @@ bool UdpInterface::isRead(const QHostAddress &address, quint16 port) {
         return true;
     }
     ++strangers_.datagrams;
-    const QString name = QStringLiteral("%1:%2").arg(address.toString()).arg(port);
+    const QString name = QString("%1:%2").arg(address.toString()).arg(port);
     if (!strangers_.names.contains(name) && strangers_.names.size() < maxNames)
         strangers_.names.append(name);
     return false;

@@ -28,15 +28,13 @@ QByteArray record(const char *key, QString value) {
 std::optional<AnnouncedPort> AnnouncedPort::of(const QString &daemon, const QString &setting,
                                                const QString &address) {
     const auto wanted = InterfaceUrl::parse(setting), real = InterfaceUrl::parse(address);
-    if (!wanted || !real || !isReachable(*wanted) || wanted->scheme == QStringLiteral("udp"))
+    if (!wanted || !real || !isReachable(*wanted) || wanted->scheme == "udp")
         return std::nullopt;
-    const QString tls =
-        wanted->scheme == QStringLiteral("tls") ? QStringLiteral("yes") : QStringLiteral("no");
+    const QString tls = wanted->scheme == "tls" ? "yes" : "no";
     AnnouncedPort result;
     result.port = real->port;
     for (const QString &text :
-         {QStringLiteral("name=") + daemon, QStringLiteral("protocol=") + protocolVersion(),
-          QStringLiteral("framing=") + wanted->protocol(), QStringLiteral("tls=") + tls})
+         {"name=" + daemon, "protocol=" + protocolVersion(), "framing=" + wanted->protocol(), "tls=" + tls})
         result.texts.append(text.toUtf8());
     return result;
 }

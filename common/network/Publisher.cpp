@@ -33,17 +33,16 @@ void Publisher::begin() {
     bus_ = QDBusConnection::connectToBus(QDBusConnection::SystemBus, busName);
     if (!bus_.isConnected()) {
         QDBusConnection::disconnectFromBus(busName);
-        tellOnce(QStringLiteral("not announced: there is no system bus"));
+        tellOnce("not announced: there is no system bus");
         QTimer::singleShot(retry, this, &Publisher::begin);
         return;
     }
-    bus_.connect(QString(), QStringLiteral("/org/freedesktop/DBus/Local"),
-                 QStringLiteral("org.freedesktop.DBus.Local"), QStringLiteral("Disconnected"), this,
+    bus_.connect(QString(), "/org/freedesktop/DBus/Local", "org.freedesktop.DBus.Local", "Disconnected", this,
                  SLOT(onBusLost()));
     watcher_ = std::make_unique<QDBusServiceWatcher>(avahi::service, bus_);
     connect(watcher_.get(), &QDBusServiceWatcher::serviceRegistered, this, &Publisher::publish);
     connect(watcher_.get(), &QDBusServiceWatcher::serviceUnregistered, this, [this] { group_.clear(); });
-    bus_.connect(avahi::service, QStringLiteral("/"), avahi::serverInterface, avahi::stateChanged, this,
+    bus_.connect(avahi::service, "/", avahi::serverInterface, avahi::stateChanged, this,
                  SLOT(onServerState(int, QString)));
     publish();
 }
@@ -66,45 +65,43 @@ void Publisher::call(const QString &path, const QString &interface, const QStrin
 void Publisher::publish() {
     withdraw();
     ++attempt_;
-    call(QStringLiteral("/"), avahi::serverInterface, QStringLiteral("EntryGroupNew"), {},
-         [this](const QDBusMessage &reply) {
-             group_ = reply.arguments().value(0).value<QDBusObjectPath>().path();
-             bus_.connect(avahi::service, group_, avahi::groupInterface, avahi::stateChanged, this,
-                          SLOT(onGroupState(int, QString)));
-             addPorts(group_);
-         });
+    call("/", avahi::serverInterface, "EntryGroupNew", {}, [this](const QDBusMessage &reply) {
+        group_ = reply.arguments().value(0).value<QDBusObjectPath>().path();
+        bus_.connect(avahi::service, group_, avahi::groupInterface, avahi::stateChanged, this,
+                     SLOT(onGroupState(int, QString)));
+        addPorts(group_);
+    });
 }
 
 void Publisher::addPorts(const QString &group) {
     for (const AnnouncedPort &port : ports_)
-        call(group, avahi::groupInterface, QStringLiteral("AddService"),
+        call(group, avahi::groupInterface, "AddService",
              {avahi::anyInterface, avahi::anyProtocol, avahi::noFlags, instanceName(port), avahi::serviceType,
               QString(), QString(), QVariant::fromValue(port.port), QVariant::fromValue(port.texts)},
              [](const QDBusMessage &) {});
-    call(group, avahi::groupInterface, QStringLiteral("Commit"), {}, [this](const QDBusMessage &) {
-        tellOnce(QStringLiteral("announced as %1").arg(avahi::serviceType));
-    });
+    call(group, avahi::groupInterface, "Commit", {},
+         [this](const QDBusMessage &) { tellOnce(QString("announced as %1").arg(avahi::serviceType)); });
 }
 
 void Publisher::withdraw() {
     if (!group_.isEmpty())
-        bus_.send(avahi::message(group_, avahi::groupInterface, QStringLiteral("Free"), {}));
+        bus_.send(avahi::message(group_, avahi::groupInterface, "Free", {}));
     group_.clear();
 }
 
 QString Publisher::instanceName(const AnnouncedPort &port) const {
-    const QString name = QStringLiteral("%1 on %2").arg(daemon_, QSysInfo::machineHostName());
+    const QString name = QString("%1 on %2").arg(daemon_, QSysInfo::machineHostName());
     const int number = int(&port - ports_.data()) + renamed_ * int(ports_.size()) + 1;
-    return number == 1 ? name : QStringLiteral("%1 (%2)").arg(name).arg(number);
+    return number == 1 ? name : QString("%1 (%2)").arg(name).arg(number);
 }
 
 void Publisher::failed(const QString &reason) {
     ++attempt_; // what else was asked for in this one fails for the same reason
-    if (reason.contains(QStringLiteral("collision"), Qt::CaseInsensitive) && renamed_ < maxRenamed) {
+    if (reason.contains("collision", Qt::CaseInsensitive) && renamed_ < maxRenamed) {
         ++renamed_;
         return publish();
     }
-    tellOnce(QStringLiteral("not announced, but as soon as Avahi can: %1").arg(reason));
+    tellOnce(QString("not announced, but as soon as Avahi can: %1").arg(reason));
 }
 
 void Publisher::onServerState(int state, const QString &) {
@@ -114,7 +111,7 @@ void Publisher::onServerState(int state, const QString &) {
 
 void Publisher::onGroupState(int state, const QString &) {
     if (state == avahi::groupCollision)
-        failed(QStringLiteral("name collision"));
+        failed("name collision");
 }
 
 void Publisher::onBusLost() {

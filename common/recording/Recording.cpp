@@ -73,6 +73,7 @@ void Recording::open() {
             if (phase_ == Phase::Idle) // else one was begun meanwhile
                 cutOff_ = completed.done;
             updateHealth();
+            Q_EMIT this->completed(completed.latest, completed.since_s);
         };
     });
     check();
@@ -124,7 +125,7 @@ void Recording::start(const Call &call, const Reply &reply) {
             }
             name_ = {name.name, session_.session()};
             folder_ = session_.folder();
-            start_ = stampNow();
+            start_ = session_.start();
             error_.reset();
             refreshError_.reset();
             cutOff_.clear();
@@ -159,6 +160,7 @@ void Recording::giveToStopping(const Result<QJsonValue> &result) {
 void Recording::end(RecordingEnd reason, const std::optional<Error> &error) {
     phase_ = Phase::Ending;
     endReason_ = reason;
+    endMono_ = monotonicNow();
     error_ = error; // told at once, not when the disk is done
     run(disk_, [this, reason, error]() -> Done {
         const Result<void> result = session_.finish(reason, error);

@@ -44,6 +44,9 @@ public:
 Q_SIGNALS:
     /// One began or ended.
     void changed();
+    /// All that earlier processes recorded is complete. latest: the sidecar of what ended last, so long ago;
+    /// empty: nothing was recorded.
+    void completed(const QJsonObject &latest, double since_s);
 
 private:
     enum class Phase { Idle, Starting, Recording, Ending };
@@ -81,7 +84,8 @@ private:
     SessionName name_;  ///< of this recording or the last
     QString beginning_; ///< the session of the next
     QString folder_;
-    double start_ = 0;
+    Moment start_;
+    double endMono_ = 0; ///< when it was told to end
     std::function<Result<void>()> condition_;
     RecordingEnd endReason_ = RecordingEnd::Stopped;
     std::optional<Error> error_; ///< that ended it

@@ -1,6 +1,7 @@
 // What every logger offers and tells of its recordings: settings, commands, status, health.
 #include "common/recording/Recording.h"
 
+#include "common/Time.h"
 #include "common/recording/Sidecar.h"
 #include "protocol/wire/Fields.h"
 
@@ -16,40 +17,6 @@ Field byteField(const char *name, const char *description, double least, double 
         .range(least, 1e15)
         .byDefault(value)
         .group("Recording");
-}
-
-/// The names of those that have a sidecar in the folder of a session.
-QStringList loggersIn(const QString &folder) {
-    QStringList loggers;
-    for (const QFileInfo &file : QDir(folder).entryInfoList({"*.json"}, QDir::Files, QDir::Name))
-        if (const Result<QJsonObject> sidecar = Sidecar::read(file.absoluteFilePath()))
-            loggers.append(sidecar->value("logger").toString());
-    return loggers;
-}
-
-/// What the sidecar tells under the same names.
-RecordingEntry entryOf(const QString &root, const QString &name, const QString &logger) {
-    const QString folder = QDir(root).absoluteFilePath(name), path = Sidecar::path(folder, logger);
-    RecordingEntry entry;
-    entry.name = name;
-    const Result<QJsonObject> sidecar = Sidecar::read(path);
-    if (!sidecar) {
-        entry.error = sidecar.error().message;
-        return entry;
-    }
-    QJsonObject content = *sidecar;
-    content.insert("name", name);
-    content.remove("error"); // that ended it
-    const int files = content.take("files").toArray().size();
-    ReadReport report;
-    if (const auto read = readMessage<RecordingEntry>(WireValue(content), report))
-        entry = *read;
-    else
-        entry.error = path + ": " + report.text();
-    entry.folder = folder;
-    entry.files = files;
-    entry.loggers = loggersIn(folder);
-    return entry;
 }
 
 } // namespace
@@ -114,9 +81,10 @@ std::vector<Command> Recording::commands() {
 void Recording::list(const Reply &reply) {
     run(disk_, [reply, root = options().root, logger = logger_]() -> Done {
         std::vector<RecordingEntry> found;
-        for (const QString &name : QDir(root).entryList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name))
-            if (QFile::exists(Sidecar::path(QDir(root).filePath(name), logger)))
-                found.push_back(entryOf(root, name, logger));
+        for (const QFileInfo &folder :
+             QDir(root).entryInfoList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name))
+            if (const QString path = Sidecar::path(folder.absoluteFilePath(), logger); QFile::exists(path))
+                found.push_back(Sidecar::entry(path, Sidecar::read(path)));
         std::stable_sort(found.begin(), found.end(), [](const RecordingEntry &a, const RecordingEntry &b) {
             return a.start.value_or(0) > b.start.value_or(0);
         });
@@ -140,7 +108,9 @@ RecordingStatus Recording::status() const {
     status.session = name_.session;
     status.folder = folder_;
     status.path = state.path;
-    status.start = start_;
+    status.start = start_.stamp();
+    status.duration_s =
+        std::max(0.0, (phase_ == Phase::Recording ? monotonicNow() : endMono_) - start_.mono());
     status.bytes = state.bytes;
     status.files = state.files.size();
     status.counts = state.counts;

@@ -46,12 +46,35 @@ QString toUtc(double stamp) {
     return QDateTime::fromMSecsSinceEpoch(qint64(stamp * 1e3), Qt::UTC).toString(Qt::ISODateWithMs);
 }
 
-/// When a recording began that was interrupted, by the clocks of now.
-Moment startOf(const QJsonObject &sidecar, const Moment &now) {
-    const auto stamp_ns = qint64(sidecar["start"].toDouble() * 1e9);
-    const bool isSameRun = sidecar["boot"].toString() == bootIdentity();
-    return {stamp_ns, isSameRun ? qint64(sidecar["start_mono"].toDouble() * 1e9)
-                                : now.mono_ns - (now.stamp_ns - stamp_ns)};
+/// Goes on with a recording that was interrupted. After a restart of the system the wall clock tells how long
+/// that took; where it is behind, as without a battery of its own, no time has passed.
+void resume(RecordingPlan &plan) {
+    const auto stamp_ns = qint64(plan.earlier.value("start").toDouble() * 1e9);
+    const auto mono_ns = qint64(plan.earlier.value("start_mono").toDouble() * 1e9);
+    const bool isSameRun = plan.earlier.value("boot").toString() == bootIdentity();
+    const Moment now = plan.start;
+    const auto lasted_ns = qint64(Sidecar::duration(plan.earlier) * 1e9);
+    const qint64 since_ns = isSameRun ? now.mono_ns - mono_ns : std::max(now.stamp_ns - stamp_ns, lasted_ns);
+    plan.start = {stamp_ns, now.mono_ns - since_ns};
+    plan.toItsClock_ns = mono_ns - plan.start.mono_ns;
+}
+
+/// When a recording was cut off, by the clock that never jumps. The sidecar knows when it was renewed last;
+/// what its files hold after that counts, unless the wall clock was set.
+double endOf(const QJsonObject &sidecar) {
+    constexpr double period_s = 5; // in which it is renewed, however busy the disk is
+    const double renewed = sidecar["end_mono"].toDouble();
+    const double last =
+        sidecar["start_mono"].toDouble() + sidecar["end"].toDouble() - sidecar["start"].toDouble();
+    return last > renewed && last < renewed + period_s ? last : renewed;
+}
+
+/// How long ago a recording ended: by the clock that never jumps where the system has run since, else by the
+/// wall clock, which may also be behind.
+double secondsSince(const QJsonObject &sidecar) {
+    if (sidecar["boot"].toString() == bootIdentity() && sidecar["end_mono"].isDouble())
+        return monotonicNow() - sidecar["end_mono"].toDouble();
+    return std::abs(stampNow() - sidecar["end"].toDouble());
 }
 
 /// Room that stays taken until the recording ends. Not every file system can; then there is none. Error: the
@@ -99,8 +122,10 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     plan_ = {*folder, options.logger, options.fileBytes, options.fileSeconds, {}, Moment::now()};
     if (const Result<QJsonObject> earlier = Sidecar::read(sidecarPath()); earlier && writer_.goesOn())
         plan_.earlier = *earlier;
-    plan_.start = plan_.earlier.isEmpty() ? writer_.beganEarlier().value_or(plan_.start)
-                                          : startOf(plan_.earlier, plan_.start);
+    if (plan_.earlier.isEmpty())
+        plan_.start = writer_.beganEarlier().value_or(plan_.start);
+    else
+        resume(plan_);
     session_ =
         session.session.isEmpty() ? QUuid::createUuid().toString(QUuid::WithoutBraces) : session.session;
     const Moment start = plan_.start;
@@ -111,8 +136,8 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
              {"host", QSysInfo::machineHostName()},
              {"start", start.stamp()},
              {"start_utc", toUtc(start.stamp())},
-             {"start_mono", start.mono()},
-             {"boot", bootIdentity()},
+             {"start_mono", itsMono(start)},
+             {"boot", plan_.earlier.value("boot").toString(bootIdentity())},
              {"settings", options.settings}};
     if (const auto robot = ownRobot())
         head_.insert("robot", asJson(*robot));
@@ -133,7 +158,13 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     result = reserve(ownReserve());
     if (!result)
         return refused(result.error());
-    result = writer_.begin(plan_);
+    if (!plan_.earlier.isEmpty()) { // should the power be cut now, the next start looks at all files
+        QJsonObject open = plan_.earlier;
+        open.insert("ended", QJsonValue());
+        result = Sidecar::write(sidecarPath(), open, true);
+    }
+    if (result)
+        result = writer_.begin(plan_);
     watch_.begin();
     if (result)
         result = look();
@@ -142,7 +173,14 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     if (result)
         return {};
     writer_.end();
-    if (!plan_.earlier.isEmpty()) {
+    if (!plan_.earlier.isEmpty()) { // of the files only the one that was new goes
+        const QFileInfo file(writer_.state().path);
+        const QJsonArray files = plan_.earlier.value("files").toArray();
+        const auto isIt = [&file](const QJsonValue &one) {
+            return one["name"].toString() == file.fileName();
+        };
+        if (file.isFile() && std::none_of(files.begin(), files.end(), isIt))
+            QFile::remove(file.filePath());
         Sidecar::write(sidecarPath(), plan_.earlier, true);
         return refused(result.error());
     }
@@ -161,6 +199,7 @@ QJsonObject RecordingSession::describe() const {
     const RecordingState state = writer_.state();
     QJsonObject content = head_;
     content.insert("end", QJsonValue());
+    content.insert("end_mono", itsMono(Moment::now())); // when it was renewed
     content.insert("ended", QJsonValue());
     content.insert("complete", false);
     content.insert("bytes", state.bytes);
@@ -191,7 +230,7 @@ Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Erro
     QJsonObject content = describe();
     content.insert("end", now.stamp());
     content.insert("end_utc", toUtc(now.stamp()));
-    content.insert("end_mono", now.mono());
+    content.insert("end_mono", itsMono(now));
     content.insert("ended", toText(broken ? RecordingEnd::Failed : end));
     content.insert("complete", !broken);
     if (failure)
@@ -218,8 +257,19 @@ RecordingSession::Completed RecordingSession::completeAll(const Options &options
         if (!QFile::exists(path))
             continue;
         const Result<QJsonObject> read = Sidecar::read(path);
-        if (read && !read->value("ended").isNull())
+        const auto keepLatest = [&completed](const QJsonObject &sidecar) {
+            const double since_s = secondsSince(sidecar);
+            const bool isLatest = completed.latest.isEmpty() || since_s < completed.since_s;
+            if (isLatest &&
+                sidecar["host"].toString() == QSysInfo::machineHostName()) { // no copy from elsewhere
+                completed.latest = sidecar;
+                completed.since_s = since_s;
+            }
+        };
+        if (read && !read->value("ended").isNull()) {
+            keepLatest(*read);
             continue;
+        }
         QJsonObject content = read ? *read : QJsonObject();
         Result<void> result = read ? Result<void>() : read.error();
         if (result) {
@@ -228,17 +278,20 @@ RecordingSession::Completed RecordingSession::completeAll(const Options &options
             result = writer.repair({folder, options.logger, 0, 0}, content);
         }
         content.insert("end_utc", toUtc(content.value("end").toDouble()));
+        if (content.value("end_mono").isDouble()) // else an older version has written it
+            content.insert("end_mono", endOf(content));
         content.insert("ended", toText(RecordingEnd::CutOff));
         if (result)
             result = Sidecar::write(path, content, true);
-        if (result)
-            completed.done << QString(
-                                  "\"%1\" was cut off at %2, before it was stopped; what is written until "
-                                  "then is whole (%3)")
-                                  .arg(content.value("name").toString(entry.fileName()),
-                                       content.value("end_utc").toString(), folder);
-        else
+        if (!result) {
             completed.failed << result.error().message;
+            continue;
+        }
+        completed.done << QString("\"%1\" was cut off at %2, before it was stopped; what is written until "
+                                  "then is whole (%3)")
+                              .arg(content.value("name").toString(entry.fileName()),
+                                   content.value("end_utc").toString(), folder);
+        keepLatest(content);
     }
     return completed;
 }

@@ -37,11 +37,14 @@ public:
     bool isOpen() const { return lock_.isHeld(); }
     const QString &folder() const { return plan_.folder; }
     const QString &session() const { return session_; }
+    const Moment &start() const { return plan_.start; }
 
     /// Completes what earlier processes left unfinished below the root; gives a line for each, and of what
     /// could not be completed. None of it when another process records there.
     struct Completed {
         QStringList done, failed;
+        QJsonObject latest; ///< sidecar of what ended last on this host, cut off or not; empty: none
+        double since_s = 0; ///< its end, as far as the clocks tell
     };
     static Completed completeAll(const Options &options, RecordingWriter &writer);
 
@@ -49,6 +52,8 @@ private:
     QJsonObject describe() const;
     QString ownReserve() const { return reservePath(plan_.folder, options_.logger); }
     QString sidecarPath() const;
+    /// By the monotonic clock of the recording.
+    double itsMono(const Moment &moment) const { return double(moment.mono_ns + plan_.toItsClock_ns) * 1e-9; }
     void abandon();
 
     RecordingWriter &writer_;

@@ -2,6 +2,15 @@
 
 namespace hermes {
 
+namespace {
+
+void add(NamedCounts &counts, const QJsonObject &earlier) {
+    for (auto count = earlier.begin(); count != earlier.end(); ++count)
+        counts[count.key()] += count->toDouble();
+}
+
+} // namespace
+
 void RecordingState::addEarlier(const QJsonObject &sidecar) {
     if (sidecar.isEmpty())
         return;
@@ -10,10 +19,14 @@ void RecordingState::addEarlier(const QJsonObject &sidecar) {
         all.append(file);
     files = all;
     bytes += sidecar["bytes"].toDouble();
-    for (const auto &[now, before] :
-         {std::pair(&counts, sidecar["counts"].toObject()), std::pair(&losses, sidecar["losses"].toObject())})
-        for (auto count = before.begin(); count != before.end(); ++count)
-            (*now)[count.key()] += count->toDouble();
+    add(counts, sidecar["counts"].toObject());
+    addEarlierLosses(sidecar);
+}
+
+void RecordingState::addEarlierLosses(const QJsonObject &sidecar) {
+    if (sidecar.isEmpty())
+        return;
+    add(losses, sidecar["losses"].toObject());
     ++losses["interruptions"];
 }
 

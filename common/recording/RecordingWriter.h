@@ -21,7 +21,10 @@ struct RecordingPlan {
     QJsonObject earlier = {};
     /// How many files were written before.
     int earlierFiles() const { return earlier["files"].toArray().size(); }
-    Moment start = {}; ///< of the recording, also of one that was interrupted
+    Moment start = {}; ///< of the recording, also of one that was interrupted; by the clocks of now
+    /// Added to monotonic times of now gives those of the recording, which are of the clock it began with.
+    /// The system has been started anew since unless it is 0.
+    std::int64_t toItsClock_ns = 0;
 };
 
 /// What a logger tells of the recording under way, or of the last one.
@@ -36,6 +39,8 @@ struct RecordingState {
 
     /// Puts before it what was recorded before an interruption, as the sidecar has it; empty: nothing was.
     void addEarlier(const QJsonObject &sidecar);
+    /// The losses alone, and the interruption.
+    void addEarlierLosses(const QJsonObject &sidecar);
 };
 
 /// What a logger does to have its recordings managed by Recording: writes files, and repairs those of a

@@ -8,14 +8,11 @@
 #include <QDir>
 #include <QJsonArray>
 
-#include <algorithm>
-
 namespace hermes {
 
 namespace {
 
-constexpr double latest_s = 4294967295;    // what the stamps of the files can hold
-constexpr double longestRecording_s = 1e7; // four months
+constexpr double latest_s = 4294967295; // what the stamps of the files can hold
 
 } // namespace
 
@@ -35,11 +32,7 @@ Result<StoredRecording> StoredRecording::find(const QString &root, const QString
     recording.start_s = sidecar->value("start").toDouble(-1);
     if (!(recording.start_s >= 0 && recording.start_s <= latest_s))
         return diskError(path + ": \"start\": seconds since the epoch expected", path);
-    const bool hasMono = sidecar->value("end_mono").isDouble();
-    const double length =
-        hasMono ? sidecar->value("end_mono").toDouble() - sidecar->value("start_mono").toDouble()
-                : sidecar->value("end").toDouble() - recording.start_s;
-    recording.length_s = std::clamp(length, 0.0, longestRecording_s);
+    recording.length_s = Sidecar::duration(*sidecar);
     return recording;
 }
 

@@ -12,7 +12,7 @@ struct StoredRecording {
     QString folder; ///< absolute
     QJsonObject sidecar;
     double start_s = 0;  ///< since the epoch
-    double length_s = 0; ///< by a clock that never jumps, where the sidecar has one
+    double length_s = 0; ///< as Sidecar::duration() gives it
 
     /// ROOT/NAME. InvalidParams: a wrong name; InputOutput: no sidecar of this logger is there, or it makes
     /// no sense; NotReady: it has not ended.

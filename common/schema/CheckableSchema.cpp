@@ -17,25 +17,19 @@ constexpr int longestPattern = 1000;
 /// What one keyword of a schema hinders; empty: nothing.
 QString hindrance(const QString &keyword, const QJsonValue &value) {
     // References may go round in circles, the others cost the square of what is checked, or more.
-    static const QStringList unbounded{QStringLiteral("$ref"),
-                                       QStringLiteral("uniqueItems"),
-                                       QStringLiteral("patternProperties"),
-                                       QStringLiteral("propertyNames"),
-                                       QStringLiteral("dependencies"),
-                                       QStringLiteral("contains"),
-                                       QStringLiteral("if"),
-                                       QStringLiteral("extends"),
-                                       QStringLiteral("disallow")};
+    static const QStringList unbounded{
+        "$ref",     "uniqueItems", "patternProperties", "propertyNames", "dependencies",
+        "contains", "if",          "extends",           "disallow"};
     if (unbounded.contains(keyword))
-        return QStringLiteral("%1 is not supported").arg(keyword);
-    if (keyword == QStringLiteral("multipleOf") && !(value.toDouble() > 0))
-        return QStringLiteral("multipleOf is %1, expected a number above 0").arg(shown(value));
-    if (keyword == QStringLiteral("pattern")) {
+        return QString("%1 is not supported").arg(keyword);
+    if (keyword == "multipleOf" && !(value.toDouble() > 0))
+        return QString("multipleOf is %1, expected a number above 0").arg(shown(value));
+    if (keyword == "pattern") {
         const QRegularExpression pattern(value.toString().left(longestPattern));
         if (value.toString().size() > longestPattern)
-            return QStringLiteral("pattern is longer than %1 characters").arg(longestPattern);
+            return QString("pattern is longer than %1 characters").arg(longestPattern);
         if (!pattern.isValid())
-            return QStringLiteral("pattern is %1: %2").arg(shown(value), pattern.errorString());
+            return QString("pattern is %1: %2").arg(shown(value), pattern.errorString());
     }
     return {};
 }
@@ -47,8 +41,8 @@ public:
         for (auto member = schema.begin(); member != schema.end(); ++member) {
             const QString key = member.key();
             if (const QString found = hindrance(key, member.value()); !found.isEmpty() && problem_.isEmpty())
-                problem_ = path.isEmpty() ? found : path + QStringLiteral(": ") + found;
-            if (key != QStringLiteral("pattern") && key != QStringLiteral("format"))
+                problem_ = path.isEmpty() ? found : path + ": " + found;
+            if (key != "pattern" && key != "format")
                 result.insert(key, adapted(key, member.value(), path));
         }
         return result;
@@ -57,8 +51,8 @@ public:
 
 private:
     QJsonValue adapted(const QString &key, const QJsonValue &value, const QString &path) {
-        if (key == QStringLiteral("type") && value == QStringLiteral("integer"))
-            return QStringLiteral("number");
+        if (key == "type" && value == "integer")
+            return "number";
         if (key == propertiesKey && value.isObject()) {
             QJsonObject result;
             const QJsonObject properties = value.toObject();
@@ -74,9 +68,7 @@ private:
                 result.append(inner(one, path));
             return result;
         }
-        static const QStringList schemaKeys{itemsKey, QStringLiteral("not"),
-                                            QStringLiteral("additionalItems"),
-                                            QStringLiteral("additionalProperties")};
+        static const QStringList schemaKeys{itemsKey, "not", "additionalItems", "additionalProperties"};
         return schemaKeys.contains(key) ? inner(value, path) : value;
     }
     QJsonValue inner(const QJsonValue &schema, const QString &path) {
@@ -88,7 +80,7 @@ private:
 
 bool spend(const QJsonObject &schema, const QJsonValue &value, int &steps) {
     const QJsonValue items = schema.value(itemsKey);
-    steps -= 1 + schema.value(QStringLiteral("enum")).toArray().size() + schema.size();
+    steps -= 1 + schema.value("enum").toArray().size() + schema.size();
     if (value.isArray())
         for (const QJsonValue &element : value.toArray())
             if (steps < 0 || !spend(items.toObject(), element, steps))
@@ -103,7 +95,7 @@ bool spend(const QJsonObject &schema, const QJsonValue &value, int &steps) {
         for (const QJsonValue &branch : schema.value(key).toArray())
             if (steps < 0 || !spend(branch.toObject(), value, steps))
                 return false;
-    const QJsonValue opposite = schema.value(QStringLiteral("not"));
+    const QJsonValue opposite = schema.value("not");
     return steps >= 0 && (!opposite.isObject() || spend(opposite.toObject(), value, steps));
 }
 

@@ -17,7 +17,7 @@ QStringList named(const QJsonArray &alternatives, const Text &textOf) {
     for (int i = 0; i < alternatives.size() && i < maxNamed; ++i)
         texts.append(textOf(alternatives.at(i)));
     if (alternatives.size() > maxNamed)
-        texts.append(QStringLiteral("%1 more").arg(alternatives.size() - maxNamed));
+        texts.append(QString("%1 more").arg(alternatives.size() - maxNamed));
     return texts;
 }
 
@@ -37,24 +37,23 @@ QString limits(const QJsonObject &schema) {
     const QJsonValue least = schema.value(QStringLiteral("minimum"));
     const QJsonValue most = schema.value(QStringLiteral("maximum"));
     if (least.isDouble() && most.isDouble())
-        return QStringLiteral(" from %1 to %2").arg(shown(least), shown(most));
+        return QString(" from %1 to %2").arg(shown(least), shown(most));
     if (least.isDouble())
-        return QStringLiteral(" of at least %1").arg(shown(least));
-    return most.isDouble() ? QStringLiteral(" of at most %1").arg(shown(most)) : QString();
+        return QString(" of at least %1").arg(shown(least));
+    return most.isDouble() ? QString(" of at most %1").arg(shown(most)) : QString();
 }
 
 QString sizes(const QJsonObject &schema, const char *least, const char *most, const QString &what) {
     const QJsonValue minimum = schema.value(QLatin1String(least));
     const QJsonValue maximum = schema.value(QLatin1String(most));
     if (minimum.isDouble() && minimum == maximum)
-        return QStringLiteral(" of %1 %2").arg(shown(minimum), what);
+        return QString(" of %1 %2").arg(shown(minimum), what);
     QStringList parts;
     if (minimum.isDouble())
-        parts.append(QStringLiteral("at least %1").arg(shown(minimum)));
+        parts.append(QString("at least %1").arg(shown(minimum)));
     if (maximum.isDouble())
-        parts.append(QStringLiteral("at most %1").arg(shown(maximum)));
-    return parts.isEmpty() ? QString()
-                           : QStringLiteral(" with %1 %2").arg(parts.join(QStringLiteral(", ")), what);
+        parts.append(QString("at most %1").arg(shown(maximum)));
+    return parts.isEmpty() ? QString() : QString(" with %1 %2").arg(parts.join(QStringLiteral(", ")), what);
 }
 
 } // namespace

@@ -12,9 +12,7 @@ namespace hermes {
 namespace {
 
 QJsonObject emptySchema() {
-    return {{QStringLiteral("type"), QStringLiteral("object")},
-            {QStringLiteral("additionalProperties"), false},
-            {propertiesKey, QJsonObject()}};
+    return {{"type", "object"}, {"additionalProperties", false}, {propertiesKey, QJsonObject()}};
 }
 
 QJsonObject withProperty(QJsonObject schema, const QString &path, const QJsonObject &property) {
@@ -34,8 +32,8 @@ QJsonObject propertyAt(QJsonObject schema, const QString &path) {
 }
 
 Error settingsFileError(const QString &file, const QString &what) {
-    return Error(ErrorCode::InputOutput, QStringLiteral("settings file %1: %2").arg(file, what),
-                 QJsonObject{{QStringLiteral("path"), file}});
+    return Error(ErrorCode::InputOutput, QString("settings file %1: %2").arg(file, what),
+                 QJsonObject{{"path", file}});
 }
 
 } // namespace
@@ -47,9 +45,9 @@ Settings::Settings(QObject *parent)
 void Settings::declare(const Field &field) {
     Q_ASSERT_X(!field.defaultValue().isUndefined(), "Settings::declare", qPrintable(field.name()));
     QJsonObject property = field.schema();
-    const QString applies = QStringLiteral("x-applies");
+    const QString applies = "x-applies";
     if (!property.contains(applies))
-        property.insert(applies, QStringLiteral("now"));
+        property.insert(applies, "now");
     fullSchema_ = withProperty(fullSchema_, field.name(), property);
     initial_ = withValueAt(initial_, field.name(), field.defaultValue());
     put(withValueAt(current_, field.name(), field.defaultValue()));
@@ -82,10 +80,9 @@ Result<QStringList> Settings::reset(const QStringList &paths) {
     for (const QString &path : paths) {
         const QJsonValue value = valueAt(initial_, path);
         if (path.isEmpty() || value.isUndefined()) {
-            const SchemaViolation unknown{path, QJsonValue::Undefined,
-                                          QStringLiteral("the path of a setting")};
-            return Error(ErrorCode::InvalidSetting, QStringLiteral("no setting \"%1\"").arg(path),
-                         QJsonObject{{QStringLiteral("errors"), QJsonArray{unknown.toJson()}}});
+            const SchemaViolation unknown{path, QJsonValue::Undefined, "the path of a setting"};
+            return Error(ErrorCode::InvalidSetting, QString("no setting \"%1\"").arg(path),
+                         QJsonObject{{"errors", QJsonArray{unknown.toJson()}}});
         }
         proposed = withValueAt(proposed, path, value);
     }
@@ -117,7 +114,7 @@ Result<QStringList> Settings::apply(const QJsonObject &proposed) {
     const auto violations = check(proposed);
     if (!violations.empty()) {
         return Error(ErrorCode::InvalidSetting, toString(violations),
-                     QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
+                     QJsonObject{{"errors", toJson(violations)}});
     }
     return take(proposed);
 }
@@ -154,12 +151,11 @@ QStringList Settings::waiting() const {
 }
 
 Result<QByteArray> readSettingsFile(const QString &name) {
-    auto text = readNamedFile(name, {QStringLiteral("/")}, maxSettingsBytes);
+    auto text = readNamedFile(name, {"/"}, maxSettingsBytes);
     if (!text)
-        return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + text.error().message,
-                     text.error().data);
+        return Error(ErrorCode::InputOutput, "settings file " + text.error().message, text.error().data);
     if (text->startsWith("\xff\xfe") || text->startsWith("\xfe\xff"))
-        return settingsFileError(name, QStringLiteral("line 1: found UTF-16, expected UTF-8"));
+        return settingsFileError(name, "line 1: found UTF-16, expected UTF-8");
     if (text->startsWith("\xef\xbb\xbf")) // as some editors write it
         text->remove(0, 3);
     return text;
@@ -167,13 +163,13 @@ Result<QByteArray> readSettingsFile(const QString &name) {
 
 Result<void> checkSettingsFile(const QString &name, const QByteArray &text) {
     if (text.size() > maxSettingsBytes)
-        return settingsFileError(name, QStringLiteral("it would have %1 bytes, expected at most %2")
-                                           .arg(text.size())
-                                           .arg(maxSettingsBytes));
+        return settingsFileError(
+            name,
+            QString("it would have %1 bytes, expected at most %2").arg(text.size()).arg(maxSettingsBytes));
     const auto replaceable = checkReplaceable(name);
     if (replaceable)
         return {};
-    return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + replaceable.error().message,
+    return Error(ErrorCode::InputOutput, "settings file " + replaceable.error().message,
                  replaceable.error().data);
 }
 
@@ -184,15 +180,15 @@ Result<QJsonObject> Settings::read(const QString &name) const {
     WireError error;
     const auto value = parseJson(*text, &error);
     if (!value)
-        return settingsFileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
+        return settingsFileError(name, QString("line %1: %2").arg(error.line).arg(error.message));
     if (!value->isObject())
-        return settingsFileError(name, QStringLiteral("line 1: expected a JSON object"));
+        return settingsFileError(name, "line 1: expected a JSON object");
     const QJsonObject proposed = merged(merged(initial_, value->toObject()), insisted_);
     const auto violations = check(proposed);
     if (!violations.empty())
         return Error(ErrorCode::InvalidSetting,
-                     QStringLiteral("settings file %1: %2").arg(name, toString(violations)),
-                     QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
+                     QString("settings file %1: %2").arg(name, toString(violations)),
+                     QJsonObject{{"errors", toJson(violations)}});
     return proposed;
 }
 
@@ -208,8 +204,7 @@ Result<void> Settings::load(const QString &name) {
 Result<QString> Settings::save(const QString &name) const {
     const QString target = name.isEmpty() ? fileName_ : name;
     if (target.isEmpty())
-        return Error(ErrorCode::InputOutput,
-                     QStringLiteral("no settings file to save to: start with --config FILE"));
+        return Error(ErrorCode::InputOutput, "no settings file to save to: start with --config FILE");
     const QByteArray text = QJsonDocument(changes()).toJson();
     if (const auto fine = checkSettingsFile(target, text); !fine)
         return fine.error();
@@ -221,7 +216,7 @@ Result<QString> Settings::save(const QString &name) const {
 QStringList Settings::needRestart(const QStringList &paths) const {
     QStringList result;
     for (const QString &path : paths) {
-        if (propertyAt(fullSchema_, path).value(QStringLiteral("x-applies")) == QStringLiteral("restart"))
+        if (propertyAt(fullSchema_, path).value("x-applies") == "restart")
             result.append(path);
     }
     return result;

@@ -22,8 +22,7 @@ const QString giveAwayFolder = QStringLiteral("issued-for");
 const QString authorityKeyFile = QStringLiteral("authority.key");
 
 Error failed(const QString &path, const QString &why) {
-    return {ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, why),
-            QJsonObject{{QStringLiteral("path"), path}}};
+    return {ErrorCode::InputOutput, QString("%1: %2").arg(path, why), QJsonObject{{"path", path}}};
 }
 
 // On a line of its own, also where somebody has edited the file and left the last one open.
@@ -40,20 +39,20 @@ Result<void> append(const QString &path, const QByteArray &line) {
         return {};
     const QString why = qt_error_string();
     if (!file.resize(before))
-        return failed(path, why + QStringLiteral("; half a line may stand at its end"));
+        return failed(path, why + "; half a line may stand at its end");
     return failed(path, why);
 }
 
 Result<QByteArray> readAuthorityFile(const QString &path) {
     QFile file(path);
     if (!file.open(QIODevice::ReadOnly))
-        return failed(path, file.errorString() + QStringLiteral("; hermesctl keys init makes an authority"));
+        return failed(path, file.errorString() + "; hermesctl keys init makes an authority");
     return file.readAll();
 }
 
 Result<void> writeFolder(const QString &folder, const CertifiedKey &own, const QByteArray &authority) {
     if (!QDir().mkpath(folder))
-        return failed(folder, QStringLiteral("cannot be made"));
+        return failed(folder, "cannot be made");
     return KeyBundle{authority, own.certificate, own.key, {}}.write(folder);
 }
 
@@ -67,11 +66,10 @@ Result<void> Authority::init(const QString &owner, int days, int daysOfOwner) co
     const QFileInfo place(folder_);
     const auto all = QDir::AllEntries | QDir::Hidden | QDir::System | QDir::NoDotAndDotDot;
     if (place.isSymLink() || (place.exists() && (!place.isDir() || !QDir(folder_).isEmpty(all))))
-        return failed(folder_,
-                      QStringLiteral("there are keys already, or something else; it is not replaced"));
+        return failed(folder_, "there are keys already, or something else; it is not replaced");
     if (!QDir().mkpath(place.absolutePath()))
-        return failed(place.absolutePath(), QStringLiteral("cannot be made"));
-    QTemporaryDir beside(folder_ + QStringLiteral("-XXXXXX")); // only its owner may enter; removed on failure
+        return failed(place.absolutePath(), "cannot be made");
+    QTemporaryDir beside(folder_ + "-XXXXXX"); // only its owner may enter; removed on failure
     if (!beside.isValid())
         return failed(folder_, beside.errorString());
     if (const auto made = Authority(beside.path()).fill(owner, days, daysOfOwner); !made)
@@ -83,10 +81,10 @@ Result<void> Authority::init(const QString &owner, int days, int daysOfOwner) co
 }
 
 Result<void> Authority::fill(const QString &owner, int days, int daysOfOwner) const {
-    const auto authority = makeAuthority(QStringLiteral("Hermes authority of ") + owner, days);
+    const auto authority = makeAuthority("Hermes authority of " + owner, days);
     if (!authority)
         return authority.error();
-    const CertificateSubject subject{owner, QStringLiteral("engineer")};
+    const CertificateSubject subject{owner, "engineer"};
     const auto own = issueCertificate(*authority, subject, daysOfOwner);
     if (!own)
         return own.error();
@@ -103,17 +101,16 @@ Result<CertifiedKey> Authority::load() const {
     if (!certificate || !key)
         return certificate ? key.error() : certificate.error();
     if (!belongTogether({*certificate, *key}))
-        return failed(path(authorityKeyFile),
-                      QStringLiteral("is not the key of ") + path(KeyFolder::authorityFile()));
+        return failed(path(authorityKeyFile), "is not the key of " + path(KeyFolder::authorityFile()));
     return CertifiedKey{*certificate, *key};
 }
 
 Result<void> Authority::note(const CertificateSubject &subject, const QByteArray &certificate) const {
     const QSslCertificate read(certificate);
-    const QJsonObject line{{QStringLiteral("name"), subject.name},
-                           {QStringLiteral("role"), subject.role},
-                           {QStringLiteral("serial"), toPeer(read).serial},
-                           {QStringLiteral("until"), read.expiryDate().toUTC().toString(Qt::ISODate)}};
+    const QJsonObject line{{"name", subject.name},
+                           {"role", subject.role},
+                           {"serial", toPeer(read).serial},
+                           {"until", read.expiryDate().toUTC().toString(Qt::ISODate)}};
     return append(path(issuedFile), compactJson(line));
 }
 
@@ -130,8 +127,8 @@ Result<void> Authority::canIssue(const QString &name) const {
         return listed.error();
     if (QFile::exists(folderFor(name)))
         return failed(folderFor(name),
-                      QStringLiteral(
-                          "exists; remove it first, and revoke its certificate if it was given to somebody"));
+
+                      "exists; remove it first, and revoke its certificate if it was given to somebody");
     return {};
 }
 
@@ -150,7 +147,7 @@ Result<QString> Authority::issue(const CertificateSubject &subject, int days) co
     auto done = writeFolder(folder, *made, authority->certificate);
     if (done && QFile::exists(path(KeyFolder::revokedFile())) &&
         !QFile::copy(path(KeyFolder::revokedFile()), QDir(folder).filePath(KeyFolder::revokedFile())))
-        done = failed(folder, QStringLiteral("the list of revoked certificates cannot be copied there"));
+        done = failed(folder, "the list of revoked certificates cannot be copied there");
     if (done)
         done = note(subject, made->certificate); // before it is given away: else it could not be revoked
     if (done)
@@ -174,7 +171,7 @@ Result<std::vector<Authority::Issued>> Authority::list() const {
         const auto text = [&entry](const char *name) { return entry.value(QLatin1String(name)).toString(); };
         const QDateTime until = QDateTime::fromString(text("until"), Qt::ISODate);
         if (text("serial").isEmpty() || !until.isValid())
-            return failed(path(issuedFile), QStringLiteral("line %1 is not a certificate that was issued: %2")
+            return failed(path(issuedFile), QString("line %1 is not a certificate that was issued: %2")
                                                 .arg(all.size() + 1)
                                                 .arg(QString::fromUtf8(line.left(80))));
         all.push_back({{text("name"), text("role")},
@@ -197,15 +194,14 @@ Result<int> Authority::revoke(const QString &nameOrSerial) const {
         isKnown = true;
         if (one.isRevoked)
             continue;
-        const QString line = QStringLiteral("%1 %2, %3").arg(one.serial, one.subject.name, one.subject.role);
+        const QString line = QString("%1 %2, %3").arg(one.serial, one.subject.name, one.subject.role);
         if (const auto done = append(path(KeyFolder::revokedFile()), line.toUtf8()); !done)
             return done.error();
         ++count;
     }
     if (!isKnown)
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("no certificate of \"%1\" was issued; hermesctl keys list").arg(nameOrSerial));
+        return Error(ErrorCode::InvalidParams,
+                     QString("no certificate of \"%1\" was issued; hermesctl keys list").arg(nameOrSerial));
     return count;
 }
 
@@ -217,7 +213,7 @@ Result<void> Authority::takeBack(const QString &folder) const {
     if (!revoked)
         return revoked.error();
     if (!QDir(folder).removeRecursively())
-        return failed(folder, QStringLiteral("cannot be removed"));
+        return failed(folder, "cannot be removed");
     return {};
 }
 

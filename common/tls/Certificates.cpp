@@ -32,7 +32,7 @@ Error failed(const QString &what) {
     char reason[256] = "unknown";
     ERR_error_string_n(ERR_get_error(), reason, sizeof reason);
     ERR_clear_error();
-    return {ErrorCode::InternalError, QStringLiteral("%1: %2").arg(what, QString::fromLatin1(reason))};
+    return {ErrorCode::InternalError, QString("%1: %2").arg(what, QString::fromLatin1(reason))};
 }
 
 QByteArray contentOf(const Bio &bio) {
@@ -90,13 +90,12 @@ bool describe(X509 *certificate, EVP_PKEY *key, const CertificateSubject &subjec
 // Signed by the issuer; null: by its own key.
 Result<CertifiedKey> make(const CertificateSubject &subject, int days, X509 *issuer, EVP_PKEY *issuerKey) {
     if (subject.name.isEmpty() || subject.name.size() > longestCommonName)
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("the name of a certificate has 1 to %1 characters").arg(longestCommonName));
+        return Error(ErrorCode::InvalidParams,
+                     QString("the name of a certificate has 1 to %1 characters").arg(longestCommonName));
     const Key key(EVP_EC_gen("P-256"));
     const Certificate made(X509_new());
     if (!key || !made || !describe(made.get(), key.get(), subject, days))
-        return failed(QStringLiteral("making a certificate"));
+        return failed("making a certificate");
     X509 *const by = issuer ? issuer : made.get();
     const bool isComplete =
         X509_set_issuer_name(made.get(), X509_get_subject_name(by)) == 1 &&
@@ -108,23 +107,23 @@ Result<CertifiedKey> make(const CertificateSubject &subject, int days, X509 *iss
     const Bio certificate(BIO_new(BIO_s_mem())), secret(BIO_new(BIO_s_mem()));
     if (!isComplete || PEM_write_bio_X509(certificate.get(), made.get()) != 1 ||
         PEM_write_bio_PrivateKey(secret.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1)
-        return failed(QStringLiteral("signing a certificate"));
+        return failed("signing a certificate");
     return CertifiedKey{contentOf(certificate), contentOf(secret)};
 }
 
 } // namespace
 
 Result<void> checkCertificateName(const QString &name) {
-    static const QRegularExpression plain(QStringLiteral("\\A[A-Za-z0-9_][A-Za-z0-9_.@-]{0,63}\\z"));
+    static const QRegularExpression plain("\\A[A-Za-z0-9_][A-Za-z0-9_.@-]{0,63}\\z");
     if (plain.match(name).hasMatch())
         return {};
-    return Error(ErrorCode::InvalidParams,
-                 QStringLiteral("the name \"%1\", expected 1 to 64 letters, digits, or one of _ . @ -")
-                     .arg(name.left(80)));
+    return Error(
+        ErrorCode::InvalidParams,
+        QString("the name \"%1\", expected 1 to 64 letters, digits, or one of _ . @ -").arg(name.left(80)));
 }
 
 Result<CertifiedKey> makeAuthority(const QString &name, int days) {
-    return make({name, QStringLiteral("authority")}, days, nullptr, nullptr);
+    return make({name, "authority"}, days, nullptr, nullptr);
 }
 
 Result<CertifiedKey> issueCertificate(const CertifiedKey &authority, const CertificateSubject &subject,
@@ -132,7 +131,7 @@ Result<CertifiedKey> issueCertificate(const CertifiedKey &authority, const Certi
     const Certificate issuer = readCertificate(authority.certificate);
     const Key key = readKey(authority.key);
     if (!issuer || !key)
-        return failed(QStringLiteral("reading the authority's certificate and key"));
+        return failed("reading the authority's certificate and key");
     return make(subject, days, issuer.get(), key.get());
 }
 

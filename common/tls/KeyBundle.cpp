@@ -31,7 +31,7 @@ const Member members[] = {
 };
 
 Error bad(const QString &what) {
-    return {ErrorCode::InvalidRequest, QStringLiteral("the keys that arrived are not in order: ") + what};
+    return {ErrorCode::InvalidRequest, "the keys that arrived are not in order: " + what};
 }
 
 bool isPlainText(const QByteArray &text) {
@@ -40,9 +40,9 @@ bool isPlainText(const QByteArray &text) {
 
 // Nothing before, between or after: no headers either, with which OpenSSL would ask for a passphrase.
 bool isOnePem(const QByteArray &text, const char *kind) {
-    const QString begin = QStringLiteral("-----BEGIN %1-----\n").arg(QLatin1String(kind)),
-                  end = QStringLiteral("-----END %1-----\n").arg(QLatin1String(kind));
-    static const QRegularExpression base64(QStringLiteral("\\A[A-Za-z0-9+/=\n]+\\z"));
+    const QString begin = QString("-----BEGIN %1-----\n").arg(QLatin1String(kind)),
+                  end = QString("-----END %1-----\n").arg(QLatin1String(kind));
+    static const QRegularExpression base64("\\A[A-Za-z0-9+/=\n]+\\z");
     const QString pem = QString::fromLatin1(text);
     return text.size() <= maxPemBytes && pem.startsWith(begin) && pem.endsWith(end) &&
            base64.match(pem.mid(begin.size(), pem.size() - begin.size() - end.size())).hasMatch();
@@ -50,22 +50,21 @@ bool isOnePem(const QByteArray &text, const char *kind) {
 
 Result<void> check(const KeyBundle &keys) {
     if (!isOnePem(keys.authority, "CERTIFICATE") || !isOnePem(keys.certificate, "CERTIFICATE"))
-        return bad(QStringLiteral("a certificate is not valid"));
+        return bad("a certificate is not valid");
     if (!isOnePem(keys.key, "PRIVATE KEY"))
-        return bad(QStringLiteral("the key is not valid"));
+        return bad("the key is not valid");
     const QSslCertificate own(keys.certificate);
     if (own.isNull() || !isSignedBy(keys.authority, keys.authority))
-        return bad(QStringLiteral("a certificate cannot be read"));
+        return bad("a certificate cannot be read");
     if (!isSignedBy(keys.certificate, keys.authority))
-        return bad(QStringLiteral("the certificate is not signed by the authority"));
+        return bad("the certificate is not signed by the authority");
     if (!belongTogether({keys.certificate, keys.key}))
-        return bad(QStringLiteral("the key is not that of the certificate"));
+        return bad("the key is not that of the certificate");
     const PeerCertificate subject = toPeer(own);
-    if (!checkCertificateName(subject.name) ||
-        (!roleFrom(subject.role) && subject.role != QStringLiteral("daemon")))
-        return bad(QStringLiteral("the certificate has no name"));
+    if (!checkCertificateName(subject.name) || (!roleFrom(subject.role) && subject.role != "daemon"))
+        return bad("the certificate has no name");
     if (!isPlainText(keys.revoked))
-        return bad(QStringLiteral("the list of revoked certificates is not a text"));
+        return bad("the list of revoked certificates is not a text");
     return {};
 }
 
@@ -78,8 +77,7 @@ Result<KeyBundle> KeyBundle::read(const QString &folder) {
             continue;
         QFile file(QDir(folder).filePath(member.file));
         if (!file.open(QIODevice::ReadOnly))
-            return Error(ErrorCode::InputOutput,
-                         QStringLiteral("%1: %2").arg(file.fileName(), file.errorString()));
+            return Error(ErrorCode::InputOutput, QString("%1: %2").arg(file.fileName(), file.errorString()));
         keys.*member.content = file.read(maxJsonBytes);
     }
     const auto revoked = KeyFolder::revoked(folder);
@@ -97,12 +95,12 @@ Result<KeyBundle> KeyBundle::fromJson(const QByteArray &json) {
     const auto parsed = parseJson(json, &error);
     if (json.size() > maxJsonBytes || !parsed || !parsed->isObject() ||
         parsed->toObject().size() != int(std::size(members)))
-        return bad(QStringLiteral("expected an object with four texts"));
+        return bad("expected an object with four texts");
     KeyBundle keys;
     for (const Member &member : members) {
         const QJsonValue value = parsed->toObject().value(QLatin1String(member.name));
         if (!value.isString())
-            return bad(QStringLiteral("%1 is not a text").arg(QLatin1String(member.name)));
+            return bad(QString("%1 is not a text").arg(QLatin1String(member.name)));
         keys.*member.content = value.toString().toUtf8();
     }
     if (const auto fine = check(keys); !fine)

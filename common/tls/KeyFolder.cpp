@@ -23,19 +23,18 @@ constexpr qint64 maxBytes = 1 << 20; // of a file of keys
 const QString remedy = QStringLiteral("hermesctl keys --help tells how to make keys");
 
 Error wrong(const QString &file, const QString &what, const QString &how = remedy) {
-    return {ErrorCode::InputOutput, QStringLiteral("%1: %2; %3").arg(file, what, how),
-            QJsonObject{{QStringLiteral("path"), file}}};
+    return {ErrorCode::InputOutput, QString("%1: %2; %3").arg(file, what, how), QJsonObject{{"path", file}}};
 }
 
 Result<QByteArray> readKeyFile(const QString &path) {
     QFile file(path);
     const QFileInfo info(path);
     if (info.exists() && (!info.isFile() || info.size() > maxBytes)) // a pipe is not opened: that waits
-        return wrong(path, QStringLiteral("is not a file of keys"));
+        return wrong(path, "is not a file of keys");
     if (!info.exists() && !file.open(QIODevice::ReadOnly))
         return wrong(path, file.errorString());
     if (!file.open(QIODevice::ReadOnly))
-        return wrong(path, file.errorString(), QStringLiteral("the daemon's user must be able to read it"));
+        return wrong(path, file.errorString(), "the daemon's user must be able to read it");
     return file.readAll();
 }
 
@@ -44,20 +43,19 @@ Result<QByteArray> readSecret(const QString &path) {
     constexpr QFile::Permissions others = QFile::ReadGroup | QFile::WriteGroup | QFile::ExeGroup |
                                           QFile::ReadOther | QFile::WriteOther | QFile::ExeOther;
     if (content && permissionsTellReaders() && (QFile::permissions(path) & others))
-        return wrong(
-            path, QStringLiteral("others than its owner may read or change it"),
-            QStringLiteral("chmod 600 \"%1\", and issue a new one if others may have read it").arg(path));
+        return wrong(path, "others than its owner may read or change it",
+                     QString("chmod 600 \"%1\", and issue a new one if others may have read it").arg(path));
     return content;
 }
 
 Result<QSslCertificate> certificateIn(const QByteArray &pem, const QString &path) {
     const QSslCertificate certificate(pem);
     if (certificate.isNull())
-        return wrong(path, QStringLiteral("is not a certificate"));
+        return wrong(path, "is not a certificate");
     const QDateTime now = QDateTime::currentDateTimeUtc();
     if (certificate.expiryDate() < now || certificate.effectiveDate() > now)
         return wrong(path,
-                     QStringLiteral("is valid from %1 to %2, the clock says %3")
+                     QString("is valid from %1 to %2, the clock says %3")
                          .arg(certificate.effectiveDate().toString(Qt::ISODate),
                               certificate.expiryDate().toString(Qt::ISODate), now.toString(Qt::ISODate)));
     return certificate;
@@ -67,9 +65,9 @@ Result<QSslCertificate> certificateIn(const QByteArray &pem, const QString &path
 
 QString KeyFolder::usual() {
     const QString set = qEnvironmentVariable("HERMES_KEYS");
-    return !set.isEmpty() ? set
-                          : QStandardPaths::writableLocation(QStandardPaths::GenericConfigLocation) +
-                                QStringLiteral("/hermes/keys");
+    return !set.isEmpty()
+               ? set
+               : QStandardPaths::writableLocation(QStandardPaths::GenericConfigLocation) + "/hermes/keys";
 }
 
 Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
@@ -85,9 +83,9 @@ Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
     if (!authority || !own)
         return authority ? own.error() : authority.error();
     if (!belongTogether({*ownPem, *keyPem}))
-        return wrong(keyPath, QStringLiteral("is not the key of ") + ownPath);
+        return wrong(keyPath, "is not the key of " + ownPath);
     if (!isSignedBy(*ownPem, *authorityPem))
-        return wrong(ownPath, QStringLiteral("is not signed by the authority of ") + authorityPath);
+        return wrong(ownPath, "is not signed by the authority of " + authorityPath);
     QSslConfiguration made;
     made.setCaCertificates({*authority});
     made.setLocalCertificate(*own);
@@ -115,9 +113,9 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
         // One that was cut off must not be taken for another.
         const bool isNumber = word.size() >= shortestSerial && QByteArray::fromHex(word).toHex() == word;
         if (!isNumber)
-            return wrong(
-                path, QStringLiteral("\"%1\" is not a serial number, expected 16 hexadecimal digits or more")
-                          .arg(QString::fromUtf8(word.left(40))));
+            return wrong(path,
+                         QString("\"%1\" is not a serial number, expected 16 hexadecimal digits or more")
+                             .arg(QString::fromUtf8(word.left(40))));
         serials.insert(word);
     }
     return serials;

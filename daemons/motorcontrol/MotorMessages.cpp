@@ -11,15 +11,14 @@
 namespace hermes {
 
 // A struct of the protocol: its fields are looked for here.
-const Fields<roboclaw::Bus::Counts> &fieldsOf(Of<roboclaw::Bus::Counts>) {
+Fields<roboclaw::Bus::Counts> fieldsOf(Of<roboclaw::Bus::Counts>) {
     using C = roboclaw::Bus::Counts;
-    static const auto fields = Fields<C>()
-                                   .add("requests", &C::sent, "Sent, repetitions too")
-                                   .add("answers", &C::done, "That were taken")
-                                   .add("timeouts", &C::timeouts, "Requests without an answer")
-                                   .add("crc_errors", &C::crcErrors, "Damaged answers")
-                                   .add("unexpected", &C::unexpected, "Answers to something else");
-    return fields;
+    return Fields<C>()
+        .add("requests", &C::sent, "Sent, repetitions too")
+        .add("answers", &C::done, "That were taken")
+        .add("timeouts", &C::timeouts, "Requests without an answer")
+        .add("crc_errors", &C::crcErrors, "Damaged answers")
+        .add("unexpected", &C::unexpected, "Answers to something else");
 }
 
 } // namespace hermes
@@ -113,94 +112,81 @@ Standing standingOf(const Telemetry &t) {
     return standing;
 }
 
-const Fields<WheelMessage> &fieldsOf(Of<WheelMessage>) {
+Fields<WheelMessage> fieldsOf(Of<WheelMessage>) {
     using W = WheelMessage;
-    static const auto fields = Fields<W>()
-                                   .add("target", &W::target, "What was commanded", "rad/s")
-                                   .add("set_point", &W::setPoint, "On the way there", "rad/s")
-                                   .add("speed", &W::speed, "As measured", "rad/s")
-                                   .add("angle", &W::angle, "Since the start", "rad");
-    return fields;
+    return Fields<W>()
+        .add("target", &W::target, "What was commanded", "rad/s")
+        .add("set_point", &W::setPoint, "On the way there", "rad/s")
+        .add("speed", &W::speed, "As measured", "rad/s")
+        .add("angle", &W::angle, "Since the start", "rad");
 }
 
-const Fields<WheelsMessage> &fieldsOf(Of<WheelsMessage>) {
-    static const auto fields =
-        Fields<WheelsMessage>()
-            .addEach(wheelNames, &WheelsMessage::wheels, "Positive turns drive the robot forward")
-            .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s")
-            .add("target", &WheelsMessage::target, "The robot's velocity that was commanded");
-    return fields;
+Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>) {
+    return Fields<WheelsMessage>()
+        .addEach(wheelNames, &WheelsMessage::wheels, "Positive turns drive the robot forward")
+        .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s")
+        .add("target", &WheelsMessage::target, "The robot's velocity that was commanded");
 }
 
-const Fields<Standing::Controller> &fieldsOf(Of<Standing::Controller>) {
+Fields<Standing::Controller> fieldsOf(Of<Standing::Controller>) {
     using C = Standing::Controller;
-    static const auto fields = Fields<C>()
-                                   .add("name", &C::name, "Address and line")
-                                   .add("confirmed", &C::confirmed, "It stands")
-                                   .add("reason", &C::reason, "Why that is not confirmed, or empty");
-    return fields;
+    return Fields<C>()
+        .add("name", &C::name, "Address and line")
+        .add("confirmed", &C::confirmed, "It stands")
+        .add("reason", &C::reason, "Why that is not confirmed, or empty");
 }
 
-const Fields<Standing> &fieldsOf(Of<Standing>) {
-    static const auto fields =
-        Fields<Standing>().include(&Standing::all).add("controllers", &Standing::controllers, "Each");
-    return fields;
+Fields<Standing> fieldsOf(Of<Standing>) {
+    return Fields<Standing>().include(&Standing::all).add("controllers", &Standing::controllers, "Each");
 }
 
-const Fields<CycleStatistics> &fieldsOf(Of<CycleStatistics>) {
-    static const auto fields =
-        Fields<CycleStatistics>()
-            .add("cycles", &CycleStatistics::cycles, "Since the start")
-            .add("missed", &CycleStatistics::missed, "Periods without a cycle: it came too late")
-            .add("mean_lateness_s", &CycleStatistics::meanLateness_s, "Of the last 50 cycles", "s")
-            .add("worst_lateness_s", &CycleStatistics::worstLateness_s, "Of the last 50 cycles", "s");
-    return fields;
+Fields<CycleStatistics> fieldsOf(Of<CycleStatistics>) {
+    return Fields<CycleStatistics>()
+        .add("cycles", &CycleStatistics::cycles, "Since the start")
+        .add("missed", &CycleStatistics::missed, "Periods without a cycle: it came too late")
+        .add("mean_lateness_s", &CycleStatistics::meanLateness_s, "Of the last 50 cycles", "s")
+        .add("worst_lateness_s", &CycleStatistics::worstLateness_s, "Of the last 50 cycles", "s");
 }
 
-const Fields<CycleState> &fieldsOf(Of<CycleState>) {
+Fields<CycleState> fieldsOf(Of<CycleState>) {
     using C = CycleState;
-    static const auto fields = Fields<C>()
-                                   .add("period_s", &C::period_s, "Of the cycle", "s")
-                                   .include(&C::statistics)
-                                   .add("unread", &C::unread, "Reports that were taken too slowly")
-                                   .add("realtime", &C::realtime, "It goes before all ordinary threads");
-    return fields;
+    return Fields<C>()
+        .add("period_s", &C::period_s, "Of the cycle", "s")
+        .include(&C::statistics)
+        .add("unread", &C::unread, "Reports that were taken too slowly")
+        .add("realtime", &C::realtime, "It goes before all ordinary threads");
 }
 
-const Fields<Telemetry::Controller> &fieldsOf(Of<Telemetry::Controller>) {
+Fields<Telemetry::Controller> fieldsOf(Of<Telemetry::Controller>) {
     using C = Telemetry::Controller;
-    static const auto fields =
-        Fields<C>()
-            .add("name", &C::name, "Address and line")
-            .add("ready", &C::ready, "It can be driven")
-            .add("confirmed", &C::stands, "It has confirmed that it stands")
-            .add("error", &C::error, "Why it is not ready, or empty")
-            .add("version", &C::version, "Of its firmware")
-            .include(&C::counts)
-            .add("stray_bytes", &C::strayBytes, "On its line, when none was awaited")
-            .add("rate_hz", &C::rate_Hz, "Of readings that its line gives; 0: not known", "Hz")
-            .add("overruns", &C::overruns, "Cycles that began before the encoders of the last were read");
-    return fields;
+    return Fields<C>()
+        .add("name", &C::name, "Address and line")
+        .add("ready", &C::ready, "It can be driven")
+        .add("confirmed", &C::stands, "It has confirmed that it stands")
+        .add("error", &C::error, "Why it is not ready, or empty")
+        .add("version", &C::version, "Of its firmware")
+        .include(&C::counts)
+        .add("stray_bytes", &C::strayBytes, "On its line, when none was awaited")
+        .add("rate_hz", &C::rate_Hz, "Of readings that its line gives; 0: not known", "Hz")
+        .add("overruns", &C::overruns, "Cycles that began before the encoders of the last were read");
 }
 
-const Fields<MotorState> &fieldsOf(Of<MotorState>) {
+Fields<MotorState> fieldsOf(Of<MotorState>) {
     using S = MotorState;
-    static const auto fields =
-        Fields<S>()
-            .add("ready", &S::ready, "All controllers are")
-            .add("standing", &S::standing, "As motor.stop answers")
-            .add("estop", &S::estop, "The emergency stop is latched")
-            .include(&S::hold)
-            .add("pose", &S::pose, "As in the topic odometry")
-            .add("twist", &S::twist, "As measured")
-            .add("target", &S::target, "The velocity that was commanded")
-            .add("set_point", &S::setPoint, "The velocity on the way there")
-            .add("wheels", &S::wheels, "As in the topic wheels")
-            .add("counter_jumps", &S::counterJumps, "Times that a controller lost its counts")
-            .add("controllers", &S::controllers, "Each, with its traffic")
-            .add("cycle", &S::cycle, "How punctual it is")
-            .add("battery", &S::battery, "How full it is, and how long it lasts");
-    return fields;
+    return Fields<S>()
+        .add("ready", &S::ready, "All controllers are")
+        .add("standing", &S::standing, "As motor.stop answers")
+        .add("estop", &S::estop, "The emergency stop is latched")
+        .include(&S::hold)
+        .add("pose", &S::pose, "As in the topic odometry")
+        .add("twist", &S::twist, "As measured")
+        .add("target", &S::target, "The velocity that was commanded")
+        .add("set_point", &S::setPoint, "The velocity on the way there")
+        .add("wheels", &S::wheels, "As in the topic wheels")
+        .add("counter_jumps", &S::counterJumps, "Times that a controller lost its counts")
+        .add("controllers", &S::controllers, "Each, with its traffic")
+        .add("cycle", &S::cycle, "How punctual it is")
+        .add("battery", &S::battery, "How full it is, and how long it lasts");
 }
 
 } // namespace hermes::motorcontrol

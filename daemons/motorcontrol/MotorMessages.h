@@ -65,12 +65,12 @@ bool allStand(const Telemetry &telemetry);
 /// Which controllers answer and are not known to stand; empty when none.
 QString turningOf(const Telemetry &telemetry);
 
-const Fields<WheelMessage> &fieldsOf(Of<WheelMessage>);
-const Fields<WheelsMessage> &fieldsOf(Of<WheelsMessage>);
-const Fields<Standing::Controller> &fieldsOf(Of<Standing::Controller>);
-const Fields<Standing> &fieldsOf(Of<Standing>);
-const Fields<CycleState> &fieldsOf(Of<CycleState>);
-const Fields<Telemetry::Controller> &fieldsOf(Of<Telemetry::Controller>);
-const Fields<MotorState> &fieldsOf(Of<MotorState>);
+Fields<WheelMessage> fieldsOf(Of<WheelMessage>);
+Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>);
+Fields<Standing::Controller> fieldsOf(Of<Standing::Controller>);
+Fields<Standing> fieldsOf(Of<Standing>);
+Fields<CycleState> fieldsOf(Of<CycleState>);
+Fields<Telemetry::Controller> fieldsOf(Of<Telemetry::Controller>);
+Fields<MotorState> fieldsOf(Of<MotorState>);
 
 } // namespace hermes::motorcontrol

@@ -1,7 +1,7 @@
 #include "daemons/recorder/DriveHistory.h"
 
+#include "daemons/recorder/HaltCause.h"
 #include "daemons/recorder/RobotDaemons.h"
-
 #include "protocol/messages/Daemons.h"
 #include "protocol/messages/Motors.h"
 #include "protocol/wire/Fields.h"
@@ -36,18 +36,7 @@ double lateness(const SessionMessage &message, const WireValue &data) {
     return late_s >= 0 && late_s <= longest_s ? late_s : 0;
 }
 
-/// Whether it counts also where the robot stood.
-bool isLatched(const QString &cause) {
-    static const QSet<QString> passing{"stop", "time-out", "take-over", "client gone", "gap", "restart"};
-    return isFault(cause) && !passing.contains(cause);
-}
-
 } // namespace
-
-bool isFault(const QString &cause) {
-    static const QSet<QString> wishes{"", "driver", "release", "reset", "settings", "shutdown"};
-    return !wishes.contains(cause);
-}
 
 bool DriveHistory::wants(const QString &topic) {
     static const QSet<QString> names{"commands", "status", "log", "marks"};
@@ -78,7 +67,7 @@ void DriveHistory::take(const SessionMessage &message) {
 }
 
 void DriveHistory::add(double t_s, const QString &text) {
-    if (events_.size() < maxEvents)
+    if (keepsEvents_ && events_.size() < maxEvents)
         events_.push_back({t_s, oneLine(text)});
 }
 
@@ -111,9 +100,9 @@ void DriveHistory::takeControl(double t_s, const WireValue &data) {
 // One that stood gets a halt of its own where it is the first fault since somebody drove.
 void DriveHistory::halt(double t_s, const QString &cause, const QString &reason) {
     add(t_s, "halt: " + reason);
-    const bool explains = !halts_.empty() && isFault(halts_.back().cause) &&
+    const bool explains = !halts_.empty() && haltCause(halts_.back().cause).isFault() &&
                           halts_.back().speed_mps > standing_mps && t_s < halts_.back().t_s + near_s;
-    if (!driver_.isEmpty() || (isLatched(cause) && !explains)) {
+    if (!driver_.isEmpty() || (haltCause(cause).kind == HaltCause::Kind::Latched && !explains)) {
         drive_.t_s = t_s;
         drive_.cause = cause;
         drive_.reason = reason;
@@ -166,10 +155,12 @@ void DriveHistory::takeStatus(double t_s, const QString &daemon, const WireValue
         there.insert(name);
         std::vector<Level> &levels = health_[name];
         const bool isFirst = levels.empty();
-        const QString before = isFirst ? "ok" : levels.back().level;
+        const QString before = isFirst ? "ok" : levels.back().level, message = oneLine(item.message);
+        if (!keepsEvents_)
+            levels.clear();
         if (levels.size() < maxLevels &&
-            (isFirst || before != item.level || levels.back().message != item.message))
-            levels.push_back({t_s, item.level, oneLine(item.message)});
+            (levels.empty() || before != item.level || levels.back().message != message))
+            levels.push_back({t_s, item.level, message});
         if (before == item.level)
             continue;
         add(t_s, QString("health of %1: %2: %3").arg(name, item.level, item.message));
@@ -194,9 +185,9 @@ const Halt *DriveHistory::lastFault() const {
     const Halt *best = nullptr;
     int bestRank = 0;
     for (const Halt &halt : halts_) {
-        const bool isWorth = isFault(halt.cause);
-        const bool counts = isWorth && (halt.speed_mps > standing_mps || isLatched(halt.cause));
-        const int rank = counts ? 2 : isWorth && !halt.driver.isEmpty() ? 1 : 0;
+        const HaltCause cause = haltCause(halt.cause);
+        const bool counts = halt.speed_mps > standing_mps || cause.kind == HaltCause::Kind::Latched;
+        const int rank = !cause.isFault() ? 0 : counts ? 2 : halt.driver.isEmpty() ? 0 : 1;
         if (rank > 0 && rank >= bestRank) {
             best = &halt;
             bestRank = rank;

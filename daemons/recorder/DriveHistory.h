@@ -8,9 +8,6 @@
 
 namespace hermes::recorder {
 
-/// Whether a cause of MotionHold is nobody's wish to end a drive.
-bool isFault(const QString &cause);
-
 /// The robot stopped to follow commands, or was given a reason to, as it stood.
 struct Halt {
     double t_s = 0;        ///< after the beginning of the session
@@ -31,6 +28,10 @@ struct Event {
 /// wrong.
 class DriveHistory {
 public:
+    /// keepsEvents: also what events() and wrongAt() tell, which takes memory.
+    explicit DriveHistory(bool keepsEvents = true)
+        : keepsEvents_(keepsEvents) {}
+
     /// The topics that are looked at.
     static bool wants(const QString &topic);
     void take(const SessionMessage &message);
@@ -67,6 +68,7 @@ private:
     void takeLog(double t_s, const QString &daemon, const WireValue &data);
     void add(double t_s, const QString &text);
 
+    bool keepsEvents_;
     double last_s_ = 0;
     std::optional<double> driven_m_;
     QStringList stops_, faults_;

@@ -22,7 +22,6 @@ Result<void> McapRecorder::begin(const RecordingPlan &plan) {
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         plan_ = plan;
-        begin_ = plan.start;
         topics_.clear();
         lost_.clear();
         waiting_.clear();
@@ -57,18 +56,17 @@ int McapRecorder::addTopic(const RecordedTopic &topic) {
     return int(topics_.size()) - 1;
 }
 
-void McapRecorder::write(int topic, quint64 sequence, double stamp, QByteArray json, const Moment &came) {
+void McapRecorder::write(const KeptMessage &message) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const std::size_t bytes = std::size_t(json.size()) + messageBytes;
+    const std::size_t bytes = std::size_t(message.json.size()) + messageBytes;
     if (!takes_ && !error_) // it has ended in order
         return;
     if (!takes_ || waitingBytes_ + bytes > maxWaiting_) {
-        ++lost_[std::size_t(topic)];
+        ++lost_[std::size_t(message.topic)];
         return;
     }
     waitingBytes_ += bytes;
-    waiting_.push_back({topic, sequence, begin_.stamp_ns + came.mono_ns - begin_.mono_ns,
-                        qint64(std::clamp(stamp, 0.0, 9e9) * 1e9), std::move(json)});
+    waiting_.push_back(message);
 }
 
 void McapRecorder::noteLost(int topic, quint64 messages) {
@@ -80,7 +78,7 @@ void McapRecorder::run() {
     bool isWriting = true, isStopping = false;
     double chunkBegan = monotonicNow();
     while (isWriting && !isStopping) {
-        std::deque<Waiting> messages;
+        std::deque<KeptMessage> messages;
         {
             std::unique_lock<std::mutex> lock(mutex_);
             wake_.wait_for(lock, collectPeriod, [this] { return stopping_; });
@@ -104,7 +102,7 @@ void McapRecorder::run() {
         mendFile();
     const std::lock_guard<std::mutex> lock(mutex_);
     takes_ = false;
-    for (const Waiting &message : waiting_) // an error has ended it
+    for (const KeptMessage &message : waiting_) // an error has ended it
         ++lost_[std::size_t(message.topic)];
     waiting_.clear();
     writer_.reset();
@@ -119,20 +117,21 @@ void McapRecorder::mendFile() {
         files_.back().bytes = mended->bytes;
 }
 
-bool McapRecorder::writeAll(std::deque<Waiting> &messages) {
+bool McapRecorder::writeAll(const std::deque<KeptMessage> &messages) {
     quint64 written = 0, here = 0;
-    for (const Waiting &message : messages) {
+    for (const KeptMessage &message : messages) {
         if (isFull() && !(closeFile() && openFile()))
             break;
         const mcap::Message entry{
-            channelOf(message.topic), std::uint32_t(message.sequence), std::uint64_t(message.log_ns),
-            std::uint64_t(message.publish_ns),
+            channelOf(message.topic), std::uint32_t(message.sequence),
+            std::uint64_t(plan_.start.stamp_ns + message.came.mono_ns - plan_.start.mono_ns),
+            std::uint64_t(std::clamp(message.stamp, 0.0, 9e9) * 1e9),
             std::string_view(message.json.constData(), std::size_t(message.json.size()))};
         if (writer_->write(entry))
             ++here;
         else if (!file_.error().isEmpty() && !fail())
             break;
-        else // larger than a file can hold
+        else // it, or what tells of its topic, is larger than a file can hold
             noteLost(message.topic, 1);
         ++written;
     }
@@ -148,6 +147,7 @@ bool McapRecorder::isFull() const {
     return double(writer_->bytes()) > plan_.fileBytes || monotonicNow() - opened_ > plan_.fileSeconds;
 }
 
+/// 0: the file has no room for the schema or the channel.
 std::uint16_t McapRecorder::channelOf(int topic) {
     const auto known = channels_.constFind(topic);
     if (known != channels_.constEnd())
@@ -158,10 +158,12 @@ std::uint16_t McapRecorder::channelOf(int topic) {
         told = topics_[std::size_t(topic)];
     }
     const std::string name = told.topic.toStdString();
-    const std::uint16_t schema = told.schema.isEmpty()
-                                     ? std::uint16_t(0)
-                                     : writer_->addSchema(name, "jsonschema", told.schema.toStdString());
-    return *channels_.insert(topic, writer_->addChannel(schema, name, "json", told.metadata));
+    const bool hasSchema = !told.schema.isEmpty();
+    const std::uint16_t schema =
+        hasSchema ? writer_->addSchema(name, "jsonschema", told.schema.toStdString()) : std::uint16_t(0);
+    const std::uint16_t channel =
+        hasSchema && schema == 0 ? schema : writer_->addChannel(schema, name, "json", told.metadata);
+    return *channels_.insert(topic, channel);
 }
 
 bool McapRecorder::openFile() {

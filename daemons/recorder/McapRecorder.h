@@ -21,6 +21,15 @@ struct RecordedTopic {
     std::map<std::string, std::string> metadata; ///< of the channel
 };
 
+/// A message that came, and when.
+struct KeptMessage {
+    int topic = 0; ///< number
+    quint64 sequence = 0;
+    double stamp = 0; ///< when its data were true, s since the epoch
+    Moment came;
+    QByteArray json;
+};
+
 /// Writes messages of topics to PREFIX-0001.mcap and on, in a thread of its own. Time goes on evenly within a
 /// recording, whatever happens to the wall clock.
 class McapRecorder : public RecordingWriter {
@@ -41,26 +50,18 @@ public:
     void setBegin(const std::optional<Moment> &earlier) { earlier_ = earlier; }
     /// A topic of this recording; gives its number for write(). Any thread, as what follows.
     int addTopic(const RecordedTopic &topic);
-    /// A message, and when it came. stamp: when its data were true, s since the epoch.
-    void write(int topic, quint64 sequence, double stamp, QByteArray json,
-               const Moment &came = Moment::now());
+    void write(const KeptMessage &message);
     /// Messages that were lost before they came here.
     void noteLost(int topic, quint64 messages);
 
 private:
-    struct Waiting {
-        int topic = 0;
-        quint64 sequence = 0;
-        qint64 log_ns = 0, publish_ns = 0;
-        QByteArray json;
-    };
     struct File {
         QString name;
         quint64 bytes = 0, messages = 0;
     };
 
     void run();
-    bool writeAll(std::deque<Waiting> &messages);
+    bool writeAll(const std::deque<KeptMessage> &messages);
     bool openFile();
     bool closeFile();
     void mendFile();
@@ -80,11 +81,10 @@ private:
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable wake_;
     RecordingPlan plan_;
-    Moment begin_;
     bool takes_ = false, stopping_ = false;
     std::deque<RecordedTopic> topics_;
     std::vector<quint64> lost_; ///< messages, by topic
-    std::deque<Waiting> waiting_;
+    std::deque<KeptMessage> waiting_;
     std::size_t waitingBytes_ = 0;
     quint64 messages_ = 0;
     std::vector<File> files_;

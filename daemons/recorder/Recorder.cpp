@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::chrono::seconds afterAlarm{5}; // that the ring is recorded on
 constexpr qint64 maxEndedBytes = 4096;
+constexpr std::chrono::seconds forLoggers{2}; // who still records tells what, and that counts first
+constexpr double maxAway_s = 3600; // of all daemons at once; later a session does not go on by itself
+constexpr char ringPrefix[] = "ring-";
 
 } // namespace
 
@@ -40,6 +43,7 @@ Recorder::Recorder()
     declareStudies();
     work_.setMaxThreadCount(2);
     connect(&recording_, &Recording::changed, this, &Recorder::recordingChanged);
+    connect(&recording_, &Recording::completed, this, &Recorder::resume);
     connect(&topics_, &TopicRecorder::alarmed, this, &Recorder::keepRing);
     ringEnd_.setSingleShot(true);
     connect(&ringEnd_, &QTimer::timeout, this, [this] {
@@ -85,8 +89,8 @@ void Recorder::settingsChanged(const QStringList &paths) {
 
 void Recorder::follow() {
     QStringList addresses;
-    for (const QJsonValue &one : settings().values()["daemons"].toArray())
-        if (const Result<QString> address = daemonAddress(one.toString()))
+    for (const QString &one : settings().values()["daemons"].toVariant().toStringList())
+        if (const Result<QString> address = daemonAddress(one))
             addresses.append(*address);
     if (addresses.isEmpty())
         for (const QString &name : daemonNames())
@@ -166,6 +170,19 @@ void Recorder::keepEnded(const QString &session) {
         logWarning("session", saved.error().message);
 }
 
+/// A power cut, a killed supervisor and an update do not end what nobody has stopped.
+void Recorder::resume(const QJsonObject &latest, double since_s) {
+    const QString ended = latest["ended"].toString();
+    RecordingStatus status;
+    status.name = latest["name"].toString();
+    status.session = latest["session"].toString();
+    status.start = latest["start"].toDouble();
+    status.duration_s = 0; // the recording that goes on tells it
+    if (since_s < maxAway_s && (ended == "cut off" || ended == "stopped") &&
+        !latest["name"].toString().startsWith(ringPrefix))
+        QTimer::singleShot(forLoggers, this, [this, status] { session_.resume(status); });
+}
+
 void Recorder::openRing() {
     topics_.setRules(topicRules(settings().values()["topics"].toArray()));
     topics_.openRing(settings().number("record.ring_s"),
@@ -178,7 +195,7 @@ void Recorder::keepRing(const QString &why) {
         return;
     keepsRing_ = true;
     file_.setBegin(topics_.ringBegin());
-    const QString name = "ring-" + QDateTime::currentDateTime().toString("yyyy-MM-dd_HH-mm-ss");
+    const QString name = ringPrefix + QDateTime::currentDateTime().toString("yyyy-MM-dd_HH-mm-ss");
     session_.start(name, {identity().name}, [this, name, why](const Result<SessionState> &state) {
         keepsRing_ = false;
         file_.setBegin({});

@@ -40,13 +40,13 @@ private:
     QString endedPath();
     void keepEnded(const QString &session);
     void recordingChanged();
+    void resume(const QJsonObject &latest, double since_s);
     void openRing();
     /// Keeps what the ring has as a session, and what comes for some seconds.
     void keepRing(const QString &why);
     void sessionChanged();
     void updateHealth();
 
-    SessionControl::Done<SessionState> answer(const Reply &reply) const;
     /// Does the work with the session of that name in another thread; refused while it is recorded or
     /// replayed.
     void change(const QString &name, const Reply &reply,

@@ -14,17 +14,18 @@ Field nameField(const char *description) {
     return Field::text("name", description).with("maxLength", 200);
 }
 
-SessionSummary summaryOf(const RecordedSession &session) {
-    SessionSummary summary{session.name,
-                           session.id,
-                           session.start,
-                           {},
-                           session.bytes(),
-                           session.members(),
-                           session.faults() + session.absent()};
-    if (!session.goesOn())
-        summary.end = session.end;
-    return summary;
+QStringList textsOf(const QJsonValue &list) {
+    return list.toVariant().toStringList();
+}
+
+/// What a command answers.
+template <typename T>
+Result<QJsonValue> answerOf(const Result<T> &result) {
+    return result ? Result<QJsonValue>(asJson(*result)) : Result<QJsonValue>(result.error());
+}
+
+SessionControl::Done<SessionState> answer(const Reply &reply) {
+    return [reply](const Result<SessionState> &state) { reply.give(answerOf(state)); };
 }
 
 } // namespace
@@ -67,12 +68,6 @@ void Recorder::declareSettings() {
                    .group("Recording"));
 }
 
-SessionControl::Done<SessionState> Recorder::answer(const Reply &reply) const {
-    return [reply](const Result<SessionState> &state) {
-        reply.give(state ? Result<QJsonValue>(asJson(*state)) : Result<QJsonValue>(state.error()));
-    };
-}
-
 void Recorder::declareCommands() {
     addCommand(Command("session.start", "All loggers of the robot, and the recorder itself, record one "
                                         "session; all begin, or none does")
@@ -82,10 +77,7 @@ void Recorder::declareCommands() {
                               .optional())
                    .gives<SessionState>()
                    .asyncHandler([this](const Call &call, const Reply &reply) {
-                       QStringList what;
-                       for (const QJsonValue &one : call.value("what").toArray())
-                           what.append(one.toString());
-                       session_.start(call.text("name"), what, answer(reply));
+                       session_.start(call.text("name"), textsOf(call.value("what")), answer(reply));
                    }));
     addCommand(Command("session.stop", "Ends the session; everything is on the disk when this returns, and "
                                        "problems tells what is missing")
@@ -95,10 +87,7 @@ void Recorder::declareCommands() {
                    .param(Field::text("text", "What to remember").with("maxLength", 1000))
                    .gives<SessionMark>()
                    .example({{"text", "at the door"}}, QJsonObject{{"t_s", 12.5}, {"text", "at the door"}})
-                   .handler([this](const Call &call) -> Result<QJsonValue> {
-                       const Result<SessionMark> made = mark(call.text("text"));
-                       return made ? Result<QJsonValue>(asJson(*made)) : made.error();
-                   }));
+                   .handler([this](const Call &call) { return answerOf(mark(call.text("text"))); }));
     addCommand(Command("session.state", "What the topic session says, now")
                    .needs(Role::Observer)
                    .gives<SessionState>()
@@ -112,7 +101,7 @@ void Recorder::declareCommands() {
                            std::vector<SessionSummary> summaries;
                            for (const RecordedSession &session : list.sessions)
                                if (max == 0 || int(summaries.size()) < max)
-                                   summaries.push_back(summaryOf(session));
+                                   summaries.push_back(session.summary());
                            reply.result(asJson(summaries));
                        };
                        session_.list(take);
@@ -131,7 +120,7 @@ void Recorder::declareCommands() {
                                   if (const Result<void> done = renameSession(session, root, to); !done)
                                       return done.error();
                                   session.name = to;
-                                  return asJson(summaryOf(session));
+                                  return asJson(session.summary());
                               });
                    }));
     addCommand(Command("session.remove", "Removes all that was recorded of a session")
@@ -144,13 +133,14 @@ void Recorder::declareCommands() {
                               [isMeant = call.flag("confirm"), root = settings().text("record.folder")](
                                   const RecordedSession &session) -> Result<QJsonValue> {
                                   if (!isMeant)
-                                      return Error(ErrorCode::NotReady,
-                                                   QString("\"%1\": %2 MB of %3 would be removed; "
-                                                           "confirm=true does it")
-                                                       .arg(session.name,
-                                                            QString::number(session.bytes() * 1e-6, 'f', 1),
-                                                            session.members().join(", ")),
-                                                   QJsonObject{{"confirm", true}});
+                                      return Error(
+                                          ErrorCode::NotReady,
+                                          QString("\"%1\": %2 MB of %3 would be removed; "
+                                                  "confirm=true does it")
+                                              .arg(session.name,
+                                                   QString::number(session.summary().bytes * 1e-6, 'f', 1),
+                                                   session.members().join(", ")),
+                                          QJsonObject{{"confirm", true}});
                                   const Result<void> done = removeSession(session, root);
                                   return done ? Result<QJsonValue>(QJsonValue()) : done.error();
                               });
@@ -223,11 +213,8 @@ void Recorder::declareStudies() {
                        .optional())
             .gives<SessionFiles>()
             .asyncHandler([this](const Call &call, const Reply &reply) {
-                QStringList topics;
-                for (const QJsonValue &one : call.value("topics").toArray())
-                    topics.append(one.toString());
                 study(call.text("name"), reply,
-                      [topics, format = call.text("format"),
+                      [topics = textsOf(call.value("topics")), format = call.text("format"),
                        floor = settings().number("record.free_floor_bytes")](
                           SessionReader &session) -> Result<QJsonValue> {
                           const Result<double> room = freeBytes(session.folder());
@@ -265,8 +252,7 @@ void Recorder::declareReplay() {
                 options.from_s = call.number("from_s");
                 options.loop = call.flag("loop");
                 options.paused = call.flag("paused");
-                for (const QJsonValue &one : call.value("without").toArray())
-                    options.without.append(one.toString());
+                options.without = textsOf(call.value("without"));
                 session_.replay(call.text("name"), options, [this, reply](const Result<SessionState> &state) {
                     state ? showMarks(state->name, reply) : reply.error(state.error());
                 });
@@ -296,15 +282,12 @@ void Recorder::declareReplay() {
 }
 
 void Recorder::showMarks(const QString &name, const Reply &reply) {
-    const Reply read([this, reply](const Result<QJsonValue> &marks) {
-        ReadReport report;
-        if (marks)
-            session_.setMarks(readMessage<std::vector<SessionMark>>(WireValue(*marks), report)
-                                  .value_or(std::vector<SessionMark>()));
-        reply.result(asJson(session_.state()));
+    const Reply shown([this, reply](const Result<QJsonValue> &) { reply.result(asJson(session_.state())); });
+    study(name, shown, [this](SessionReader &session) -> Result<QJsonValue> {
+        const auto show = [this, marks = sessionMarks(session)] { session_.setMarks(marks); };
+        QMetaObject::invokeMethod(this, show, Qt::QueuedConnection);
+        return QJsonValue();
     });
-    study(name, read,
-          [](SessionReader &session) -> Result<QJsonValue> { return asJson(sessionMarks(session)); });
 }
 
 Command Recorder::whileReplaying(Command command, const std::function<Result<void>(const Call &)> &action) {

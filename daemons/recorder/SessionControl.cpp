@@ -7,6 +7,7 @@
 
 #include <QDateTime>
 #include <QJsonArray>
+#include <QUuid>
 #include <algorithm>
 
 namespace hermes::recorder {
@@ -15,26 +16,6 @@ namespace {
 constexpr double rateOver_s = 10;
 constexpr std::size_t maxMarks = 1000; // that are told
 constexpr int maxProblems = 100;
-
-/// A number of a daemon that is to be summed up.
-double believed(const QJsonValue &number) {
-    return std::clamp(number.toDouble(), 0.0, 1e18);
-}
-
-NamedCounts namedCounts(const QJsonValue &value) {
-    NamedCounts counts;
-    const QJsonObject object = value.toObject();
-    for (auto count = object.begin(); count != object.end(); ++count)
-        counts[count.key()] = believed(count.value());
-    return counts;
-}
-
-SessionPart partOf(const QString &name, const QJsonValue &entry, const QString &state,
-                   const QString &problem) {
-    return {
-        name,   state, believed(entry["bytes"]), namedCounts(entry["counts"]), namedCounts(entry["losses"]),
-        problem};
-}
 
 } // namespace
 
@@ -82,8 +63,8 @@ SessionMembers SessionControl::members() const {
 
 void SessionControl::problem(const QString &line) {
     logWarning("session", line);
-    if (problems_.size() < maxProblems && !problems_.contains(line))
-        problems_.append(line);
+    if (now_.problems.size() < maxProblems && !now_.problems.contains(line))
+        now_.problems.append(line);
     Q_EMIT changed();
 }
 
@@ -92,8 +73,8 @@ void SessionControl::start(const QString &name, const QStringList &what, const D
     if (const Result<void> fine = checkName("name", full); !fine)
         return done(fine.error());
     if (isBusy())
-        return done(
-            Error(ErrorCode::NotReady, QString("\"%1\" is being recorded; session.stop ends it").arg(name_)));
+        return done(Error(ErrorCode::NotReady,
+                          QString("\"%1\" is being recorded; session.stop ends it").arg(now_.name)));
     if (isReplaying())
         return done(Error(ErrorCode::NotReady,
                           QString("\"%1\" is replayed; session.live ends that").arg(player_.session().name)));
@@ -105,34 +86,31 @@ void SessionControl::start(const QString &name, const QStringList &what, const D
     phase_ = Phase::Starting;
     daemons_.forgetSilent();
     what_ = what;
-    name_ = full;
-    forget();
+    forget(full);
     Q_EMIT changed();
-    recorder_.setMembers(members());
-    recorder_.start(full, [this, done](const Result<SessionReplies> &begin) {
+    const QString id = QUuid::createUuid().toString(QUuid::WithoutBraces);
+    startSession(members(), full, id, this, [this, id, done](const Result<SessionReplies> &begin) {
         if (begin) {
             phase_ = Phase::Recording;
             begun(*begin);
             return askHowTheyAre([this, done] { done(state()); });
         }
         phase_ = Phase::Idle;
-        ended_.insert(recorder_.takenBack());
-        name_.clear();
+        ended_.insert(id);
+        Q_EMIT sessionEnded(id);
+        now_.name.clear();
         Q_EMIT changed();
         done(begin.error());
     });
 }
 
-/// Of the session before.
-void SessionControl::forget() {
-    session_.clear();
+/// Of the session before; one of this name follows.
+void SessionControl::forget(const QString &name) {
+    now_ = {};
+    now_.name = name;
     parts_.clear();
     free_.clear();
-    marks_.clear();
-    problems_.clear();
-    notes_.clear();
     progress_.clear();
-    start_ = duration_s_ = 0;
 }
 
 /// A logger whose device is not there records nothing, and says so in its health only.
@@ -143,9 +121,9 @@ void SessionControl::askHowTheyAre(const std::function<void()> &done) {
                     for (const QJsonValue &item :
                          reply.result ? (*reply.result)["health"].toArray() : QJsonArray())
                         if (item["level"].toString() != "ok")
-                            notes_.append(QString("%1: %2: %3: %4")
-                                              .arg(reply.member.name, item["level"].toString(),
-                                                   item["name"].toString(), item["message"].toString()));
+                            now_.notes.append(QString("%1: %2: %3: %4")
+                                                  .arg(reply.member.name, item["level"].toString(),
+                                                       item["name"].toString(), item["message"].toString()));
                 Q_EMIT changed();
                 done();
             });
@@ -153,41 +131,41 @@ void SessionControl::askHowTheyAre(const std::function<void()> &done) {
 
 void SessionControl::begun(const SessionReplies &replies) {
     startMono_ = monotonicNow();
-    start_ = stampNow();
+    now_.start = stampNow();
     for (const SessionReply &reply : replies) {
-        session_ = (*reply.result)["session"].toString();
-        keep(reply.member, *reply.result);
+        now_.session = reply.status().session.value_or(QString());
+        keep(reply);
     }
-    logInfo("session", QString("\"%1\" is recorded by %2 daemons").arg(name_).arg(parts_.size()));
+    logInfo("session", QString("\"%1\" is recorded by %2 daemons").arg(now_.name).arg(parts_.size()));
     second_.start(std::chrono::seconds(1));
     for (const auto &[address, daemon] : daemons_.all()) // who came in between
         if (daemon->isKnown && parts_.count(daemon->name) == 0)
             greet(daemon.get());
 }
 
-void SessionControl::keep(const SessionMember &member, const QJsonValue &status) {
-    const bool isOn = status["recording"].toBool() && status["session"].toString() == session_;
-    const QString error = status["error"]["message"].toString();
-    SessionPart &part = parts_[member.name];
+/// What a logger tells of its part.
+void SessionControl::keep(const SessionReply &reply) {
+    const QString &name = reply.member.name;
+    const RecordingStatus status = reply.status();
+    const bool isOfIt = status.session == now_.session, isOn = status.recording && isOfIt;
+    const QString error = status.error ? status.error->message : QString();
+    SessionPart &part = parts_[name];
     if (!isOn && part.state == "recording" && phase_ == Phase::Recording)
-        problem(QString("%1 does not record any more%2")
-                    .arg(member.name, error.isEmpty() ? QString() : ": " + error));
-    if (status["session"].toString() == session_)
-        part = partOf(member.name, status,
-                      isOn              ? "recording"
-                      : error.isEmpty() ? "stopped"
-                                        : "failed",
-                      error);
+        problem(
+            QString("%1 does not record any more%2").arg(name, error.isEmpty() ? QString() : ": " + error));
+    const QString state = isOn ? "recording" : error.isEmpty() ? "stopped" : "failed";
+    if (isOfIt)
+        part = sessionPart(name, state, error, status.bytes, status.counts, status.losses);
     else
         part.state = "failed";
-    if (status["free_bytes"].isDouble())
-        free_[member.name] = status["free_bytes"].toDouble();
+    if (status.freeBytes)
+        free_[name] = *status.freeBytes;
 }
 
 void SessionControl::watch() {
     if (phase_ != Phase::Recording)
         return tellLate();
-    duration_s_ = monotonicNow() - startMono_;
+    now_.duration_s = monotonicNow() - startMono_;
     callAll(callsOf(members().all), "record.status", std::chrono::seconds(3), this,
             [this](const SessionReplies &states) { take(states); });
 }
@@ -197,11 +175,10 @@ void SessionControl::take(const SessionReplies &states) {
         return;
     double bytes = 0;
     for (const SessionReply &state : states) {
-        const bool isOfIt = state.result && (*state.result)["session"].toString() == session_;
-        if (!isOfIt && parts_.count(state.member.name) == 0)
+        if (state.status().session != now_.session && parts_.count(state.member.name) == 0)
             continue;
         if (state.result)
-            keep(state.member, *state.result);
+            keep(state);
         else
             parts_[state.member.name].state = "silent";
         bytes += parts_[state.member.name].bytes;
@@ -217,31 +194,29 @@ void SessionControl::take(const SessionReplies &states) {
 
 void SessionControl::stop(const Done<SessionState> &done) {
     if (phase_ != Phase::Recording)
-        return done(Error(ErrorCode::NotReady,
-                          phase_ == Phase::Idle ? QString("nothing is being recorded")
-                                                : QString("\"%1\" is about to begin or to end").arg(name_)));
+        return done(
+            Error(ErrorCode::NotReady, phase_ == Phase::Idle
+                                           ? QString("nothing is being recorded")
+                                           : QString("\"%1\" is about to begin or to end").arg(now_.name)));
     phase_ = Phase::Stopping;
-    duration_s_ = monotonicNow() - startMono_;
+    ended_.insert(now_.session); // whatever becomes of this process meanwhile
+    Q_EMIT sessionEnded(now_.session);
+    now_.duration_s = monotonicNow() - startMono_;
     Q_EMIT changed();
-    recorder_.setMembers(members());
-    recorder_.stop(session_, [this, done](const Result<SessionRecorder::Stopped> &result) {
+    stopSession(members(), now_.session, this, [this, done](const Result<EndedSession> &result) {
         ended(result);
         done(state());
     });
 }
 
-void SessionControl::ended(const Result<SessionRecorder::Stopped> &result) {
-    ended_.insert(session_);
-    Q_EMIT sessionEnded(session_);
+void SessionControl::ended(const Result<EndedSession> &result) {
     phase_ = Phase::Idle;
     second_.start(std::chrono::seconds(1));
     if (!result)
         problem(result.error().message);
     std::map<QString, SessionPart> parts;
-    for (const RecordedSession &session : result ? result->sessions : std::vector<RecordedSession>())
-        for (const RecordedPart &part : session.id == session_ ? session.parts : std::vector<RecordedPart>())
-            parts[part.member.name] =
-                partOf(part.member.name, part.entry, part.entry["ended"].toString(), part.fault());
+    for (const RecordedPart &part : result ? result->parts : std::vector<RecordedPart>())
+        parts[part.member.name] = part.summary();
     for (const auto &[name, part] : parts_)
         if (parts.count(name) == 0) {
             parts[name] = part;
@@ -254,7 +229,7 @@ void SessionControl::ended(const Result<SessionRecorder::Stopped> &result) {
     parts_ = std::move(parts);
     for (const QString &line : result ? result->problems : QStringList())
         problem(line);
-    logInfo("session", QString("\"%1\" has ended").arg(name_));
+    logInfo("session", QString("\"%1\" has ended").arg(now_.name));
     progress_.clear();
     Q_EMIT changed();
 }
@@ -271,8 +246,8 @@ Result<SessionMark> SessionControl::mark(const QString &text) {
     if (phase_ != Phase::Recording)
         return Error(ErrorCode::NotReady, "nothing is being recorded; session.start begins");
     const SessionMark mark{monotonicNow() - startMono_, text};
-    if (marks_.size() < maxMarks)
-        marks_.push_back(mark);
+    if (now_.marks.size() < maxMarks)
+        now_.marks.push_back(mark);
     std::vector<SessionCall> calls;
     for (const SessionMember &member : members().all)
         if (member.marks && parts_.count(member.name) != 0)
@@ -285,9 +260,8 @@ Result<SessionMark> SessionControl::mark(const QString &text) {
     return mark;
 }
 
-void SessionControl::list(const std::function<void(const SessionList &)> &done) {
-    recorder_.setMembers(allMembers());
-    recorder_.list(done);
+void SessionControl::list(const WhenDone<SessionList> &done) {
+    listSessions(allMembers(), this, done);
 }
 
 void SessionControl::find(const QString &name, const Done<RecordedSession> &done) {
@@ -301,13 +275,11 @@ void SessionControl::find(const QString &name, const Done<RecordedSession> &done
 }
 
 SessionState SessionControl::state() const {
-    SessionState state;
+    SessionState state = now_;
     static const char *const phases[]{"idle", "starting", "recording", "stopping"};
     state.state = phases[int(phase_)];
-    state.name = name_;
-    state.session = session_;
-    state.start = start_;
-    state.duration_s = phase_ == Phase::Recording ? monotonicNow() - startMono_ : duration_s_;
+    if (phase_ == Phase::Recording)
+        state.duration_s = monotonicNow() - startMono_;
     for (const auto &[name, part] : parts_) {
         state.parts.push_back(part);
         state.bytes += part.bytes;
@@ -320,9 +292,6 @@ SessionState SessionControl::state() const {
         if (bytes1 > bytes0 && t1 > t0)
             state.left_s = *state.free_bytes * (t1 - t0) / (bytes1 - bytes0);
     }
-    state.marks = marks_;
-    state.problems = problems_;
-    state.notes = notes_;
     if (phase_ == Phase::Recording)
         state.silent = daemons_.silent();
     if (isReplaying()) {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "daemons/recorder/RobotDaemons.h"
+#include "daemons/recorder/SessionCommands.h"
 #include "daemons/recorder/SessionPlayer.h"
-#include "daemons/recorder/SessionRecorder.h"
 #include "protocol/messages/Sessions.h"
 
 #include <deque>
@@ -27,7 +27,7 @@ public:
     /// Gives the mark, which is also in what all loggers that take marks record.
     Result<SessionMark> mark(const QString &text);
     /// The latest first.
-    void list(const std::function<void(const SessionList &)> &done);
+    void list(const WhenDone<SessionList> &done);
     /// The one of this name. InvalidParams: there is none.
     void find(const QString &name, const Done<RecordedSession> &done);
 
@@ -41,6 +41,9 @@ public:
     /// A session is being recorded, or about to be.
     bool isBusy() const { return phase_ != Phase::Idle; }
     bool isOf(const RecordedSession &session) const;
+    /// Goes on with a session that nobody stopped: it is recorded in new files, by all loggers. status: what
+    /// is known of it.
+    void resume(const RecordingStatus &status);
     /// Ids of sessions that have ended before this program began.
     void setEnded(const QStringList &sessions) { ended_ = {sessions.begin(), sessions.end()}; }
 
@@ -59,39 +62,35 @@ private:
     SessionMembers members() const;
     SessionMembers allMembers() const;
     void begun(const SessionReplies &replies);
-    void forget();
+    void forget(const QString &name);
     void askHowTheyAre(const std::function<void()> &done);
     void watch();
     void tellLate();
     void take(const SessionReplies &states);
-    void ended(const Result<SessionRecorder::Stopped> &result);
+    void ended(const Result<EndedSession> &result);
     void greet(RobotDaemons::Daemon *daemon);
-    void join(const SessionMember &member, const QJsonValue &status);
-    void resume(const QJsonValue &status);
+    void join(const SessionReply &reply);
     void missed(const QString &line);
     void problem(const QString &line);
     Result<void> mayReplay() const;
-    void keep(const SessionMember &member, const QJsonValue &status);
+    void keep(const SessionReply &reply);
 
     RobotDaemons &daemons_;
     const SessionMember own_;
-    SessionRecorder recorder_;
     SessionPlayer player_;
     QTimer second_;
 
     Phase phase_ = Phase::Idle;
     QStringList what_;
-    QString name_, session_; ///< of what is recorded, or was last
-    QSet<QString> ended_;    ///< ids of sessions that have ended
-    QSet<QString> late_;     ///< names of loggers that have not been told so
-    double start_ = 0, startMono_ = 0, duration_s_ = 0;
+    SessionState now_;    ///< of what is recorded or replayed, or was last; state() completes it
+    QSet<QString> ended_; ///< ids of sessions that have ended
+    QSet<QString> late_;  ///< names of loggers that have not been told so
+    double startMono_ = 0;
     std::map<QString, SessionPart> parts_;           ///< by the name of the logger
     std::map<QString, double> free_;                 ///< bytes, by the same
     std::deque<std::pair<double, double>> progress_; ///< monotonic seconds, bytes
-    std::vector<SessionMark> marks_;
-    QStringList problems_, notes_;
-    double position_s_ = 0, length_s_ = 0;     ///< of the replay
-    std::vector<Done<SessionState>> toBeLive_; ///< who waits for its end
+    double position_s_ = 0, length_s_ = 0;           ///< of the replay
+    std::vector<Done<SessionState>> toBeLive_;       ///< who waits for its end
 };
 
 } // namespace hermes::recorder

@@ -1,7 +1,8 @@
 #include "daemons/recorder/SessionExport.h"
 
 #include "common/Project.h"
-#include "common/files/SavedFile.h"
+#include "common/files/NamedFile.h"
+#include "common/platform/PrivateFiles.h"
 #include "common/recording/DiskError.h"
 #include "daemons/recorder/CarmenText.h"
 #include "protocol/mcap/Writer.h"
@@ -12,10 +13,58 @@
 #include <QRegularExpression>
 #include <QSet>
 #include <cmath>
-#include <memory>
+#include <cstdio>
+#include <deque>
 
 namespace hermes::recorder {
 namespace {
+
+/// A file that takes the place of the one before when commit() succeeds. It is open only while a piece of it
+/// is written: there may be one for each topic.
+class ExportFile {
+public:
+    ExportFile(const QString &folder, const QString &name)
+        : path_(folder + '/' + name)
+        , draft_(folder + "/." + name + ".new") {
+        QFile::remove(draft_); // of an export that was cut off, or a link
+    }
+    ~ExportFile() { QFile::remove(draft_); }
+    ExportFile(const ExportFile &) = delete;
+    ExportFile &operator=(const ExportFile &) = delete;
+
+    void write(const QByteArray &bytes) {
+        waiting_ += bytes;
+        if (waiting_.size() >= pieceBytes)
+            flush(false);
+    }
+    Result<QString> commit() {
+        flush(true);
+        if (done_ &&
+            std::rename(QFile::encodeName(draft_).constData(), QFile::encodeName(path_).constData()) != 0)
+            done_ = failure(qt_error_string());
+        return done_ ? Result<QString>(path_) : done_.error();
+    }
+
+private:
+    static constexpr int pieceBytes = 1 << 16;
+
+    void flush(bool toDisk) {
+        QFile file;
+        if (done_)
+            done_ = openOwnFile(file, draft_, true);
+        if (done_ && !(file.seek(file.size()) && file.write(waiting_) == waiting_.size() && file.flush() &&
+                       (!toDisk || syncToDisk(file.handle()))))
+            done_ = failure(file.errorString());
+        waiting_.clear();
+    }
+    Error failure(const QString &why) const {
+        return diskError(path_ + ": cannot be written: " + why, path_);
+    }
+
+    const QString path_, draft_;
+    QByteArray waiting_;
+    Result<void> done_;
+};
 
 /// The files of one export.
 class ExportFiles {
@@ -28,32 +77,22 @@ public:
                    ? Result<void>(diskError(folder_ + ": is no folder, and cannot be made one", folder_))
                    : Result<void>();
     }
-    /// name: of a topic, or a session. Null: it cannot be written, which commit() tells.
-    SavedFile *open(QString name, const QString &extension) {
+    /// name: of a topic, or a session. Whether it can be written commit() tells.
+    ExportFile &open(QString name, const QString &extension) {
         name.replace(QRegularExpression("[^A-Za-z0-9._-]|^\\."), "-");
         QString unique = name.left(longestName) + extension;
         for (int number = 2; names_.contains(unique.toLower()); ++number)
             unique = QString("%1-%2%3").arg(name.left(longestName)).arg(number).arg(extension);
         names_.insert(unique.toLower());
-        const QString path = QDir(folder_).filePath(unique);
-        if (QFileInfo(path).isSymLink())
-            QFile::remove(path); // else what it leads to is written
-        auto file = std::make_unique<SavedFile>(path);
-        if (const auto begun = file->begin(); !begun) {
-            fault_ = begun.error();
-            return nullptr;
-        }
-        files_.push_back(std::move(file));
-        return files_.back().get();
+        return files_.emplace_back(folder_, unique);
     }
     Result<QStringList> commit() {
         QStringList paths;
-        if (fault_)
-            return *fault_;
-        for (const auto &file : files_) {
-            if (const auto done = file->commit(); !done)
-                return done.error();
-            paths.append(file->fileName());
+        for (ExportFile &file : files_) {
+            const Result<QString> path = file.commit();
+            if (!path)
+                return path.error();
+            paths.append(*path);
         }
         return paths;
     }
@@ -61,10 +100,9 @@ public:
 private:
     static constexpr int longestName = 150;
 
-    QString folder_;
+    const QString folder_;
     QSet<QString> names_; ///< in small letters: some disks know no others
-    std::vector<std::unique_ptr<SavedFile>> files_;
-    std::optional<Error> fault_;
+    std::deque<ExportFile> files_;
 };
 
 /// Files by topic and schema: one that changed in a restart is told from the one before.
@@ -78,7 +116,7 @@ std::pair<QString, std::string> keyOf(const SessionMessage &message) {
 /// A table of one topic.
 class Sheet {
 public:
-    Sheet(SavedFile *file, const mcap::Schema *schema)
+    Sheet(ExportFile &file, const mcap::Schema *schema)
         : file_(file) {
         if (schema)
             addColumns(
@@ -91,7 +129,7 @@ public:
         for (const QStringList &column : columns_)
             titles.append(column.isEmpty()                    ? QString("data")
                           : titles.contains(column.join('.')) ? quoted("data." + column.join('.'))
-                                                              : quoted(column.join('.')));
+                                                              : textCell(column.join('.')));
         write(titles);
     }
 
@@ -125,36 +163,38 @@ private:
             return text;
         return '"' + text.replace('"', "\"\"") + '"';
     }
+    /// A spreadsheet would take some texts for formulas: an apostrophe tells it that they are none.
+    static QString textCell(const QString &text) {
+        static const QString begins("=+-@\t\r");
+        return quoted(!text.isEmpty() && begins.contains(text[0]) ? '\'' + text : text);
+    }
     static QString cell(WireView value) {
         switch (value.kind()) {
         case WireView::Kind::Undefined:
         case WireView::Kind::Null:
             return {};
         case WireView::Kind::Text:
-            return quoted(value.text());
+            return textCell(value.text());
         default: // numbers as they came
             return quoted(QString::fromUtf8(compactJson(value.toJson())));
         }
     }
-    void write(const QStringList &cells) {
-        if (file_)
-            file_->write(cells.join(',').toUtf8() + '\n');
-    }
+    void write(const QStringList &cells) { file_.write(cells.join(',').toUtf8() + '\n'); }
 
-    SavedFile *file_;
+    ExportFile &file_;
     std::vector<QStringList> columns_; ///< each the members that lead to it; none: all of the data
 };
 
 /// Poses of one topic.
 struct Trajectory {
-    SavedFile *file = nullptr;
+    ExportFile *file = nullptr;
     double last = 0; ///< stamp
 
     void take(const SessionMessage &message) {
         const WireValue data = message.data();
         const WireView inner = data["pose"], pose = inner.kind() == WireView::Kind::Object ? inner : data;
         const double x = pose["x"].number(), y = pose["y"].number(), half = pose["theta"].number() / 2;
-        if (!file || !std::isfinite(x + y + half) || message.stamp <= last)
+        if (!std::isfinite(x + y + half) || message.stamp <= last)
             return;
         last = message.stamp;
         file->write(QString("%1 %2 %3 0 0 0 %4 %5\n")
@@ -170,10 +210,11 @@ struct Trajectory {
 /// One MCAP file of all.
 class McapCopy {
 public:
-    explicit McapCopy(SavedFile *file)
+    explicit McapCopy(ExportFile &file)
         : writer_(
-              [file](std::string_view bytes) {
-                  return file && file->write(bytes.data(), qint64(bytes.size())) == qint64(bytes.size());
+              [&file](std::string_view bytes) {
+                  file.write(QByteArray::fromRawData(bytes.data(), int(bytes.size())));
+                  return true;
               },
               "hermes " + projectVersion().toStdString()) {}
 
@@ -184,19 +225,26 @@ public:
             const mcap::Schema *schema = message.schema;
             const auto id =
                 schema ? writer_.addSchema(schema->name, schema->encoding, schema->data) : std::uint16_t(0);
-            known = channels_
-                        .emplace(key, writer_.addChannel(id, message.channel.topic, message.channel.encoding,
-                                                         message.channel.metadata))
-                        .first;
+            const auto channel = schema && id == 0
+                                     ? id
+                                     : writer_.addChannel(id, message.channel.topic, message.channel.encoding,
+                                                          message.channel.metadata);
+            hasRoom_ = hasRoom_ && channel != 0;
+            known = channels_.emplace(key, channel).first;
         }
         mcap::Message copy = message.raw;
         copy.channel = known->second;
         writer_.write(copy);
     }
-    void finish() { writer_.finish(); }
+    /// false: one file cannot hold all that was taken.
+    bool finish() {
+        writer_.finish();
+        return hasRoom_;
+    }
 
 private:
     mcap::Writer writer_;
+    bool hasRoom_ = true; ///< for schemas and channels
     std::map<std::pair<std::pair<QString, std::string>, std::map<std::string, std::string>>, std::uint16_t>
         channels_;
 };
@@ -225,7 +273,7 @@ Result<QStringList> exportSession(SessionReader &session, const QString &format,
             take(message);
         });
     };
-    const QString name = session.summary().name;
+    const QString name = session.recorded().name;
     if (format == "csv") {
         BySchema<Sheet> sheets;
         readAll({}, [&](const SessionMessage &message) {
@@ -241,15 +289,14 @@ Result<QStringList> exportSession(SessionReader &session, const QString &format,
         readAll({"scanmatcher/pose"}, [&](const SessionMessage &message) {
             Trajectory &trajectory = trajectories[message.topic];
             if (!trajectory.file)
-                trajectory.file = files.open(message.topic, ".tum");
+                trajectory.file = &files.open(message.topic, ".tum");
             trajectory.take(message);
         });
     } else if (format == "carmen") {
         CarmenText text;
-        SavedFile *file = files.open(name, ".log");
+        ExportFile &file = files.open(name, ".log");
         readAll(CarmenText::topics(), [&](const SessionMessage &message) {
-            if (const QByteArray line = text.take(message); file && !line.isEmpty())
-                file->write(line);
+            file.write(text.take(message)); // of one that gives no line nothing
         });
         if (text.scans() == 0)
             return Error(ErrorCode::NotReady, session.folder() + ": found no scan with odometry, expected " +
@@ -257,7 +304,11 @@ Result<QStringList> exportSession(SessionReader &session, const QString &format,
     } else if (format == "mcap") {
         McapCopy copy(files.open(name, ".mcap"));
         readAll({}, [&](const SessionMessage &message) { copy.take(message); });
-        copy.finish();
+        if (!copy.finish())
+            return Error(ErrorCode::OverLimit, session.folder() +
+                                                   ": found topics with schemas of more than " +
+                                                   QString::number(mcap::mostDefinitions) +
+                                                   " bytes, expected fewer in one file: export fewer topics");
     } else {
         return Error(ErrorCode::InvalidParams,
                      "format: found " + format + ", expected csv, tum, carmen or mcap");

@@ -15,9 +15,9 @@ Result<QString> folderOf(const RecordedSession &session, const QString &root) {
         return diskError(why + "; nothing was changed", folder);
     };
     for (const RecordedPart &part : session.parts)
-        if (QDir::cleanPath(part.entry["folder"].toString()) != QDir::cleanPath(folder))
-            return refused(QString("%1 keeps its part in %2, not in %3")
-                               .arg(part.member.name, part.entry["folder"].toString(), folder));
+        if (const QString own = part.entry.folder.value_or(QString());
+            QDir::cleanPath(own) != QDir::cleanPath(folder))
+            return refused(QString("%1 keeps its part in %2, not in %3").arg(part.member.name, own, folder));
     for (const QFileInfo &file : QDir(folder).entryInfoList({"*.json"}, QDir::Files)) {
         const Result<QJsonObject> sidecar = Sidecar::read(file.absoluteFilePath());
         if (!sidecar || sidecar->value("session").toString() != session.id)

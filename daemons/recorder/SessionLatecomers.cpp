@@ -10,55 +10,65 @@ void SessionControl::greet(RobotDaemons::Daemon *daemon) {
     Q_EMIT changed();
     if (!daemon->isLogger())
         return;
-    const SessionMember member = daemon->member();
-    callAll({{member, {}}}, "record.status", Client::defaultTimeout, this,
-            [this, member](const SessionReplies &replies) {
-                if (replies.front().result)
-                    join(member, *replies.front().result);
-            });
+    callAll({{daemon->member(), {}}}, "record.status", Client::defaultTimeout, this,
+            [this](const SessionReplies &replies) { join(replies.front()); });
 }
 
-void SessionControl::join(const SessionMember &member, const QJsonValue &status) {
-    const QString session = status["session"].toString();
-    if (status["recording"].toBool() && ended_.contains(session))
-        return callAll({stopCall(member, session)}, "record.stop", SessionRecorder::stopLimit, this,
+/// A logger tells what it records.
+void SessionControl::join(const SessionReply &reply) {
+    if (!reply.result)
+        return;
+    const SessionMember &member = reply.member;
+    const RecordingStatus status = reply.status();
+    const QString session = status.session.value_or(QString());
+    if (status.recording && ended_.contains(session))
+        return callAll({stopCall(member, session)}, "record.stop", stopLimit, this,
                        [this, member](const SessionReplies &) {
                            logInfo("session", member.name + " was away, and is told to stop");
                        });
-    if (status["recording"].toBool() && phase_ == Phase::Idle)
+    if (status.recording && phase_ == Phase::Idle)
         return resume(status);
-    if (phase_ != Phase::Recording || session == session_ ||
+    if (phase_ != Phase::Recording || session == now_.session ||
         (!what_.isEmpty() && !what_.contains(member.name)))
         return;
-    callAll({{member, {{"name", name_}, {"session", session_}}}}, "record.start", Client::defaultTimeout,
-            this, [this, member](const SessionReplies &replies) {
+    callAll({{member, {{"name", now_.name}, {"session", now_.session}}}}, "record.start",
+            Client::defaultTimeout, this, [this](const SessionReplies &replies) {
                 if (!replies.front().result)
                     return problem("it was not there all the time, and does not record: " +
                                    replies.front().complaint());
-                keep(member, *replies.front().result);
+                keep(replies.front());
                 Q_EMIT changed();
             });
 }
 
-/// The recorder was killed, or ended, while the loggers recorded: it goes on with its part.
-void SessionControl::resume(const QJsonValue &status) {
-    const QString name = status["name"].toString(), session = status["session"].toString();
+void SessionControl::resume(const RecordingStatus &status) {
+    const QString name = status.name.value_or(QString()), session = status.session.value_or(QString());
+    if (phase_ != Phase::Idle || isReplaying() || ended_.contains(session))
+        return;
     phase_ = Phase::Starting;
-    callAll({{own_, {{"name", name}, {"session", session}}}}, "record.start", Client::defaultTimeout, this,
-            [=](const SessionReplies &replies) {
-                phase_ = replies.front().result ? Phase::Recording : Phase::Idle;
-                if (!replies.front().result)
-                    return problem(QString("\"%1\" is being recorded, but not by this recorder: %2")
-                                       .arg(name, replies.front().complaint()));
-                name_ = name;
-                begun(replies);
-                start_ = status["start"].toDouble();
-                startMono_ -= std::max(0.0, stampNow() - start_);
-                Q_EMIT resumed(name);
-                watch();
-                problem(
-                    "the recorder was away, or not there at the beginning; what it records is missing then");
-            });
+    what_.clear();
+    forget(name);
+    callAll(
+        {{own_, {{"name", name}, {"session", session}}}}, "record.start", Client::defaultTimeout, this,
+        [=](const SessionReplies &replies) {
+            const bool isOwn = replies.front().result.ok();
+            phase_ = isOwn || status.recording ? Phase::Recording : Phase::Idle;
+            if (!isOwn)
+                problem(QString("\"%1\" was not stopped, and this recorder cannot go on with it: %2")
+                            .arg(name, replies.front().complaint()));
+            if (phase_ == Phase::Idle)
+                return;
+            now_.session = session;
+            begun(isOwn ? replies : SessionReplies()); // else the loggers record alone, and can be stopped
+            now_.start = status.start.value_or(0);
+            const double own_s = replies.front().status().duration_s.value_or(0);
+            startMono_ -= std::max(own_s, status.duration_s.value_or(std::max(0.0, stampNow() - now_.start)));
+            watch();
+            if (!isOwn)
+                return;
+            Q_EMIT resumed(name);
+            problem("the recorder was away, or not there at the beginning; what it records is missing then");
+        });
 }
 
 /// Who took part and did not answer as the session was ended.
@@ -70,7 +80,7 @@ void SessionControl::tellLate() {
             callAll({{member, {}}}, "record.status", std::chrono::seconds(3), this,
                     [this, member](const SessionReplies &replies) {
                         if (replies.front().result && late_.remove(member.name))
-                            join(member, *replies.front().result);
+                            join(replies.front());
                     });
 }
 

@@ -1,5 +1,7 @@
 #include "daemons/recorder/SessionList.h"
 
+#include "protocol/wire/Fields.h"
+
 #include <QHash>
 #include <QJsonArray>
 #include <QSet>
@@ -8,40 +10,81 @@
 namespace hermes::recorder {
 namespace {
 
-void add(RecordedSession &session, const SessionMember &member, const QJsonObject &entry) {
-    if (session.members().contains(member.name)) // no logger has a recording twice
-        return;
-    session.start = session.parts.empty() ? entry["start"].toDouble()
-                                          : std::min(session.start, entry["start"].toDouble());
-    session.end = std::max(session.end, entry["end"].toDouble());
-    session.parts.push_back({member, entry});
+/// A number of a daemon that is to be summed up.
+double believed(double number) {
+    return std::clamp(number, 0.0, 1e18);
+}
+
+NamedCounts believed(const std::optional<NamedCounts> &told) {
+    NamedCounts counts = told.value_or(NamedCounts());
+    for (double &count : counts)
+        count = believed(count);
+    return counts;
+}
+
+/// How long after another a recording began: by the clock that both have, else by those of their hosts.
+double secondsBetween(const RecordingEntry &earlier, const RecordingEntry &later) {
+    const bool isSameClock = !earlier.boot.value_or(QString()).isEmpty() && earlier.boot == later.boot &&
+                             earlier.start_mono && later.start_mono;
+    return isSameClock ? *later.start_mono - *earlier.start_mono
+                       : later.start.value_or(0) - earlier.start.value_or(0);
 }
 
 } // namespace
 
-QString RecordedPart::fault() const {
+QString RecordedPart::problem() const {
     if (goesOn())
         return "being recorded";
-    const QString ended = entry["ended"].toString();
-    if (ended != "stopped")
-        return ended;
-    if (!entry["complete"].toBool())
+    if (!error.isEmpty())
+        return error;
+    if (ended() != "stopped")
+        return ended();
+    if (!entry.complete.value_or(false))
         return "not complete";
-    return sumOf(entry["losses"]) > 0 ? "lost: " + countsText(entry["losses"]) : QString();
+    QStringList lost;
+    const NamedCounts losses = entry.losses.value_or(NamedCounts());
+    for (auto loss = losses.begin(); loss != losses.end(); ++loss)
+        if (*loss != 0)
+            lost.append(QString("%1 %2").arg(loss.key()).arg(*loss, 0, 'f', 0));
+    return lost.isEmpty() ? QString() : "lost: " + lost.join(", ");
+}
+
+SessionPart RecordedPart::summary() const {
+    return sessionPart(member.name, goesOn() ? "recording" : ended(), problem(), entry.bytes, entry.counts,
+                       entry.losses);
+}
+
+SessionPart sessionPart(const QString &daemon, const QString &state, const QString &problem,
+                        std::optional<double> bytes, const std::optional<NamedCounts> &counts,
+                        const std::optional<NamedCounts> &losses) {
+    return {daemon, state, believed(bytes.value_or(0)), believed(counts), believed(losses), problem};
+}
+
+void RecordedSession::add(RecordedPart part) {
+    if (members().contains(part.member.name))
+        return;
+    const RecordingEntry &entry = part.entry;
+    const double start_s = entry.start.value_or(0), end_s = entry.end.value_or(std::nullopt).value_or(0);
+    if (!parts.empty())
+        part.offset_s = parts.front().offset_s + secondsBetween(parts.front().entry, entry);
+    if (parts.empty() || part.offset_s < 0) { // the first of them, as far as it is known
+        start = start_s;
+        for (RecordedPart &other : parts)
+            other.offset_s -= part.offset_s;
+        duration_s -= part.offset_s;
+        part.offset_s = 0;
+    }
+    duration_s =
+        std::max(duration_s, part.offset_s + entry.duration_s.value_or(std::max(0.0, end_s - start_s)));
+    end = std::max(end, end_s);
+    parts.push_back(part);
 }
 
 QString RecordedSession::folder() const {
     for (const RecordedPart &part : parts)
         if (part.member.name == "recorder")
-            return part.entry["folder"].toString();
-    return parts.empty() ? QString() : parts.front().entry["folder"].toString();
-}
-
-double RecordedSession::bytes() const {
-    double sum = 0;
-    for (const RecordedPart &part : parts)
-        sum += part.entry["bytes"].toDouble();
-    return sum;
+            return part.entry.folder.value_or(QString());
+    return parts.empty() ? QString() : parts.front().entry.folder.value_or(QString());
 }
 
 QStringList RecordedSession::members() const {
@@ -51,11 +94,20 @@ QStringList RecordedSession::members() const {
     return names;
 }
 
-QStringList RecordedSession::faults() const {
+QStringList RecordedSession::problems() const {
     QStringList lines;
-    for (const RecordedPart &part : parts)
-        if (const QString fault = part.fault(); !fault.isEmpty())
-            lines.append(part.member.name + ' ' + fault);
+    QSet<QString> expected, present;
+    for (const RecordedPart &part : parts) {
+        const QString problem = part.problem();
+        const QString line = part.goesOn() ? problem : part.member.name + ": " + problem;
+        if (!problem.isEmpty() && !lines.contains(line)) // all are being recorded: told once
+            lines.append(line);
+        present.insert(part.member.name.section('@', 0, 0));
+        for (const QString &logger : part.entry.loggers.value_or(QStringList()))
+            expected.insert(logger);
+    }
+    for (const QString &logger : expected - present)
+        lines.append(logger + ": it took part, but does not answer or was not asked");
     return lines;
 }
 
@@ -63,17 +115,15 @@ bool RecordedSession::goesOn() const {
     return std::any_of(parts.begin(), parts.end(), [](const RecordedPart &part) { return part.goesOn(); });
 }
 
-QStringList RecordedSession::absent() const {
-    QSet<QString> expected, present;
-    for (const RecordedPart &part : parts) {
-        present.insert(part.member.name.section('@', 0, 0));
-        for (const QJsonValue &logger : part.entry["loggers"].toArray())
-            expected.insert(logger.toString());
+SessionSummary RecordedSession::summary() const {
+    SessionSummary summary{name, id, start, {}, 0, members(), problems()};
+    for (const RecordedPart &part : parts)
+        summary.bytes += part.summary().bytes;
+    if (!goesOn()) {
+        summary.end = end;
+        summary.duration_s = duration_s;
     }
-    QStringList lines;
-    for (const QString &logger : expected - present)
-        lines.append(logger + ": it took part, but does not answer or was not asked");
-    return lines;
+    return summary;
 }
 
 SessionList SessionList::of(const SessionReplies &replies) {
@@ -82,38 +132,24 @@ SessionList SessionList::of(const SessionReplies &replies) {
     list.problems = complaints(replies);
     for (const SessionReply &reply : replies) {
         for (const QJsonValue &recording : reply.result ? reply.result->toArray() : QJsonArray()) {
-            const QJsonObject entry = recording.toObject();
-            const QString name = entry["name"].toString(), id = entry["session"].toString();
-            if (entry.contains("error")) {
-                list.problems.append(reply.member.name + ": " + name + ": " + entry["error"].toString());
+            ReadReport report;
+            const auto entry = readMessage<RecordingEntry>(WireValue(recording), report);
+            if (!entry || entry->error) {
+                list.problems.append(reply.member.name + ": " + recording["name"].toString() + ": " +
+                                     (entry ? *entry->error : report.text()));
                 continue;
             }
-            const auto place =
-                places.insert(id + '/' + name, places.value(id + '/' + name, list.sessions.size()));
+            const QString id = entry->session.value_or(QString());
+            const auto place = places.insert(id + '/' + entry->name,
+                                             places.value(id + '/' + entry->name, list.sessions.size()));
             if (*place == list.sessions.size())
-                list.sessions.push_back({id, name, 0, 0, {}});
-            add(list.sessions[*place], reply.member, entry);
+                list.sessions.push_back({id, entry->name});
+            list.sessions[*place].add({reply.member, *entry});
         }
     }
     std::stable_sort(list.sessions.begin(), list.sessions.end(),
                      [](const RecordedSession &a, const RecordedSession &b) { return a.start > b.start; });
     return list;
-}
-
-QString countsText(const QJsonValue &counts) {
-    const QJsonObject object = counts.toObject();
-    QStringList list;
-    for (auto count = object.begin(); count != object.end(); ++count)
-        if (count.value().toDouble() != 0)
-            list.append(QString("%1 %2").arg(count.key()).arg(count.value().toDouble(), 0, 'f', 0));
-    return list.isEmpty() ? "nothing" : list.join(", ");
-}
-
-double sumOf(const QJsonValue &counts) {
-    double sum = 0;
-    for (const QJsonValue &count : counts.toObject())
-        sum += count.toDouble();
-    return sum;
 }
 
 } // namespace hermes::recorder

@@ -1,34 +1,42 @@
 #pragma once
 
 #include "daemons/recorder/SessionMember.h"
+#include "protocol/messages/Sessions.h"
 
 namespace hermes::recorder {
 
-/// What one logger has of a session: an entry of its record.list.
+/// What one logger has of a session.
 struct RecordedPart {
     SessionMember member;
-    QJsonObject entry;
+    RecordingEntry entry; ///< of its record.list
+    QString error = {};   ///< that ended it; empty: none, or it is not known
+    double offset_s = 0;  ///< after the beginning of the session, by a clock that never jumps
 
-    bool goesOn() const { return !entry["ended"].isString(); }
+    /// How it ended; empty: it goes on.
+    QString ended() const { return entry.ended.value_or(std::nullopt).value_or(QString()); }
+    bool goesOn() const { return ended().isEmpty(); }
     /// "" where all is there, else why not.
-    QString fault() const;
+    QString problem() const;
+    SessionPart summary() const;
 };
 
 /// What loggers recorded as one.
 struct RecordedSession {
     QString id, name;
-    double start = 0, end = 0; ///< s since the epoch; end 0: it goes on
-    std::vector<RecordedPart> parts;
+    double start = 0, end = 0; ///< s since the epoch, as the clock was set then; end 0: it goes on
+    double duration_s = 0;     ///< by a clock that never jumps
+    std::vector<RecordedPart> parts = {};
 
+    /// One more part. No logger has a session twice: a second one counts for nothing.
+    void add(RecordedPart part);
     /// Where the recorder's part is, or else that of another.
     QString folder() const;
-    double bytes() const;
     QStringList members() const;
-    /// "velodynelogger cut off" for each part of which something is missing.
-    QStringList faults() const;
+    /// A line for each part of which something is missing, and for each logger that has a sidecar beside
+    /// those of the session but none of these parts.
+    QStringList problems() const;
     bool goesOn() const;
-    /// A line for each logger that has a sidecar beside those of the session but none of these parts.
-    QStringList absent() const;
+    SessionSummary summary() const;
 };
 
 /// Those of all loggers, the latest first.
@@ -40,9 +48,9 @@ struct SessionList {
     static SessionList of(const SessionReplies &replies);
 };
 
-/// "data 1800, packets 1810": what is not 0.
-QString countsText(const QJsonValue &counts);
-/// The sum of counts.
-double sumOf(const QJsonValue &counts);
+/// A part of which a logger tells this. Numbers that cannot be are brought to what can.
+SessionPart sessionPart(const QString &daemon, const QString &state, const QString &problem,
+                        std::optional<double> bytes, const std::optional<NamedCounts> &counts,
+                        const std::optional<NamedCounts> &losses);
 
 } // namespace hermes::recorder

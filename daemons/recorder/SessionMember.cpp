@@ -1,5 +1,7 @@
 #include "daemons/recorder/SessionMember.h"
 
+#include "protocol/wire/Fields.h"
+
 #include <QPointer>
 #include <memory>
 
@@ -23,6 +25,19 @@ struct Round {
 
 bool isUnconfirmed(const Result<QJsonValue> &reply) {
     return !reply && (reply.error().is(ErrorCode::TimedOut) || reply.error().is(ErrorCode::Disconnected));
+}
+
+RecordingStatus SessionReply::status() const {
+    ReadReport report;
+    const auto told =
+        result ? readMessage<RecordingStatus>(WireValue(*result), report) : std::optional<RecordingStatus>();
+    if (told || !result)
+        return told.value_or(RecordingStatus());
+    RecordingStatus least; // of a logger that tells other things in another form
+    least.recording = (*result)["recording"].toBool();
+    least.name = (*result)["name"].toString();
+    least.session = (*result)["session"].toString();
+    return least;
 }
 
 SessionCall stopCall(const SessionMember &member, const QString &session) {

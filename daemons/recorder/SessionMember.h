@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/client/Client.h"
+#include "protocol/messages/Recordings.h"
 
 #include <QJsonObject>
 #include <QStringList>
@@ -39,6 +40,9 @@ struct SessionReply {
 
     /// "seriallogger: what failed"; only where something did.
     QString complaint() const { return member.name + ": " + result.error().message; }
+    /// What a command record.* told; of a reply in another form the least that counts; as if nothing was
+    /// recorded where it failed.
+    RecordingStatus status() const;
 };
 using SessionReplies = std::vector<SessionReply>;
 

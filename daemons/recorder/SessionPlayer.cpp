@@ -136,10 +136,10 @@ void SessionPlayer::onStates(const SessionReplies &states) {
     if (states.empty())
         return goLive(sessionError("no logger of this session can replay it", {}));
     for (const SessionReply &state : states)
-        if (state.result && (*state.result)["recording"].toBool())
+        if (const RecordingStatus status = state.status(); status.recording)
             return goLive(
                 Error(ErrorCode::NotReady, QString("%1 is recording \"%2\"; session.stop ends it")
-                                               .arg(state.member.name, (*state.result)["name"].toString())));
+                                               .arg(state.member.name, status.name.value_or(QString()))));
     if (goesOn(firstError(states)))
         open();
 }
@@ -147,10 +147,10 @@ void SessionPlayer::onStates(const SessionReplies &states) {
 void SessionPlayer::open() {
     std::vector<SessionCall> calls;
     for (const RecordedPart &part : session_.parts) {
-        QJsonObject params{{"recording", part.entry["name"]},
+        QJsonObject params{{"recording", part.entry.name},
                            {"speed", options_.speed},
                            {"paused", true},
-                           {"delay_s", part.entry["start"].toDouble() - session_.start}};
+                           {"delay_s", part.offset_s}};
         if (part.member.endsWithUs)
             params.insert("until_gone", true);
         calls.push_back({part.member, params});
@@ -180,12 +180,7 @@ void SessionPlayer::onPlaced(const SessionReplies &replies) {
     if (isPaused_)
         poll();
     else
-        order("source.pause", {{"paused", false}}, &SessionPlayer::onReleased);
-}
-
-void SessionPlayer::onReleased(const SessionReplies &replies) {
-    if (goesOn(firstRefusal(replies)))
-        poll();
+        order("source.pause", {{"paused", false}}, &SessionPlayer::onObeyed);
 }
 
 void SessionPlayer::order(const QString &method, const QJsonObject &params, Next next) {
@@ -249,7 +244,7 @@ bool SessionPlayer::hasOrders() const {
 QString SessionPlayer::folderOf(const QString &logger) const {
     for (const RecordedPart &part : session_.parts)
         if (part.member.name == logger)
-            return part.entry["folder"].toString();
+            return part.entry.folder.value_or(QString());
     return {};
 }
 

@@ -56,7 +56,6 @@ private:
     void open();
     void onOpened(const SessionReplies &replies);
     void onPlaced(const SessionReplies &replies);
-    void onReleased(const SessionReplies &replies);
     void obeySoon();
     void order(const QString &method, const QJsonObject &params, Next next);
     void orderPause();

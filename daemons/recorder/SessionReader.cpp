@@ -1,7 +1,5 @@
 #include "daemons/recorder/SessionReader.h"
 
-#include "daemons/recorder/SessionList.h"
-
 #include "common/recording/DiskError.h"
 #include "common/recording/Sidecar.h"
 
@@ -32,46 +30,34 @@ Result<SessionReader> SessionReader::open(const QString &folder, const std::atom
     reader.stop_ = stop;
     const QDir place(folder);
     reader.folder_ = place.absolutePath();
-    reader.summary_.name = place.dirName();
-    for (const QString &name : place.entryList({"*.json"}, QDir::Files | QDir::NoSymLinks, QDir::Name))
-        if (const auto sidecar = Sidecar::read(place.filePath(name)))
-            reader.addSidecar(*sidecar);
-    if (reader.parts_.empty())
+    for (const QFileInfo &file :
+         place.entryInfoList({"*.json"}, QDir::Files | QDir::NoSymLinks, QDir::Name)) {
+        const Result<QJsonObject> sidecar = Sidecar::read(file.absoluteFilePath());
+        if (!sidecar)
+            continue;
+        RecordedPart part;
+        part.member.name = (*sidecar)["logger"].toString();
+        part.entry = Sidecar::entry(file.absoluteFilePath(), sidecar);
+        part.error = (*sidecar)["error"].toString();
+        if (part.entry.error) {
+            reader.note(*part.entry.error);
+            continue;
+        }
+        reader.session_.id = part.entry.session.value_or(QString());
+        const bool isRecorder = part.member.name == recorderName;
+        if (isRecorder)
+            reader.lost_ = part.entry.losses.value_or(NamedCounts());
+        if (isRecorder || reader.session_.parts.empty())
+            reader.start_ = part.entry.start.value_or(0);
+        reader.session_.add(part);
+    }
+    if (reader.session_.parts.empty())
         return diskError(reader.folder_ + ": found no sidecar of a recording, expected some", reader.folder_);
+    reader.session_.name = place.dirName();
     for (const QString &name :
          place.entryList({recorderName + "-*.mcap"}, QDir::Files | QDir::NoSymLinks, QDir::Name))
         reader.files_.append(place.filePath(name));
     return reader;
-}
-
-void SessionReader::addSidecar(const QJsonObject &sidecar) {
-    SessionPart part;
-    part.daemon = sidecar["logger"].toString();
-    part.state = sidecar["ended"].toString("recording");
-    part.bytes = sidecar["bytes"].toDouble();
-    for (const auto &[to, counts] : {std::pair(&part.counts, sidecar["counts"].toObject()),
-                                     std::pair(&part.losses, sidecar["losses"].toObject())})
-        for (auto count = counts.begin(); count != counts.end(); ++count)
-            to->insert(count.key(), count->toDouble());
-    part.problem = sidecar["error"].toString();
-    if (part.problem.isEmpty() && part.state != "recording")
-        part.problem = RecordedPart{{}, sidecar}.fault();
-    const double start = sidecar["start"].toDouble();
-    const bool isRecorder = part.daemon == recorderName;
-    if (isRecorder)
-        lost_ = part.losses;
-    start_ = isRecorder || start_ == 0 ? start : start_;
-    summary_.start = parts_.empty() ? start : std::min(summary_.start, start);
-    summary_.session = sidecar["session"].toString();
-    summary_.bytes += part.bytes;
-    if (part.state == "recording")
-        summary_.end.reset();
-    else if (parts_.empty() || summary_.end)
-        summary_.end = std::max(summary_.end.value_or(0), sidecar["end"].toDouble());
-    summary_.daemons.append(part.daemon);
-    if (!part.problem.isEmpty())
-        summary_.problems.append(part.daemon + ": " + part.problem);
-    parts_.push_back(part);
 }
 
 void SessionReader::note(const QString &problem) {
@@ -88,6 +74,8 @@ double SessionReader::bytes() const {
 
 void SessionReader::read(const Wanted &wanted, const Take &take, double from_s, double to_s) {
     for (const QString &path : files_) {
+        if (isStopped())
+            return;
         auto opened = mcap::Reader::open(path.toStdString());
         if (!opened) {
             note(QString::fromStdString(opened.error()));
@@ -102,17 +90,15 @@ void SessionReader::read(const Wanted &wanted, const Take &take, double from_s, 
             reader.seek(std::uint64_t(std::clamp(from_ns, 0.0, 9e18)));
         const auto start_ns = std::int64_t(std::clamp(start_ * 1e9, 0.0, 9e18));
         while (const auto message = reader.next()) {
-            const auto channel = reader.channels().find(message->channel);
-            if (channel == reader.channels().end())
-                continue;
-            const auto schema = reader.schemas().find(channel->second.schema);
-            const SessionMessage recorded{QString::fromStdString(channel->second.topic),
+            const mcap::Channel &channel = reader.channels().at(message->channel);
+            const auto schema = reader.schemas().find(channel.schema);
+            const SessionMessage recorded{QString::fromStdString(channel.topic),
                                           1e-9 * double(std::int64_t(message->logTime_ns) - start_ns),
                                           1e-9 * double(message->publishTime_ns),
                                           *message,
-                                          channel->second,
+                                          channel,
                                           schema == reader.schemas().end() ? nullptr : &schema->second};
-            if (recorded.t_s > to_s || (stop_ && *stop_))
+            if (recorded.t_s > to_s || isStopped())
                 break;
             take(recorded);
         }

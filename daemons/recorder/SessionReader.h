@@ -1,8 +1,7 @@
 #pragma once
 
-#include "common/Result.h"
+#include "daemons/recorder/SessionList.h"
 #include "protocol/mcap/Reader.h"
-#include "protocol/messages/Sessions.h"
 #include "protocol/wire/WireValue.h"
 
 #include <QStringList>
@@ -49,23 +48,22 @@ public:
     double bytes() const;
     /// Its beginning, s since the epoch.
     double start() const { return start_; }
-    const SessionSummary &summary() const { return summary_; }
-    const std::vector<SessionPart> &parts() const { return parts_; }
+    /// As its sidecars tell it.
+    const RecordedSession &recorded() const { return session_; }
     /// Messages that the recorder lost, by topic.
     const NamedCounts &lost() const { return lost_; }
     /// What could not be read so far, a line each.
     const QStringList &problems() const { return problems_; }
 
 private:
-    void addSidecar(const QJsonObject &sidecar);
+    bool isStopped() const { return stop_ && *stop_; }
     void note(const QString &problem);
 
     QString folder_;
     const std::atomic<bool> *stop_ = nullptr;
     QStringList files_; ///< of the recorder, in order
     double start_ = 0;
-    SessionSummary summary_;
-    std::vector<SessionPart> parts_;
+    RecordedSession session_;
     NamedCounts lost_; ///< by topic
     QStringList problems_;
 };

@@ -7,7 +7,7 @@ namespace hermes::recorder {
 Result<void> SessionControl::mayReplay() const {
     return isBusy()
                ? Result<void>(Error(ErrorCode::NotReady,
-                                    QString("\"%1\" is being recorded; session.stop ends it").arg(name_)))
+                                    QString("\"%1\" is being recorded; session.stop ends it").arg(now_.name)))
                : Result<void>();
 }
 
@@ -23,14 +23,13 @@ void SessionControl::replay(const QString &name, const SessionPlayer::Options &o
             return done(fine.error());
         if (isReplaying())
             return replay(name, options, done);
-        if (options.from_s > session->end - session->start)
-            return done(invalidParams(
-                {{"from_s", options.from_s, "a time of the session"}},
-                QString("from_s: the session has %1 s").arg(session->end - session->start, 0, 'f', 1)));
-        forget();
-        name_ = session->name;
-        session_ = session->id;
-        start_ = session->start;
+        if (options.from_s > session->duration_s)
+            return done(
+                invalidParams({{"from_s", options.from_s, "a time of the session"}},
+                              QString("from_s: the session has %1 s").arg(session->duration_s, 0, 'f', 1)));
+        forget(session->name);
+        now_.session = session->id;
+        now_.start = session->start;
         position_s_ = length_s_ = 0;
         player_.play(*session, options);
         Q_EMIT changed();
@@ -39,7 +38,7 @@ void SessionControl::replay(const QString &name, const SessionPlayer::Options &o
 }
 
 void SessionControl::setMarks(const std::vector<SessionMark> &marks) {
-    marks_ = marks;
+    now_.marks = marks;
     Q_EMIT changed();
 }
 
@@ -51,7 +50,7 @@ void SessionControl::live(const Done<SessionState> &done) {
 }
 
 bool SessionControl::isOf(const RecordedSession &session) const {
-    return (isBusy() && session.id == session_) || (isReplaying() && player_.session().id == session.id);
+    return (isBusy() && session.id == now_.session) || (isReplaying() && player_.session().id == session.id);
 }
 
 } // namespace hermes::recorder

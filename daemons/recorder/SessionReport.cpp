@@ -1,6 +1,7 @@
 #include "daemons/recorder/SessionReport.h"
 
 #include "daemons/recorder/DriveHistory.h"
+#include "daemons/recorder/HaltCause.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QDateTime>
@@ -14,31 +15,6 @@ namespace {
 constexpr double before_s = 10, after_s = 5; // around a moment
 constexpr int mostShown = 200;
 constexpr double stands_mps = 0.01, stands_radps = 0.02; // and less
-
-/// What a cause of MotionHold is called.
-QString causeText(const QString &cause) {
-    static const QMap<QString, QString> texts{
-        {"driver", "the client that drove stopped"},
-        {"gone", "motor control was ended or killed, or hangs"},
-        {"stop", "STOP: somebody stopped the robot"},
-        {"estop", "STOP: somebody pressed the emergency stop"},
-        {"time-out", "time-out: the client that drove sent no more commands in time"},
-        {"take-over", "take-over: another client took the control"},
-        {"client gone", "lost client: the connection of the client that drove has ended"},
-        {"release", "the client that drove gave the control back"},
-        {"reset", "a stop was released"},
-        {"settings", "settings were changed, or motor control was started"},
-        {"gap", "motor control stood still"},
-        {"restart", "motor control failed: it was started anew"},
-        {"shutdown", "motor control was ended"},
-        {"controller", "lost controller: a motor controller does not answer or is not ready"},
-        {"battery", "low battery"},
-        {"current", "a motor drew too much current"},
-        {"temperature", "a controller was too hot"},
-        {"encoder", "the wheels did not do what they were told"},
-    };
-    return texts.value(cause, cause.startsWith("controller_") ? "a motor controller reports a fault" : cause);
-}
 
 QString velocityText(const Twist2D &v) {
     const auto rounded = [](double value) {
@@ -65,12 +41,18 @@ struct TopicTimes {
     double rate_hz() const { return last_s > first_s ? double(messages - 1) / (last_s - first_s) : 0; }
 };
 
+/// In seconds: as the sidecars tell, and to the last message of one that goes on or was cut off.
+double lengthOf(const SessionReader &session, const DriveHistory &history) {
+    return std::max(history.duration_s(), session.recorded().duration_s);
+}
+
 /// Makes the page.
 class Page {
 public:
     Page(SessionReader &session, const DriveHistory &history)
         : session_(session)
-        , history_(history) {}
+        , history_(history)
+        , length_s_(lengthOf(session, history)) {}
 
     QString about(std::optional<double> at_s) {
         const Halt *halt = at_s ? history_.haltNear(*at_s) : history_.lastFault();
@@ -98,18 +80,13 @@ private:
         return QString("%1 (%2 s)").arg(time.toString("hh:mm:ss.zzz")).arg(t_s, 0, 'f', 2);
     }
 
-    double length_s() const {
-        const SessionSummary &summary = session_.summary();
-        return std::max(history_.duration_s(), summary.end.value_or(summary.start) - summary.start);
-    }
-
     void tellSession() {
-        const SessionSummary &summary = session_.summary();
+        const SessionSummary summary = session_.recorded().summary();
         add(QString("Session %1, begun %2, %3 s, recorded by %4")
                 .arg(summary.name,
                      QDateTime::fromMSecsSinceEpoch(qint64(session_.start() * 1000))
                          .toString("yyyy-MM-dd hh:mm:ss"),
-                     QString::number(length_s(), 'f', 1), summary.daemons.join(", ")));
+                     QString::number(length_s_, 'f', 1), summary.daemons.join(", ")));
         for (const QString &problem : summary.problems + session_.problems())
             add("Missing: " + problem);
         add({});
@@ -117,7 +94,7 @@ private:
 
     void tellHalt(const Halt &halt) {
         add(QString("The robot stopped at %1: %2").arg(timeText(halt.t_s), halt.reason));
-        add("  Cause: " + causeText(halt.cause));
+        add("  Cause: " + haltCause(halt.cause).text);
         if (halt.driver.isEmpty())
             add("  Nobody drove then.");
         else
@@ -176,7 +153,7 @@ private:
 
     void tellAround() {
         const double from_s = isWhole_ ? 0 : at_s_ - before_s;
-        const double to_s = std::min(length_s(), isWhole_ ? 1e9 : at_s_ + after_s);
+        const double to_s = std::min(length_s_, isWhole_ ? 1e9 : at_s_ + after_s);
         QStringList events;
         int more = 0;
         for (const Event &event : history_.events()) {
@@ -197,7 +174,7 @@ private:
     }
 
     void tellWrong() {
-        const double t_s = isWhole_ ? length_s() : at_s_ + 1; // health follows what it tells
+        const double t_s = isWhole_ ? length_s_ : at_s_ + 1; // health follows what it tells
         const QStringList wrong = history_.wrongAt(t_s);
         add(isWhole_ ? QString("What was wrong at the end:") : QString("What was wrong at that time:"));
         lines_ += wrong.isEmpty() ? QStringList("  nothing") : wrong;
@@ -222,6 +199,7 @@ private:
 
     SessionReader &session_;
     const DriveHistory &history_;
+    const double length_s_;
     QStringList lines_;
     bool isWhole_ = false;
     double at_s_ = 0;
@@ -241,7 +219,7 @@ std::vector<SessionMark> sessionMarks(SessionReader &session) {
 }
 
 SessionInfo sessionInfo(SessionReader &session) {
-    DriveHistory history;
+    DriveHistory history(false); // without its events, which take memory
     QMap<QString, TopicTimes> times;
     for (auto lost = session.lost().begin(); lost != session.lost().end(); ++lost)
         times[lost.key()]; // also where nothing else came
@@ -249,17 +227,16 @@ SessionInfo sessionInfo(SessionReader &session) {
         times[message.topic].add(message.t_s);
         history.take(message);
     });
-    const SessionSummary &summary = session.summary();
-    const double length_s = summary.end.value_or(summary.start) - summary.start;
-    SessionInfo info{summary,
-                     times.isEmpty() ? length_s : history.duration_s(),
-                     history.driven_m(),
-                     session.parts(),
-                     {},
-                     history.marks(),
-                     history.stops(),
-                     history.faults()};
+    SessionInfo info;
+    info.summary = session.recorded().summary();
     info.summary.problems += session.problems();
+    info.duration_s = lengthOf(session, history);
+    info.driven_m = history.driven_m();
+    for (const RecordedPart &part : session.recorded().parts)
+        info.parts.push_back(part.summary());
+    info.marks = history.marks();
+    info.stops = history.stops();
+    info.faults = history.faults();
     for (auto topic = times.begin(); topic != times.end(); ++topic)
         info.topics.push_back({topic.key(), topic->messages, quint64(session.lost().value(topic.key())),
                                topic->rate_hz(), topic->longestGap_s});
@@ -278,7 +255,7 @@ Result<QString> explainSession(SessionReader &session, std::optional<double> at_
                      session.folder() +
                          ": found no messages of a robot, expected those of recorder-0001.mcap and on" +
                          (session.problems().isEmpty() ? QString() : ": " + session.problems().join("; ")));
-    const double end_s = std::max(history.duration_s(), session.summary().end.value_or(0) - session.start());
+    const double end_s = lengthOf(session, history);
     if (at_s && *at_s > end_s)
         return invalidParams({{"at_s", *at_s, "a time of the session"}},
                              QString("at_s: the session has %1 s").arg(end_s, 0, 'f', 1));

@@ -83,7 +83,7 @@ void TopicRecorder::begin(bool keepsRing) {
     if (!keepsRing)
         subscribeAll();
     for (const KeptMessage &message : keepsRing ? ring_.messages() : std::vector<KeptMessage>())
-        file_.write(message.topic, message.sequence, message.stamp, message.json, message.came);
+        file_.write(message);
 }
 
 void TopicRecorder::end() {
@@ -161,14 +161,15 @@ void TopicRecorder::take(Subscribed &topic, const TopicUpdate &update) {
     topic.dropped = update.dropped;
     JsonTextWriter text;
     update.data.write(text);
-    const bool isTaken = isAllowed(topic, text.bytes().size());
+    const KeptMessage message{topic.number, update.seq, update.stamp, Moment::now(), text.take()};
+    const bool isTaken = isAllowed(topic, message.json.size());
     if (isActive_ && isTaken)
-        file_.write(topic.number, update.seq, update.stamp, text.bytes());
+        file_.write(message);
     else if (isActive_)
         file_.noteLost(topic.number, 1);
     if (isActive_ || !ring_.isOpen() || !isTaken)
         return;
-    ring_.add({topic.number, update.seq, update.stamp, Moment::now(), text.take()});
+    ring_.add(message);
     const QString why = ring_.alarm(topics_[std::size_t(topic.number)].topic, update.data);
     if (!why.isEmpty())
         Q_EMIT alarmed(why);

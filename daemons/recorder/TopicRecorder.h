@@ -30,9 +30,9 @@ public:
     /// What comes is written from now on; what is in the ring, too, if it is to be kept.
     void begin(bool keepsRing);
     void end();
-    /// The last seconds are kept without a recording; 0: nothing is.
     /// When the first of what the ring has came; nothing: it is empty.
     std::optional<Moment> ringBegin() const { return ring_.begin(); }
+    /// The last seconds are kept without a recording; 0: nothing is.
     void openRing(double seconds, std::size_t maxBytes);
 
 Q_SIGNALS:

@@ -1,6 +1,6 @@
 #include "daemons/recorder/TopicRing.h"
 
-#include "daemons/recorder/DriveHistory.h"
+#include "daemons/recorder/HaltCause.h"
 
 namespace hermes::recorder {
 
@@ -47,10 +47,8 @@ QString TopicRing::alarm(const QString &topic, const WireView &data) {
             alarm = now;
         known->second = now;
     };
-    if (topic.endsWith("/control") && isFault(data["cause"].text()))
-        note("halted", data["halted"].text());
-    else if (topic.endsWith("/control"))
-        note("halted", {});
+    if (topic.endsWith("/control"))
+        note("halted", haltCause(data["cause"].text()).isFault() ? data["halted"].text() : QString());
     const WireView health = topic.endsWith("/status") ? data["health"] : WireView();
     for (std::size_t i = 0; i < health.size(); ++i)
         note(health[i]["name"].text(), health[i]["level"].text() == "error"

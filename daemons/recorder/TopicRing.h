@@ -7,15 +7,6 @@
 
 namespace hermes::recorder {
 
-/// A message that came, and when.
-struct KeptMessage {
-    int topic = 0; ///< number
-    quint64 sequence = 0;
-    double stamp = 0; ///< of its data, s since the epoch
-    Moment came;
-    QByteArray json;
-};
-
 /// The last messages of all topics, as a car's black box keeps them: those of so many seconds, and the newest
 /// before that of each topic. Tells when they are to be kept for good.
 class TopicRing {

@@ -28,25 +28,23 @@ struct Tables {
     Table<float> edges, points;
 };
 
-const Fields<Tables> &fieldsOf(Of<Tables>) {
-    static const auto fields =
-        Fields<Tables>()
-            .add(mark, &Tables::version, "Version of the first block")
-            .add("known", &Tables::known, "id, observations, and as an edge, in the map's frame")
-            .add("scans", &Tables::scans, "key, motion since that key, effort, trust, edges")
-            .add("edges", &Tables::edges, "n, mean x, y, moments xx, xy, yy, segment x1, y1, x2, y2, sigma")
-            .add("keys", &Tables::keys,
-                 "scan, motion since the key before, effort, variances, tracked pose, way, doubt, points")
-            .add("points", &Tables::points, "x, y")
-            .add("motions", &Tables::motions,
-                 "from, to, motion, information (upper triangle), may be wrong, weight")
-            .add("poses", &Tables::poses, "Of the last keys")
-            .add("weights", &Tables::weights, "Of the last motions")
-            .add("since", &Tables::since, "Motion since the last key, way, turned, variances, doubt")
-            .add("progress", &Tables::progress,
-                 "Loops tried, closed, whether any was found and is news since the last correction, keys "
-                 "then");
-    return fields;
+Fields<Tables> fieldsOf(Of<Tables>) {
+    return Fields<Tables>()
+        .add(mark, &Tables::version, "Version of the first block")
+        .add("known", &Tables::known, "id, observations, and as an edge, in the map's frame")
+        .add("scans", &Tables::scans, "key, motion since that key, effort, trust, edges")
+        .add("edges", &Tables::edges, "n, mean x, y, moments xx, xy, yy, segment x1, y1, x2, y2, sigma")
+        .add("keys", &Tables::keys,
+             "scan, motion since the key before, effort, variances, tracked pose, way, doubt, points")
+        .add("points", &Tables::points, "x, y")
+        .add("motions", &Tables::motions,
+             "from, to, motion, information (upper triangle), may be wrong, weight")
+        .add("poses", &Tables::poses, "Of the last keys")
+        .add("weights", &Tables::weights, "Of the last motions")
+        .add("since", &Tables::since, "Motion since the last key, way, turned, variances, doubt")
+        .add("progress", &Tables::progress,
+             "Loops tried, closed, whether any was found and is news since the last correction, keys "
+             "then");
 }
 
 namespace {

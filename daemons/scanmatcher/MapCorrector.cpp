@@ -164,10 +164,8 @@ bool MapCorrector::apply(ScanTracker &tracker, Correction &correction) {
 }
 
 void MapCorrector::acknowledge() {
-    {
-        const std::lock_guard lock(mutex_);
-        isHandedOver_ = false;
-    }
+    const std::lock_guard lock(mutex_);
+    isHandedOver_ = false;
     wake_.notify_all();
 }
 
@@ -179,21 +177,16 @@ CorrectorState MapCorrector::state() const {
 }
 
 void MapCorrector::push(Item item) {
-    {
-        const std::lock_guard lock(mutex_);
-        items_.push_back(std::move(item));
-    }
+    const std::lock_guard lock(mutex_);
+    items_.push_back(std::move(item));
     wake_.notify_all();
 }
 
 void MapCorrector::run() {
     for (;;) {
         const bool isQuiet = !wait();
-        {
-            const std::lock_guard lock(mutex_);
-            if (ending_)
-                break;
-        }
+        if (isEnding())
+            break;
         take();
         if (memory_.loops.isDue() || ((isQuiet || isFull_) && memory_.loops.hasNews())) {
             tellUnderWay(true);

@@ -104,174 +104,155 @@ SearchAnswer answerOf(const Relocalized &search) {
     return answer;
 }
 
-const Fields<OdometryState> &fieldsOf(Of<OdometryState>) {
+Fields<OdometryState> fieldsOf(Of<OdometryState>) {
     using S = OdometryState;
-    static const auto fields =
-        Fields<S>()
-            .add("connected", &S::connected, "To the daemon that publishes it")
-            .add("messages", &S::messages, "Taken")
-            .add("refused", &S::refused, "That could not be read")
-            .add("out_of_order", &S::outOfOrder, "Older than one before")
-            .add("restarts", &S::restarts, "Times it began anew: a reset, or a gap")
-            .add("dropped", &S::dropped, "By the source, as this daemon read too slowly")
-            .add("unknown_fields", &S::unknownFields, "Members of messages that this program does not know")
-            .add("scans_without", &S::scansWithout, "Scans that found no odometry of their time")
-            .add("contradicted", &S::contradicted, "Pieces of way of which the scans show another");
-    return fields;
+    return Fields<S>()
+        .add("connected", &S::connected, "To the daemon that publishes it")
+        .add("messages", &S::messages, "Taken")
+        .add("refused", &S::refused, "That could not be read")
+        .add("out_of_order", &S::outOfOrder, "Older than one before")
+        .add("restarts", &S::restarts, "Times it began anew: a reset, or a gap")
+        .add("dropped", &S::dropped, "By the source, as this daemon read too slowly")
+        .add("unknown_fields", &S::unknownFields, "Members of messages that this program does not know")
+        .add("scans_without", &S::scansWithout, "Scans that found no odometry of their time")
+        .add("contradicted", &S::contradicted, "Pieces of way of which the scans show another");
 }
 
-const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
+Fields<MatcherState> fieldsOf(Of<MatcherState>) {
     using S = MatcherState;
-    static const auto fields =
-        Fields<S>()
-            .add("active", &S::active, "Scans are taken")
-            .add("mode", &S::mode, "mapping: the map grows; localization: it stays")
-            .choices({"mapping", "localization"})
-            .add("place", &S::place,
-                 "In the map: known; found by a search and not yet confirmed by a second one; told, and not "
-                 "yet "
-                 "confirmed by the scans; sought. While it is not known nothing is mapped")
-            .choices({"known", "found", "told", "sought"})
-            .add("undoes", &S::undoes, "The command that map.undo would undo; empty: none")
-            .add("redoes", &S::redoes, "That it would carry out again with redo; empty: none")
-            .add("scans", &S::scans, "Since the map is the one it is")
-            .add("matched", &S::matched, "Of them")
-            .add("lost", &S::lost, "Of them: no match was good enough")
-            .add("skipped", &S::skipped, "Of them: too little to see")
-            .add("doubted", &S::doubted, "Of the matched: the scan before shows something else")
-            .add("restarts", &S::restarts,
-                 "Times that the map went on where a scan was expected, lost for too long")
-            .add("waiting", &S::waiting, "Scans not yet matched")
-            .add("dropped", &S::dropped, "As too many waited")
-            .add("dropped_by_source", &S::droppedBySource, "As this daemon read too slowly")
-            .add("refused", &S::refused, "That could not be read")
-            .add("unknown_fields", &S::unknownFields, "Members of scans that this program does not know")
-            .add("recoveries", &S::recoveries, "Searches of the whole map after lost scans")
-            .add("recovered", &S::recovered, "Of them: found")
-            .add("by_odometry", &S::byOdometry, "Scans whose pose was expected by odometry")
-            .add("odometry", &S::odometry, "What comes as odometry")
-            .add("ms_per_scan", &S::msPerScan, "Mean time to match one", "ms")
-            .add("map_segments", &S::mapSegments, "Edges of the map")
-            .add("key_scans", &S::keyScans, "Of the drive that is remembered to close loops")
-            .add("closures", &S::closures, "Loops closed")
-            .add("closures_tried", &S::closuresTried, "Pairs of key scans compared")
-            .add("corrections", &S::corrections, "Times that the map was made anew")
-            .add("loops_waiting", &S::loopsWaiting, "Scans not yet looked at for loops")
-            .add("loops_dropped", &S::loopsDropped,
-                 "Scans that the drive is remembered without, as too many waited")
-            .add("correction", &S::correction,
-                 "none; due: loops say that the drive bent; running: the map is being made anew")
-            .add("remembered_mb", &S::rememberedMb, "Memory that the drive takes", "MB")
-            .add("memory_full", &S::memoryFull,
-                 "It takes all of matcher.remember_mb: what is driven now is not remembered")
-            .add("longest_stall_ms", &S::longestStallMs, "That matching waited for a map made anew", "ms");
-    return fields;
+    return Fields<S>()
+        .add("active", &S::active, "Scans are taken")
+        .add("mode", &S::mode, "mapping: the map grows; localization: it stays")
+        .choices({"mapping", "localization"})
+        .add("place", &S::place,
+             "In the map: known; found by a search and not yet confirmed by a second one; told, and not "
+             "yet "
+             "confirmed by the scans; sought. While it is not known nothing is mapped")
+        .choices({"known", "found", "told", "sought"})
+        .add("undoes", &S::undoes, "The command that map.undo would undo; empty: none")
+        .add("redoes", &S::redoes, "That it would carry out again with redo; empty: none")
+        .add("scans", &S::scans, "Since the map is the one it is")
+        .add("matched", &S::matched, "Of them")
+        .add("lost", &S::lost, "Of them: no match was good enough")
+        .add("skipped", &S::skipped, "Of them: too little to see")
+        .add("doubted", &S::doubted, "Of the matched: the scan before shows something else")
+        .add("restarts", &S::restarts,
+             "Times that the map went on where a scan was expected, lost for too long")
+        .add("waiting", &S::waiting, "Scans not yet matched")
+        .add("dropped", &S::dropped, "As too many waited")
+        .add("dropped_by_source", &S::droppedBySource, "As this daemon read too slowly")
+        .add("refused", &S::refused, "That could not be read")
+        .add("unknown_fields", &S::unknownFields, "Members of scans that this program does not know")
+        .add("recoveries", &S::recoveries, "Searches of the whole map after lost scans")
+        .add("recovered", &S::recovered, "Of them: found")
+        .add("by_odometry", &S::byOdometry, "Scans whose pose was expected by odometry")
+        .add("odometry", &S::odometry, "What comes as odometry")
+        .add("ms_per_scan", &S::msPerScan, "Mean time to match one", "ms")
+        .add("map_segments", &S::mapSegments, "Edges of the map")
+        .add("key_scans", &S::keyScans, "Of the drive that is remembered to close loops")
+        .add("closures", &S::closures, "Loops closed")
+        .add("closures_tried", &S::closuresTried, "Pairs of key scans compared")
+        .add("corrections", &S::corrections, "Times that the map was made anew")
+        .add("loops_waiting", &S::loopsWaiting, "Scans not yet looked at for loops")
+        .add("loops_dropped", &S::loopsDropped,
+             "Scans that the drive is remembered without, as too many waited")
+        .add("correction", &S::correction,
+             "none; due: loops say that the drive bent; running: the map is being made anew")
+        .add("remembered_mb", &S::rememberedMb, "Memory that the drive takes", "MB")
+        .add("memory_full", &S::memoryFull,
+             "It takes all of matcher.remember_mb: what is driven now is not remembered")
+        .add("longest_stall_ms", &S::longestStallMs, "That matching waited for a map made anew", "ms");
 }
 
-const Fields<PairMatch> &fieldsOf(Of<PairMatch>) {
+Fields<PairMatch> fieldsOf(Of<PairMatch>) {
     using M = PairMatch;
-    static const auto fields = Fields<M>()
-                                   .include(&M::pose)
-                                   .add("accepted", &M::accepted, "The match is good enough to be believed")
-                                   .add("pairs", &M::pairs, "Segments that correspond")
-                                   .add("reliability", &M::reliability, "0 to 1")
-                                   .add("ambiguity", &M::ambiguity, "Of the position", "m^2")
-                                   .add("matched_length", &M::matchedLength, "Of the segments in pairs", "m")
-                                   .add("visible_length", &M::visibleLength, "Of all segments", "m")
-                                   .add("ms", &M::ms, "Time it took", "ms");
-    return fields;
+    return Fields<M>()
+        .include(&M::pose)
+        .add("accepted", &M::accepted, "The match is good enough to be believed")
+        .add("pairs", &M::pairs, "Segments that correspond")
+        .add("reliability", &M::reliability, "0 to 1")
+        .add("ambiguity", &M::ambiguity, "Of the position", "m^2")
+        .add("matched_length", &M::matchedLength, "Of the segments in pairs", "m")
+        .add("visible_length", &M::visibleLength, "Of all segments", "m")
+        .add("ms", &M::ms, "Time it took", "ms");
 }
 
-const Fields<PlaceAnswer> &fieldsOf(Of<PlaceAnswer>) {
+Fields<PlaceAnswer> fieldsOf(Of<PlaceAnswer>) {
     using P = PlaceAnswer;
-    static const auto fields =
-        Fields<P>()
-            .add("pose", &P::pose, "Of the sensor in the map's frame")
-            .add("score", &P::score, "Places are ordered by it, the best first")
-            .add("probability", &P::probability, "Of being right, 0 to 1")
-            .add("reliability", &P::reliability, "Of the walls' directions, 0 to 1: small along a corridor")
-            .add("ambiguity", &P::ambiguity, "Mean squared distance of the points from their walls", "m^2")
-            .add("discrepancy", &P::discrepancy, "Area that was seen behind walls of the map", "m^2")
-            .add("matched_share", &P::matchedShare, "Of the scan's points, that lie on walls of the map")
-            .add("accepted", &P::accepted, "It stands all tests")
-            .add("fault", &P::fault, "The test it failed")
-            .orNull();
-    return fields;
+    return Fields<P>()
+        .add("pose", &P::pose, "Of the sensor in the map's frame")
+        .add("score", &P::score, "Places are ordered by it, the best first")
+        .add("probability", &P::probability, "Of being right, 0 to 1")
+        .add("reliability", &P::reliability, "Of the walls' directions, 0 to 1: small along a corridor")
+        .add("ambiguity", &P::ambiguity, "Mean squared distance of the points from their walls", "m^2")
+        .add("discrepancy", &P::discrepancy, "Area that was seen behind walls of the map", "m^2")
+        .add("matched_share", &P::matchedShare, "Of the scan's points, that lie on walls of the map")
+        .add("accepted", &P::accepted, "It stands all tests")
+        .add("fault", &P::fault, "The test it failed")
+        .orNull();
 }
 
-const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>) {
+Fields<SearchAnswer> fieldsOf(Of<SearchAnswer>) {
     using S = SearchAnswer;
-    static const auto fields =
-        Fields<S>()
-            .add("outcome", &S::outcome, "Of the search")
-            .choices({"found", "no_scan", "no_map", "too_little", "nowhere", "ambiguous", "unfinished"})
-            .add("candidates", &S::candidates, "The best places")
-            .add("alike", &S::alike, "Places that fit about as well as the best one")
-            .add("parts", &S::parts, "Of the search: a wall of the scan on a wall of the map")
-            .add("searched", &S::searched, "Of them")
-            .add("ms", &S::ms, "Time it took", "ms");
-    return fields;
+    return Fields<S>()
+        .add("outcome", &S::outcome, "Of the search")
+        .choices({"found", "no_scan", "no_map", "too_little", "nowhere", "ambiguous", "unfinished"})
+        .add("candidates", &S::candidates, "The best places")
+        .add("alike", &S::alike, "Places that fit about as well as the best one")
+        .add("parts", &S::parts, "Of the search: a wall of the scan on a wall of the map")
+        .add("searched", &S::searched, "Of them")
+        .add("ms", &S::ms, "Time it took", "ms");
 }
 
-const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>) {
+Fields<RelocalizeAnswer> fieldsOf(Of<RelocalizeAnswer>) {
     using R = RelocalizeAnswer;
-    static const auto fields = Fields<R>()
-                                   .include(&R::search)
-                                   .include(&R::place)
-                                   .add("applied", &R::applied, "The pose was taken over");
-    return fields;
+    return Fields<R>()
+        .include(&R::search)
+        .include(&R::place)
+        .add("applied", &R::applied, "The pose was taken over");
 }
 
-const Fields<SavedMap> &fieldsOf(Of<SavedMap>) {
-    static const auto fields = Fields<SavedMap>()
-                                   .add("path", &SavedMap::path, "Of the file")
-                                   .add("segments", &SavedMap::segments, "Edges written")
-                                   .add("bytes", &SavedMap::bytes, "Size of the file", "byte");
-    return fields;
+Fields<SavedMap> fieldsOf(Of<SavedMap>) {
+    return Fields<SavedMap>()
+        .add("path", &SavedMap::path, "Of the file")
+        .add("segments", &SavedMap::segments, "Edges written")
+        .add("bytes", &SavedMap::bytes, "Size of the file", "byte");
 }
 
-const Fields<BroughtBack> &fieldsOf(Of<BroughtBack>) {
+Fields<BroughtBack> fieldsOf(Of<BroughtBack>) {
     using B = BroughtBack;
-    static const auto fields =
-        Fields<B>()
-            .add("command", &B::command,
-                 "That was undone, or carried out again: map.clear, map.load, pose.set, "
-                 "pose.relocalize or replay")
-            .add("map", &B::map, "Another map is back")
-            .add("pose", &B::pose,
-                 "The sensor is back at its place, moved by the way since; else it is sought")
-            .add("segments", &B::segments, "Edges of the map")
-            .add("at", &B::at, "Where the sensor is now expected");
-    return fields;
+    return Fields<B>()
+        .add("command", &B::command,
+             "That was undone, or carried out again: map.clear, map.load, pose.set, "
+             "pose.relocalize or replay")
+        .add("map", &B::map, "Another map is back")
+        .add("pose", &B::pose, "The sensor is back at its place, moved by the way since; else it is sought")
+        .add("segments", &B::segments, "Edges of the map")
+        .add("at", &B::at, "Where the sensor is now expected");
 }
 
-const Fields<ListedMap> &fieldsOf(Of<ListedMap>) {
-    static const auto fields =
-        Fields<ListedMap>()
-            .add("path", &ListedMap::path, "As map.load takes it")
-            .add("journal", &ListedMap::isJournal, "It is the journal of a drive, else a map")
-            .add("bytes", &ListedMap::bytes, "Size of the file", "byte")
-            .add("modified", &ListedMap::modified, "When it was written, since the epoch", "s");
-    return fields;
+Fields<ListedMap> fieldsOf(Of<ListedMap>) {
+    return Fields<ListedMap>()
+        .add("path", &ListedMap::path, "As map.load takes it")
+        .add("journal", &ListedMap::isJournal, "It is the journal of a drive, else a map")
+        .add("bytes", &ListedMap::bytes, "Size of the file", "byte")
+        .add("modified", &ListedMap::modified, "When it was written, since the epoch", "s");
 }
 
-const Fields<MapList> &fieldsOf(Of<MapList>) {
-    static const auto fields = Fields<MapList>()
-                                   .add("maps", &MapList::maps, "The newest first")
-                                   .atMostElements(maxListedMaps)
-                                   .add("unlisted", &MapList::unlisted, "Older ones");
-    return fields;
+Fields<MapList> fieldsOf(Of<MapList>) {
+    return Fields<MapList>()
+        .add("maps", &MapList::maps, "The newest first")
+        .atMostElements(maxListedMaps)
+        .add("unlisted", &MapList::unlisted, "Older ones");
 }
 
-const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>) {
-    static const auto fields =
-        Fields<LoadedMap>()
-            .add("segments", &LoadedMap::segments, "Edges read, or made of a journal's scans")
-            .add("scans", &LoadedMap::scans, "Scans that a journal remembers; 0: it is a map")
-            .add("key_scans", &LoadedMap::keyScans, "Key scans among them")
-            .add("closures", &LoadedMap::closures, "Loops among these")
-            .add("left_out", &LoadedMap::leftOut, "Damaged bytes at the journal's end");
-    return fields;
+Fields<LoadedMap> fieldsOf(Of<LoadedMap>) {
+    return Fields<LoadedMap>()
+        .add("segments", &LoadedMap::segments, "Edges read, or made of a journal's scans")
+        .add("scans", &LoadedMap::scans, "Scans that a journal remembers; 0: it is a map")
+        .add("key_scans", &LoadedMap::keyScans, "Key scans among them")
+        .add("closures", &LoadedMap::closures, "Loops among these")
+        .add("left_out", &LoadedMap::leftOut, "Damaged bytes at the journal's end");
 }
 
 } // namespace hermes::scanmatcher

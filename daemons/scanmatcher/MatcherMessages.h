@@ -122,16 +122,16 @@ struct BroughtBack {
 
 SearchAnswer answerOf(const vectorlib::Relocalized &search);
 
-const Fields<OdometryState> &fieldsOf(Of<OdometryState>);
-const Fields<MatcherState> &fieldsOf(Of<MatcherState>);
-const Fields<PairMatch> &fieldsOf(Of<PairMatch>);
-const Fields<PlaceAnswer> &fieldsOf(Of<PlaceAnswer>);
-const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>);
-const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>);
-const Fields<SavedMap> &fieldsOf(Of<SavedMap>);
-const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>);
-const Fields<BroughtBack> &fieldsOf(Of<BroughtBack>);
-const Fields<ListedMap> &fieldsOf(Of<ListedMap>);
-const Fields<MapList> &fieldsOf(Of<MapList>);
+Fields<OdometryState> fieldsOf(Of<OdometryState>);
+Fields<MatcherState> fieldsOf(Of<MatcherState>);
+Fields<PairMatch> fieldsOf(Of<PairMatch>);
+Fields<PlaceAnswer> fieldsOf(Of<PlaceAnswer>);
+Fields<SearchAnswer> fieldsOf(Of<SearchAnswer>);
+Fields<RelocalizeAnswer> fieldsOf(Of<RelocalizeAnswer>);
+Fields<SavedMap> fieldsOf(Of<SavedMap>);
+Fields<LoadedMap> fieldsOf(Of<LoadedMap>);
+Fields<BroughtBack> fieldsOf(Of<BroughtBack>);
+Fields<ListedMap> fieldsOf(Of<ListedMap>);
+Fields<MapList> fieldsOf(Of<MapList>);
 
 } // namespace hermes::scanmatcher

@@ -70,33 +70,31 @@ void ScanMatcher::declareSettings() {
                               "Correct each scan for the sensor's motion while it was taken")
                    .byDefault(true)
                    .group("Matching"));
-    addSetting(
-        Field::number("matcher.sigma_m", "Largest standard deviation of points from their line segment")
-            .unit("m")
-            .range(0.001, 1)
-            .byDefault(0.02)
-            .group("Matching"));
-    addSetting(Field::number("matcher.expected_deviation_m", "How far the expected position is usually wrong")
-                   .unit("m")
-                   .range(0.001, 10)
-                   .byDefault(0.05)
-                   .group("Matching"));
-    addSetting(
-        Field::number("matcher.expected_deviation_rad", "How far the expected heading is usually wrong")
-            .unit("rad")
-            .range(0.001, 3)
-            .byDefault(0.10)
-            .group("Matching"));
-    addSetting(Field::number("matcher.permitted_m", "Largest error of the expected position in x and y")
-                   .unit("m")
-                   .range(0.01, 20)
-                   .byDefault(0.5)
-                   .group("Matching"));
-    addSetting(Field::number("matcher.permitted_rad", "Largest error of the expected heading")
-                   .unit("rad")
-                   .range(0.01, 3.1)
-                   .byDefault(0.4)
-                   .group("Matching"));
+    struct Number {
+        const char *name, *text, *unit;
+        double least, most, usual;
+    };
+    for (const Number &n : {
+             Number{"matcher.sigma_m", "Largest standard deviation of points from their line segment", "m",
+                    0.001, 1, 0.02},
+             Number{"matcher.expected_deviation_m", "How far the expected position is usually wrong", "m",
+                    0.001, 10, 0.05},
+             Number{"matcher.expected_deviation_rad", "How far the expected heading is usually wrong", "rad",
+                    0.001, 3, 0.10},
+             Number{"matcher.permitted_m", "Largest error of the expected position in x and y", "m", 0.01, 20,
+                    0.5},
+             Number{"matcher.permitted_rad", "Largest error of the expected heading", "rad", 0.01, 3.1, 0.4},
+             Number{"matcher.remember_mb",
+                    "Memory that a drive may take to close its loops. What is driven beyond that is not "
+                    "remembered, also when this is raised later",
+                    "MB", 0.1, 100000, 300},
+             Number{"matcher.relocalize_s", "Longest search of the whole map", "s", 0.01, 20, 3},
+         })
+        addSetting(Field::number(n.name, n.text)
+                       .unit(n.unit)
+                       .range(n.least, n.most)
+                       .byDefault(n.usual)
+                       .group("Matching"));
     addSetting(Field::number("matcher.min_matched_share", "Share of the seen length that must match the map")
                    .range(0, 1)
                    .byDefault(0.15)
@@ -107,24 +105,12 @@ void ScanMatcher::declareSettings() {
                    "only while the map grows")
                    .byDefault(true)
                    .group("Matching"));
-    addSetting(Field::number("matcher.remember_mb",
-                             "Memory that a drive may take to close its loops. What is driven beyond that is "
-                             "not remembered, also when this is raised later")
-                   .unit("MB")
-                   .range(0.1, 100000)
-                   .byDefault(300)
-                   .group("Matching"));
     addSetting(Field::integer("matcher.relocalize_after",
                               "Lost scans in a row after which the whole map is searched; 0: never. "
                               "Only 1 and 2 act while the map grows")
                    .unit("scans")
                    .range(0, 100000)
                    .byDefault(10)
-                   .group("Matching"));
-    addSetting(Field::number("matcher.relocalize_s", "Longest search of the whole map")
-                   .unit("s")
-                   .range(0.01, 20)
-                   .byDefault(3)
                    .group("Matching"));
     addSetting(
         Field::text("map.folder", "Below it are the files of maps that clients name; made when missing")

@@ -151,7 +151,7 @@ Result<LoadedMap> TrackedMap::loadJournal(const MapPath &file) {
     replace(std::move(builder.map), "map.load");
     tracker_->place(poses.back());
     seek();
-    const LoadedMap answer{segments(), drive.loops.scans(), drive.loops.keys().size(),
+    const LoadedMap answer{map().size(), drive.loops.scans(), drive.loops.keys().size(),
                            drive.loops.counts().closed, quint64(remembered->leftOut)};
     corrector_.resume(std::move(remembered));
     tellMap();
@@ -223,13 +223,7 @@ Result<BroughtBack> TrackedMap::undo(bool again) {
         forgetDrive();
         tellMap();
     }
-    return BroughtBack{step->command, step->map.has_value(), !isSought, segments(), target};
-}
-
-quint64 TrackedMap::segments() const {
-    quint64 count = 0;
-    map().forEach([&](const vectorlib::MapEdge &) { ++count; });
-    return count;
+    return BroughtBack{step->command, step->map.has_value(), !isSought, map().size(), target};
 }
 
 void TrackedMap::tellMap(bool isSaved) {

@@ -97,7 +97,6 @@ private:
     void keepMapOfStep();
     void tellSteps(std::size_t mapsGone = 0);
     void tellMap(bool isSaved = false);
-    quint64 segments() const;
     void followDrive();
     void forgetDrive();
     void setLiveMapAside();

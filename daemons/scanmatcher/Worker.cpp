@@ -13,24 +13,20 @@ void Worker::stop() {
 }
 
 void Worker::push(Scan scan) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (scans_ >= limit_) {
-            items_.erase(std::find_if(items_.begin(), items_.end(), [](const Item &i) { return !i.job; }));
-            --scans_;
-            ++lost_;
-        }
-        items_.push_back({std::move(scan), {}});
-        ++scans_;
+    const std::lock_guard lock(mutex_);
+    if (scans_ >= limit_) {
+        items_.erase(std::find_if(items_.begin(), items_.end(), [](const Item &i) { return !i.job; }));
+        --scans_;
+        ++lost_;
     }
+    items_.push_back({std::move(scan), {}});
+    ++scans_;
     wake_.notify_one();
 }
 
 void Worker::post(Job job) {
-    {
-        const std::lock_guard lock(mutex_);
-        items_.push_back({{}, std::move(job)});
-    }
+    const std::lock_guard lock(mutex_);
+    items_.push_back({{}, std::move(job)});
     wake_.notify_one();
 }
 

@@ -111,11 +111,10 @@ std::pair<HealthLevel, QString> LoggedPort::health() {
         return {HealthLevel::Stale,
                 QString("no byte on %1 for %2 s").arg(settings_.url).arg(silent, 0, 'f', 1)};
     if (isForeign())
-        return {HealthLevel::Failed,
-                QString("%1 bytes came on %2 and no NMEA sentence in them; expected a GPS receiver that "
-                        "talks at this baud rate")
-                    .arg(bytesAtTick_ - bytesAtSentence_)
-                    .arg(settings_.url)};
+        return {HealthLevel::Failed, QString("%1 bytes came on %2 and no NMEA sentence in them; expected a "
+                                             "GPS receiver that talks at this baud rate")
+                                         .arg(bytesAtTick_ - bytesAtSentence_)
+                                         .arg(settings_.url)};
     quint64 errors = 0;
     for (const quint64 count : state.systemErrors)
         errors += count;

@@ -36,8 +36,7 @@ void SerialLogger::declareSourceCommands() {
     addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic serial says, now")
                    .needs(Role::Observer)
-                   .gives<SerialMessage>()
-                   .handler([this](const Call &) { return asJson(state()); }));
+                   .answers([this](const Call &) { return state(); }));
 }
 
 void SerialLogger::declareCommands() {
@@ -59,13 +58,11 @@ void SerialLogger::declareCommands() {
             .asyncHandler([this](const Call &call, const Reply &reply) { exportRecording(call, reply); }));
     addCommand(Command("ports.list", "State of each port, and what came from it")
                    .needs(Role::Observer)
-                   .gives<std::vector<PortStatus>>()
-                   .handler([this](const Call &) { return asJson(portList()); }));
+                   .answers([this](const Call &) { return portList(); }));
     addCommand(Command("mark", "Puts a text with the time into the events of the recording")
                    .param(Field::text("text", "What to remember").with("maxLength", 1000))
-                   .gives<MarkAnswer>()
                    .example({{"text", "at the door"}}, QJsonObject{{"stamp", 1.7e9}, {"mono", 4711.5}})
-                   .handler([this](const Call &call) { return mark(call); }));
+                   .answers([this](const Call &call) { return mark(call); }));
     addCommand(Command("record.marks", "The marks of a recording that has ended, the first 1000 of them")
                    .needs(Role::Observer)
                    .param(Field::text("name", "Of the recording"))

@@ -6,13 +6,18 @@ namespace hermes::seriallogger {
 
 using namespace serialindex;
 
-bool PortFile::create(const QString &base) {
+bool PortFile::open(const QString &base, bool goesOn, std::int64_t toItsClock_ns) {
+    toItsClock_ns_ = toItsClock_ns;
     error_.clear();
     first_.reset();
     last_.reset();
-    if (!index_.create(base + ".index") || !index_.append(header.data(), header.size()))
+    const auto opened = [goesOn](AppendFile &file, const QString &path) {
+        return goesOn ? file.resume(path) : file.create(path);
+    };
+    if (!opened(index_, base + ".index") ||
+        (index_.size() == 0 && !index_.append(header.data(), header.size())))
         return fail(index_);
-    return raw_.create(base + ".raw") || fail(raw_);
+    return opened(raw_, base + ".raw") || fail(raw_);
 }
 
 bool PortFile::write(const ChunkBatch &batch) {
@@ -22,7 +27,9 @@ bool PortFile::write(const ChunkBatch &batch) {
     records_.resize(batch.chunks.size() * recordSize);
     quint64 offset = begin;
     for (std::size_t i = 0; i < batch.chunks.size(); ++i) {
-        encode({offset, batch.chunks[i].arrival}, records_.data() + i * recordSize);
+        const Moment &arrival = batch.chunks[i].arrival;
+        encode({offset, {arrival.stamp_ns, arrival.mono_ns + toItsClock_ns_}},
+               records_.data() + i * recordSize);
         offset += batch.chunks[i].size;
     }
     const bool indexed = index_.append(records_.data(), records_.size()) || fail(index_);

@@ -2,6 +2,8 @@
 
 #include "common/Time.h"
 
+#include <QtEndian>
+
 #include <array>
 #include <cstddef>
 
@@ -23,7 +25,15 @@ struct Record {
 };
 constexpr std::size_t recordSize = 24;
 
-void encode(const Record &record, unsigned char *bytes);
-Record decode(const unsigned char *bytes);
+inline void encode(const Record &record, unsigned char *bytes) {
+    qToLittleEndian<quint64>(record.offset, bytes);
+    qToLittleEndian<qint64>(record.arrival.stamp_ns, bytes + 8);
+    qToLittleEndian<qint64>(record.arrival.mono_ns, bytes + 16);
+}
+
+inline Record decode(const unsigned char *bytes) {
+    return {qFromLittleEndian<quint64>(bytes),
+            {qFromLittleEndian<qint64>(bytes + 8), qFromLittleEndian<qint64>(bytes + 16)}};
+}
 
 } // namespace hermes::seriallogger::serialindex

@@ -4,10 +4,11 @@
 #include "common/recording/DiskError.h"
 #include "common/recording/SessionFolder.h"
 #include "daemons/seriallogger/SerialExport.h"
-#include "daemons/seriallogger/SerialMarks.h"
 #include "protocol/wire/Fields.h"
 
 #include <QDir>
+#include <QFile>
+#include <QJsonDocument>
 
 #include <algorithm>
 
@@ -20,6 +21,30 @@ constexpr int viewPeriod_ms = 20; // rather than to wake up for each byte
 Error wrongParameter(const QString &name, const QString &found, const QString &expected) {
     return invalidParams({{name, found, expected}},
                          QString("%1: found \"%2\", expected %3").arg(name, found, expected));
+}
+
+/// The marks among the events of a recording that has ended, in the order of the file. Lines that are no
+/// marks, or make no sense, are passed over. InputOutput: the events cannot be read. Blocks.
+Result<std::vector<RecordedMark>> readMarks(const StoredRecording &recording) {
+    constexpr std::size_t maxMarks = 1000;
+    constexpr qint64 longestLine = 1 << 14; // bytes; a text has at most 1000 characters
+    QFile file(QDir(recording.folder).filePath("seriallogger-events.jsonl"));
+    std::vector<RecordedMark> marks;
+    if (!file.exists()) // cut off as it was made
+        return marks;
+    if (!file.open(QIODevice::ReadOnly))
+        return diskError(file.fileName() + ": cannot be read: " + file.errorString(), file.fileName());
+    const double startMono_s = recording.sidecar.value("start_mono").toDouble();
+    while (!file.atEnd() && marks.size() < maxMarks) {
+        const QJsonObject event = QJsonDocument::fromJson(file.readLine(longestLine)).object();
+        if (event["event"] != QJsonValue("mark") || !event["text"].isString())
+            continue;
+        const double stamp = event["stamp"].toDouble();
+        const double t_s =
+            event["mono"].isDouble() ? event["mono"].toDouble() - startMono_s : stamp - recording.start_s;
+        marks.push_back({t_s, stamp, event["text"].toString()});
+    }
+    return marks;
 }
 
 } // namespace
@@ -102,12 +127,12 @@ Error SerialLogger::noSuchPort(const QString &name) const {
     return wrongParameter("port", name, "one of: " + names.join(", "));
 }
 
-Result<QJsonValue> SerialLogger::mark(const Call &call) {
+Result<MarkAnswer> SerialLogger::mark(const Call &call) {
     const Moment now = Moment::now();
     if (!recorder_.note("mark", {{"text", call.text("text")}}, now))
         return Error(ErrorCode::NotReady, "nothing is being recorded, or the disk does not keep up; "
                                           "record.start begins");
-    return asJson(MarkAnswer{now.stamp(), now.mono()});
+    return MarkAnswer{now.stamp(), now.mono()};
 }
 
 void SerialLogger::send(const Call &call, const Reply &reply) {

@@ -33,7 +33,7 @@ private:
     LoggedPort *findPort(const QString &name) const;
     Error noSuchPort(const QString &name) const;
 
-    Result<QJsonValue> mark(const Call &call);
+    Result<MarkAnswer> mark(const Call &call);
     void send(const Call &call, const Reply &reply);
     void exportRecording(const Call &call, const Reply &reply);
     void listMarks(const Call &call, const Reply &reply);

@@ -15,130 +15,108 @@ FixValues valuesOf(const Fix &fix) {
     return values;
 }
 
-const Fields<LineMessage> &fieldsOf(Of<LineMessage>) {
+Fields<LineMessage> fieldsOf(Of<LineMessage>) {
     using L = LineMessage;
-    static const auto fields = Fields<L>()
-                                   .add("port", &L::port, "That it came from")
-                                   .add("stamp", &L::stamp, "Of its first byte, since the Unix epoch", "s")
-                                   .add("mono", &L::mono, "The stamp on a clock that never jumps", "s")
-                                   .add("text", &L::text, "Printable ASCII; \\\\ and \\xHH for the rest")
-                                   .add("cut", &L::cut, "More of the line follows");
-    return fields;
+    return Fields<L>()
+        .add("port", &L::port, "That it came from")
+        .add("stamp", &L::stamp, "Of its first byte, since the Unix epoch", "s")
+        .add("mono", &L::mono, "The stamp on a clock that never jumps", "s")
+        .add("text", &L::text, "Printable ASCII; \\\\ and \\xHH for the rest")
+        .add("cut", &L::cut, "More of the line follows");
 }
 
-const Fields<FixValues> &fieldsOf(Of<FixValues>) {
+Fields<FixValues> fieldsOf(Of<FixValues>) {
     using F = FixValues;
-    static const auto fields =
-        Fields<F>()
-            .add("stamp", &F::stamp, "When it came, since the Unix epoch", "s")
-            .add("mono", &F::mono, "The stamp on a clock that never jumps", "s")
-            .add("time", &F::time, "Of the fix by the satellites, since the Unix epoch", "s")
-            .orNull()
-            .add("valid", &F::valid, "The receiver vouches for it")
-            .add("lat_deg", &F::lat_deg, "North", "deg")
-            .orNull()
-            .add("lon_deg", &F::lon_deg, "East", "deg")
-            .orNull()
-            .add("alt", &F::alt, "Above mean sea level", "m")
-            .orNull()
-            .add("quality", &F::quality, "As of GGA")
-            .orNull()
-            .add("satellites", &F::satellites, "Used")
-            .orNull()
-            .add("hdop", &F::hdop, "Dilution of the horizontal position")
-            .orNull()
-            .add("speed", &F::speed, "Over ground", "m/s")
-            .orNull()
-            .add("course_deg", &F::course_deg, "Clockwise from north", "deg")
-            .orNull();
-    return fields;
+    return Fields<F>()
+        .add("stamp", &F::stamp, "When it came, since the Unix epoch", "s")
+        .add("mono", &F::mono, "The stamp on a clock that never jumps", "s")
+        .addOrNull("time", &F::time, "Of the fix by the satellites, since the Unix epoch", "s")
+        .add("valid", &F::valid, "The receiver vouches for it")
+        .addOrNull("lat_deg", &F::lat_deg, "North", "deg")
+        .addOrNull("lon_deg", &F::lon_deg, "East", "deg")
+        .addOrNull("alt", &F::alt, "Above mean sea level", "m")
+        .addOrNull("quality", &F::quality, "As of GGA")
+        .addOrNull("satellites", &F::satellites, "Used")
+        .addOrNull("hdop", &F::hdop, "Dilution of the horizontal position")
+        .addOrNull("speed", &F::speed, "Over ground", "m/s")
+        .addOrNull("course_deg", &F::course_deg, "Clockwise from north", "deg");
 }
 
-const Fields<FixMessage> &fieldsOf(Of<FixMessage>) {
-    static const auto fields =
-        Fields<FixMessage>().add("port", &FixMessage::port, "That it came from").include(&FixMessage::values);
-    return fields;
+Fields<FixMessage> fieldsOf(Of<FixMessage>) {
+    return Fields<FixMessage>()
+        .add("port", &FixMessage::port, "That it came from")
+        .include(&FixMessage::values);
 }
 
-const Fields<NmeaCounts> &fieldsOf(Of<NmeaCounts>) {
+Fields<NmeaCounts> fieldsOf(Of<NmeaCounts>) {
     using N = NmeaCounts;
-    static const auto fields = Fields<N>()
-                                   .add("sentences", &N::sentences, "Whole ones")
-                                   .add("bad_checksum", &N::badChecksum, "Damaged sentences")
-                                   .add("no_checksum", &N::noChecksum, "Sentences refused, as they have none")
-                                   .add("too_long", &N::tooLong, "Sentences")
-                                   .add("bad_byte", &N::badByte, "Sentences with a byte that cannot be")
-                                   .add("cut_short", &N::cutShort, "Sentences without their end")
-                                   .add("skipped_bytes", &N::skippedBytes, "Between sentences", "byte")
-                                   .add("bad_fields", &N::badFields, "Sentences whose fields make no sense")
-                                   .add("repeated", &N::repeated, "Sentences that came again")
-                                   .add("late", &N::late, "Sentences that came after their fix was given")
-                                   .add("last_fault", &N::lastFault, "Of the fields");
-    return fields;
+    return Fields<N>()
+        .add("sentences", &N::sentences, "Whole ones")
+        .add("bad_checksum", &N::badChecksum, "Damaged sentences")
+        .add("no_checksum", &N::noChecksum, "Sentences refused, as they have none")
+        .add("too_long", &N::tooLong, "Sentences")
+        .add("bad_byte", &N::badByte, "Sentences with a byte that cannot be")
+        .add("cut_short", &N::cutShort, "Sentences without their end")
+        .add("skipped_bytes", &N::skippedBytes, "Between sentences", "byte")
+        .add("bad_fields", &N::badFields, "Sentences whose fields make no sense")
+        .add("repeated", &N::repeated, "Sentences that came again")
+        .add("late", &N::late, "Sentences that came after their fix was given")
+        .add("last_fault", &N::lastFault, "Of the fields");
 }
 
-const Fields<PortStatus> &fieldsOf(Of<PortStatus>) {
+Fields<PortStatus> fieldsOf(Of<PortStatus>) {
     using P = PortStatus;
-    static const auto fields =
-        Fields<P>()
-            .add("name", &P::name, "As of the setting ports")
-            .add("url", &P::url, "As of the setting ports")
-            .add("state", &P::state, "Of its device")
-            .choices({"open", "opening", "closed"})
-            .add("reason", &P::reason, "Why it is closed")
-            .add("device", &P::device, "That a link led to as it was opened")
-            .add("opened", &P::opened, "Times")
-            .add("failures", &P::failures, "To open it, and ends")
-            .add("bytes", &P::bytes, "Received", "byte")
-            .add("bytes_per_s", &P::bytesPerSecond, "Received in the last second", "byte/s")
-            .add("sent", &P::sent, "To the device", "byte")
-            .add("lost", &P::lost, "That the disk was too slow for", "byte")
-            .add("view_lost", &P::viewLost, "That were recorded, but not shown", "byte")
-            .add("system_errors", &P::systemErrors, "Counts that the system tells of, by kind")
-            .add("last_stamp", &P::lastStamp, "Of the last bytes, since the Unix epoch", "s")
-            .orNull()
-            .add("nmea", &P::nmea, "Of a port with view nmea: what was found")
-            .add("fix", &P::fix, "Of a port with view nmea: the last one");
-    return fields;
+    return Fields<P>()
+        .add("name", &P::name, "As of the setting ports")
+        .add("url", &P::url, "As of the setting ports")
+        .add("state", &P::state, "Of its device")
+        .choices({"open", "opening", "closed"})
+        .add("reason", &P::reason, "Why it is closed")
+        .add("device", &P::device, "That a link led to as it was opened")
+        .add("opened", &P::opened, "Times")
+        .add("failures", &P::failures, "To open it, and ends")
+        .add("bytes", &P::bytes, "Received", "byte")
+        .add("bytes_per_s", &P::bytesPerSecond, "Received in the last second", "byte/s")
+        .add("sent", &P::sent, "To the device", "byte")
+        .add("lost", &P::lost, "That the disk was too slow for", "byte")
+        .add("view_lost", &P::viewLost, "That were recorded, but not shown", "byte")
+        .add("system_errors", &P::systemErrors, "Counts that the system tells of, by kind")
+        .addOrNull("last_stamp", &P::lastStamp, "Of the last bytes, since the Unix epoch", "s")
+        .add("nmea", &P::nmea, "Of a port with view nmea: what was found")
+        .add("fix", &P::fix, "Of a port with view nmea: the last one");
 }
 
-const Fields<SerialMessage> &fieldsOf(Of<SerialMessage>) {
+Fields<SerialMessage> fieldsOf(Of<SerialMessage>) {
     using S = SerialMessage;
-    static const auto fields = Fields<S>()
-                                   .add("ports", &S::ports, "As ports.list gives them")
-                                   .add("recording", &S::recording, "They are recorded")
-                                   .add("source", &S::source, "Where lines and fixes come from");
-    return fields;
+    return Fields<S>()
+        .add("ports", &S::ports, "As ports.list gives them")
+        .add("recording", &S::recording, "They are recorded")
+        .add("source", &S::source, "Where lines and fixes come from");
 }
 
-const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>) {
+Fields<MarkAnswer> fieldsOf(Of<MarkAnswer>) {
     using M = MarkAnswer;
-    static const auto fields = Fields<M>()
-                                   .add("stamp", &M::stamp, "Since the Unix epoch", "s")
-                                   .add("mono", &M::mono, "The stamp on a clock that never jumps", "s");
-    return fields;
+    return Fields<M>()
+        .add("stamp", &M::stamp, "Since the Unix epoch", "s")
+        .add("mono", &M::mono, "The stamp on a clock that never jumps", "s");
 }
 
-const Fields<RecordedMark> &fieldsOf(Of<RecordedMark>) {
+Fields<RecordedMark> fieldsOf(Of<RecordedMark>) {
     using M = RecordedMark;
-    static const auto fields =
-        Fields<M>()
-            .add("t_s", &M::t_s, "After the beginning, by a clock that never jumps", "s")
-            .add("stamp", &M::stamp, "Since the Unix epoch", "s")
-            .add("text", &M::text, "What mark was given");
-    return fields;
+    return Fields<M>()
+        .add("t_s", &M::t_s, "After the beginning, by a clock that never jumps", "s")
+        .add("stamp", &M::stamp, "Since the Unix epoch", "s")
+        .add("text", &M::text, "What mark was given");
 }
 
-const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>) {
-    static const auto fields = Fields<SendAnswer>().add("sent", &SendAnswer::sent, "Bytes", "byte");
-    return fields;
+Fields<SendAnswer> fieldsOf(Of<SendAnswer>) {
+    return Fields<SendAnswer>().add("sent", &SendAnswer::sent, "Bytes", "byte");
 }
 
-const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>) {
-    static const auto fields = Fields<ExportAnswer>()
-                                   .add("path", &ExportAnswer::path, "Of the CSV")
-                                   .add("rows", &ExportAnswer::rows, "Without the header");
-    return fields;
+Fields<ExportAnswer> fieldsOf(Of<ExportAnswer>) {
+    return Fields<ExportAnswer>()
+        .add("path", &ExportAnswer::path, "Of the CSV")
+        .add("rows", &ExportAnswer::rows, "Without the header");
 }
 
 } // namespace hermes::seriallogger

@@ -79,15 +79,15 @@ struct ExportAnswer {
 
 FixValues valuesOf(const Fix &fix);
 
-const Fields<LineMessage> &fieldsOf(Of<LineMessage>);
-const Fields<FixValues> &fieldsOf(Of<FixValues>);
-const Fields<FixMessage> &fieldsOf(Of<FixMessage>);
-const Fields<NmeaCounts> &fieldsOf(Of<NmeaCounts>);
-const Fields<PortStatus> &fieldsOf(Of<PortStatus>);
-const Fields<SerialMessage> &fieldsOf(Of<SerialMessage>);
-const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>);
-const Fields<RecordedMark> &fieldsOf(Of<RecordedMark>);
-const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>);
-const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>);
+Fields<LineMessage> fieldsOf(Of<LineMessage>);
+Fields<FixValues> fieldsOf(Of<FixValues>);
+Fields<FixMessage> fieldsOf(Of<FixMessage>);
+Fields<NmeaCounts> fieldsOf(Of<NmeaCounts>);
+Fields<PortStatus> fieldsOf(Of<PortStatus>);
+Fields<SerialMessage> fieldsOf(Of<SerialMessage>);
+Fields<MarkAnswer> fieldsOf(Of<MarkAnswer>);
+Fields<RecordedMark> fieldsOf(Of<RecordedMark>);
+Fields<SendAnswer> fieldsOf(Of<SendAnswer>);
+Fields<ExportAnswer> fieldsOf(Of<ExportAnswer>);
 
 } // namespace hermes::seriallogger

@@ -39,17 +39,10 @@ Result<void> SerialPlayer::start(const StoredRecording &recording, const Playbac
     const Result<QStringList> files = recording.files();
     if (!files)
         return files.error();
-    missing_ = {};
+    missing_ = recording.isWhole();
     const QJsonArray entries = recording.sidecar.value("files").toArray();
     for (int i = 0; i < entries.size(); ++i) {
         const QString port = entries[i].toObject().value("port").toString();
-        const double bytes = entries[i].toObject().value("bytes").toDouble();
-        if (const QFileInfo file(files->at(i)); double(file.size()) < bytes)
-            missing_ = diskError(QString("%1: it has %2 bytes, and %3 were recorded; the others are missing")
-                                     .arg(file.filePath())
-                                     .arg(file.size())
-                                     .arg(bytes, 0, 'f', 0),
-                                 file.filePath());
         const Result<void> added = addTrack(files->at(i), settingsOf(recording, port));
         if (!added) {
             tracks_.clear();

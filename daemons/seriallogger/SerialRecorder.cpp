@@ -1,7 +1,6 @@
 #include "daemons/seriallogger/SerialRecorder.h"
 
 #include "common/recording/DiskError.h"
-#include "daemons/seriallogger/SerialRepair.h"
 
 #include <QJsonDocument>
 
@@ -31,7 +30,10 @@ Result<void> SerialRecorder::begin(const RecordingPlan &plan) {
     const std::lock_guard<std::mutex> lock(mutex_);
     plan_ = plan;
     events_.clear();
-    eventCount_ = markCount_ = eventsLost_ = diskLost_ = 0;
+    const QJsonValue counts = plan.earlier["counts"];
+    eventCount_ = quint64(counts["events"].toDouble());
+    markCount_ = quint64(counts["marks"].toDouble());
+    eventsLost_ = diskLost_ = 0;
     error_.reset();
     stopping_ = false;
     recording_ = true;
@@ -43,12 +45,23 @@ Result<void> SerialRecorder::begin(const RecordingPlan &plan) {
 }
 
 std::optional<Error> SerialRecorder::openFiles(const RecordingPlan &plan) {
-    const QString base = plan.folder + '/' + plan.prefix + '-';
+    const QString base = plan.folder + '/' + plan.prefix + '-', events = base + "events.jsonl";
+    const bool goesOn = !plan.earlier.isEmpty();
     for (const auto &entry : entries_) {
-        if (!entry->file.create(base + entry->port.name))
+        if (!entry->file.open(base + entry->port.name, goesOn, plan.toItsClock_ns))
             return diskError(entry->file.error(), entry->file.failedPath());
     }
-    if (!eventFile_.create(base + "events.jsonl"))
+    for (const QJsonValue &file : plan.earlier["files"].toArray())
+        for (const auto &entry : entries_)
+            if (entry->port.name == file["port"].toString() &&
+                double(entry->file.bytes()) < file["bytes"].toDouble())
+                return diskError(
+                    QString("%1: it has %2 bytes, and %3 were recorded; nothing is written behind them")
+                        .arg(entry->file.path())
+                        .arg(entry->file.bytes())
+                        .arg(file["bytes"].toDouble(), 0, 'f', 0),
+                    entry->file.path());
+    if (!(goesOn ? eventFile_.resume(events) : eventFile_.create(events)))
         return diskError(eventFile_.error(), eventFile_.path());
     return std::nullopt;
 }
@@ -73,11 +86,11 @@ bool SerialRecorder::note(const QString &event, const QJsonObject &details, cons
 }
 
 bool SerialRecorder::addEvent(const QString &event, QJsonObject line, const Moment &when, bool atEnd) {
+    const std::lock_guard<std::mutex> lock(mutex_);
     line.insert("event", event);
     line.insert("stamp", when.stamp());
-    line.insert("mono", when.mono());
+    line.insert("mono", double(when.mono_ns + plan_.toItsClock_ns) * 1e-9);
     const QByteArray text = QJsonDocument(line).toJson(QJsonDocument::Compact) + '\n';
-    const std::lock_guard<std::mutex> lock(mutex_);
     if (!recording_ || (stopping_ && !atEnd))
         return false;
     if (events_.size() + text.size() > maxEventBytes) {
@@ -178,20 +191,28 @@ RecordingState SerialRecorder::state() const {
     RecordingState state;
     double queueLost = 0, chunks = 0;
     const std::lock_guard<std::mutex> lock(mutex_);
+    QMap<QString, QJsonObject> earlier; // by port
+    for (const QJsonValue &file : plan_.earlier["files"].toArray())
+        earlier[file["port"].toString()] = file.toObject();
     for (const auto &entry : entries_) {
-        QJsonObject file{{"name", plan_.prefix + '-' + entry->port.name + ".raw"},
-                         {"port", entry->port.name},
-                         {"url", entry->port.url},
-                         {"bytes", double(entry->bytes)},
-                         {"chunks", double(entry->chunks)}};
+        QJsonObject file = earlier.take(entry->port.name);
+        file["name"] = plan_.prefix + '-' + entry->port.name + ".raw";
+        file["port"] = entry->port.name;
+        file["url"] = entry->port.url;
+        file["bytes"] = double(entry->bytes);
+        file["chunks"] = double(entry->chunks);
         if (entry->first) {
-            file.insert("first_stamp", entry->first->stamp());
-            file.insert("last_stamp", entry->last->stamp());
+            file["first_stamp"] = file["first_stamp"].toDouble(entry->first->stamp());
+            file["last_stamp"] = entry->last->stamp();
         }
         state.files.append(file);
-        state.bytes += double(entry->bytes);
-        chunks += double(entry->chunks);
         queueLost += double(entry->port.queue->lost());
+    }
+    for (const QJsonObject &file : qAsConst(earlier)) // of ports that are no longer there
+        state.files.append(file);
+    for (const QJsonValue &file : qAsConst(state.files)) {
+        state.bytes += file["bytes"].toDouble();
+        chunks += file["chunks"].toDouble();
     }
     state.path = plan_.folder;
     state.counts = {{"bytes", state.bytes},
@@ -200,12 +221,9 @@ RecordingState SerialRecorder::state() const {
                     {"marks", double(markCount_)}};
     state.losses = {
         {"queue_bytes", queueLost}, {"disk_bytes", double(diskLost_)}, {"events", double(eventsLost_)}};
+    state.addEarlierLosses(plan_.earlier);
     state.error = error_;
     return state;
-}
-
-Result<void> SerialRecorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
-    return repairSerialRecording(plan, sidecar);
 }
 
 } // namespace hermes::seriallogger

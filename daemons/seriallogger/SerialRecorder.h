@@ -23,9 +23,13 @@ public:
     /// Before the first recording.
     void setPorts(std::vector<Port> ports);
 
+    /// Behind what was received before.
+    bool goesOn() const override { return true; }
     Result<void> begin(const RecordingPlan &plan) override;
     void end() override;
     RecordingState state() const override;
+    /// Cuts each index back to whole records with bytes, the events back to whole lines, and brings files,
+    /// counts, bytes and end of the sidecar up to what is there. Not a byte of a port is touched.
     Result<void> repair(const RecordingPlan &plan, QJsonObject &sidecar) override;
 
     /// Adds {stamp, mono, event, ...details} to the events; false when nothing is being recorded. Any thread.

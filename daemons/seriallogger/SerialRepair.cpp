@@ -1,8 +1,8 @@
-#include "daemons/seriallogger/SerialRepair.h"
-
+// How the serial logger mends a recording that was cut off.
 #include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "daemons/seriallogger/SerialIndex.h"
+#include "daemons/seriallogger/SerialRecorder.h"
 
 #include <QDir>
 #include <QFile>
@@ -85,7 +85,7 @@ Result<QJsonObject> repairEvents(const QString &path) {
 
 } // namespace
 
-Result<void> repairSerialRecording(const RecordingPlan &plan, QJsonObject &sidecar) {
+Result<void> SerialRecorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
     const QString base = plan.folder + '/' + plan.prefix + '-';
     QJsonArray files;
     double bytes = 0, chunks = 0, end = sidecar.value("start").toDouble();

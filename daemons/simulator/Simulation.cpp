@@ -26,6 +26,9 @@ Simulation::Simulation(const World &world, const Options &options, std::int64_t 
     , lidar_(wallsOf(world), options.lidar, options.seed)
     , gps_(options.gps)
     , gap_(options.rpm / 60 * 360 * firingPeriod)
+    , lidarGps_(options.lidarGps)
+    , lidarClock_s_(options.lidarClock_s)
+    , lidarDrift_(options.lidarDrift_ppm * 1e-6)
     , start_ns_(start_ns) {
     for (velodyne::MotionChip &chip : position_.chips)
         chip.temperature_c = 25; // they stand still: how their axes lie is not published
@@ -56,9 +59,16 @@ void Simulation::advancePose(double seconds) {
     people_.advance(seconds, {pose().x, pose().y});
 }
 
+/// By the sensor's own clock, microseconds of the hour.
+std::uint32_t Simulation::lidarStamp_us() const {
+    const double ahead_s = lidarClock_s_ + lidarDrift_ * double(now_ns() - start_ns_) * 1e-9;
+    const std::int64_t ahead_us = lidarGps_ ? 0 : std::llround(ahead_s * 1e6);
+    return std::uint32_t((now_ns() / 1000 + ahead_us) % velodyne::stampPeriod_us);
+}
+
 const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
     advanceWheels();
-    packet_.setTail(std::uint32_t(now_ns() / 1000 % velodyne::stampPeriod_us));
+    packet_.setTail(lidarStamp_us());
     for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
         const double azimuth = std::fmod(double(firings_) * gap_, 360.0);
         packet_.setAzimuth(block, std::uint16_t(std::lround(azimuth * 100) % velodyne::azimuthSteps));
@@ -70,9 +80,9 @@ const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
 }
 
 std::array<std::uint8_t, velodyne::positionPacketSize> Simulation::positionPacket() {
-    position_.stamp_us = std::uint32_t(now_ns() / 1000 % velodyne::stampPeriod_us);
-    position_.pps = gps_.pps();
-    position_.nmea = gps_.lidarSentence();
+    position_.stamp_us = lidarStamp_us();
+    position_.pps = lidarGps_ ? gps_.pps() : velodyne::Pps::Absent;
+    position_.nmea = lidarGps_ ? gps_.lidarSentence() : std::string();
     return encodePosition(position_);
 }
 

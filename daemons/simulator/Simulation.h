@@ -18,6 +18,9 @@ public:
         double turnRate = 1.0;     ///< rad/s
         double rpm = 600;          ///< turns of the sensor's head a minute
         double radius = 0.3;       ///< of the robot's outline; metres
+        bool lidarGps = true;      ///< sets the sensor's clock; without, it counts from anywhere
+        double lidarClock_s = 0;   ///< of that clock, ahead of the simulator's at the start
+        double lidarDrift_ppm = 0; ///< how much faster it goes
         LidarModel::Options lidar;
         GpsModel::Options gps;
         Drivetrain::Options drivetrain;
@@ -80,6 +83,7 @@ public:
     }
 
 private:
+    std::uint32_t lidarStamp_us() const;
     void advanceWheels();
     void advancePose(double seconds);
     Pose2D pose() const { return placed_ ? place_ : follower_.pose(); }
@@ -94,6 +98,8 @@ private:
     velodyne::PositionPacket position_;
     velodyne::DataPacketWriter packet_;
     double gap_ = 0; ///< degrees a firing
+    bool lidarGps_ = true;
+    double lidarClock_s_ = 0, lidarDrift_ = 0;
     std::int64_t start_ns_ = 0;
     std::uint64_t firings_ = 0;
     bool placed_ = false;

@@ -74,41 +74,34 @@ void Simulator::declareCommands() {
                    .needs(Role::Engineer)
                    .param(Field::text("world", "World file (JSON); a relative path begins in the folder in "
                                                "which the simulator runs"))
-                   .gives<LoadedWorld>()
                    .example({{"world", "deploy/worlds/pillars.json"}},
                             QJsonObject{{"path", "/home/robot/hermes/deploy/worlds/pillars.json"},
                                         {"name", "pillars"},
                                         {"edges", 36},
                                         {"poses", 39}})
-                   .handler([this](const Call &call) -> Result<QJsonValue> {
+                   .answers([this](const Call &call) -> Result<LoadedWorld> {
                        const Result<void> loaded =
                            loadNamed(call.text("world"), namedFilesFolders(settings()));
                        if (!loaded)
                            return loaded.error();
-                       return asJson(LoadedWorld{worldPath_, QString::fromStdString(world_.name),
-                                                 world_.edges.size(), world_.poses.size()});
+                       return LoadedWorld{worldPath_, QString::fromStdString(world_.name),
+                                          world_.edges.size(), world_.poses.size()};
                    }));
     addCommand(Command("sim.state", "World, true pose, progress along the path, packets sent and left out")
                    .needs(Role::Observer)
-                   .gives<SimulatorState>()
-                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
+                   .answers([this](const Call &) { return state(); }));
     addCommand(Command("sim.drive", "Follows the path of the world from where the robot is on it")
                    .param(Field::boolean("restart", "Begin again at the first pose").byDefault(false))
-                   .returnsNull()
-                   .handler([this](const Call &call) { return drive(call.flag("restart")); }));
-    addCommand(Command("sim.halt", "Slows down and stops")
-                   .returnsNull()
-                   .handler([this](const Call &) -> Result<QJsonValue> {
-                       pump_.with([](Simulation &simulation) { simulation.halt(); });
-                       return QJsonValue();
-                   }));
+                   .answers([this](const Call &call) { return drive(call.flag("restart")); }));
+    addCommand(Command("sim.halt", "Slows down and stops").answers([this](const Call &) {
+        pump_.with([](Simulation &simulation) { simulation.halt(); });
+    }));
     addCommand(Command("sim.place",
                        "Puts the robot anywhere, standing; sim.drive with restart brings it back to its path")
                    .param(Field::number("x", "Position").unit("m"))
                    .param(Field::number("y", "Position").unit("m"))
                    .param(Field::number("theta", "Heading").unit("rad"))
-                   .returnsNull()
-                   .handler([this](const Call &call) { return place(call); }));
+                   .answers([this](const Call &call) { return place(call); }));
     addCommand(
         Command("sim.noise", "Sets the noise of the sensors until the next start; what is not given stays")
             .param(Field::number("sigma_m", "Standard deviation of the lidar's range")
@@ -126,8 +119,7 @@ void Simulator::declareCommands() {
                        .unit("m")
                        .range(0, 1000)
                        .optional())
-            .returnsNull()
-            .handler([this](const Call &call) { return setNoise(call); }));
+            .answers([this](const Call &call) { return setNoise(call); }));
     addCommand(
         Command("sim.fault",
                 "Simulates a fault of a device; none ends its faults. docs/simulator.md tells what each does")
@@ -144,9 +136,8 @@ void Simulator::declareCommands() {
                        .range(0, 10)
                        .byDefault(0.05))
             .param(Field::integer("counts", "By which an encoder jumps").range(-1e9, 1e9).byDefault(100000))
-            .returnsNull()
             .example({{"device", "lidar"}, {"kind", "loss"}, {"share", 0.05}}, QJsonValue())
-            .handler([this](const Call &call) { return setFault(call); }));
+            .answers([this](const Call &call) { return setFault(call); }));
 }
 
 Result<void> Simulator::start() {
@@ -217,7 +208,7 @@ Result<void> Simulator::load(const QString &path, const Outcome<World> &world) {
     return {};
 }
 
-Result<QJsonValue> Simulator::drive(bool restart) {
+Result<void> Simulator::drive(bool restart) {
     if (world_.poses.size() < 2)
         return Error(ErrorCode::NotReady, worldPath_.isEmpty()
                                               ? QString("no world is loaded; sim.load loads one")
@@ -232,18 +223,18 @@ Result<QJsonValue> Simulator::drive(bool restart) {
         return Error(
             ErrorCode::NotReady,
             "the robot is at the end of its path, or was placed beside it; restart: true begins again");
-    return QJsonValue();
+    return {};
 }
 
-Result<QJsonValue> Simulator::place(const Call &call) {
+Result<void> Simulator::place(const Call &call) {
     if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
     const Pose2D pose{call.number("x"), call.number("y"), vectorlib::wrapAngle(call.number("theta"))};
     pump_.with([&](Simulation &simulation) { simulation.place(pose); });
-    return QJsonValue();
+    return {};
 }
 
-Result<QJsonValue> Simulator::setNoise(const Call &call) {
+Result<void> Simulator::setNoise(const Call &call) {
     if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
     pump_.with([&](Simulation &simulation) {
@@ -256,10 +247,10 @@ Result<QJsonValue> Simulator::setNoise(const Call &call) {
         if (call.has("gps_sigma_m"))
             simulation.gps().setSigma(call.number("gps_sigma_m"));
     });
-    return QJsonValue();
+    return {};
 }
 
-Result<QJsonValue> Simulator::setFault(const Call &call) {
+Result<void> Simulator::setFault(const Call &call) {
     if (const QString wrong = faultMismatch(call.text("device"), call.text("kind")); !wrong.isEmpty())
         return invalidParams({{"kind", call.value("kind"), "a fault of this device"}}, wrong);
     if (call.text("device") == "gps")
@@ -274,7 +265,7 @@ Result<QJsonValue> Simulator::setFault(const Call &call) {
         fault = {LidarFault::Kind::Loss, call.number("share")};
     pump_.setFault(fault);
     logInfo("simulator", "fault of the lidar: " + kind);
-    return QJsonValue();
+    return {};
 }
 
 SimulatorState Simulator::state() {

@@ -29,12 +29,12 @@ private:
     /// Puts the robot at the first pose of a world file and begins to send.
     Result<void> loadNamed(const QString &name, const QStringList &folders);
     Result<void> load(const QString &path, const Outcome<World> &world);
-    Result<QJsonValue> drive(bool restart);
-    Result<QJsonValue> place(const Call &call);
-    Result<QJsonValue> setNoise(const Call &call);
-    Result<QJsonValue> setFault(const Call &call);
-    Result<QJsonValue> setMotorFault(const Call &call);
-    Result<QJsonValue> setGpsFault(const Call &call);
+    Result<void> drive(bool restart);
+    Result<void> place(const Call &call);
+    Result<void> setNoise(const Call &call);
+    Result<void> setFault(const Call &call);
+    Result<void> setMotorFault(const Call &call);
+    Result<void> setGpsFault(const Call &call);
     DrivetrainState motorState(Drivetrain &drivetrain) const;
     SimulatorState state();
     void publishTruth(const Simulation::Truth &truth);

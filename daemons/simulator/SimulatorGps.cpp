@@ -3,7 +3,7 @@
 
 namespace hermes::simulator {
 
-Result<QJsonValue> Simulator::setGpsFault(const Call &call) {
+Result<void> Simulator::setGpsFault(const Call &call) {
     const QString kind = call.text("kind");
     if (kind == "pulled" || kind == "none")
         gpsLine_.setPulled(kind == "pulled");
@@ -20,7 +20,7 @@ Result<QJsonValue> Simulator::setGpsFault(const Call &call) {
         pump_.with([&](Simulation &simulation) { simulation.gps().setFault(fault); });
     }
     logInfo("simulator", "fault of the gps: " + kind);
-    return QJsonValue();
+    return {};
 }
 
 } // namespace hermes::simulator

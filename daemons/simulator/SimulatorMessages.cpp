@@ -65,112 +65,99 @@ int wheelNumber(const QString &device) {
     return -1;
 }
 
-const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>) {
-    static const auto fields = Fields<LoadedWorld>()
-                                   .add("path", &LoadedWorld::path, "Of the file, absolute")
-                                   .add("name", &LoadedWorld::name, "Of the world")
-                                   .add("edges", &LoadedWorld::edges, "Walls")
-                                   .add("poses", &LoadedWorld::poses, "Of its path");
-    return fields;
+Fields<LoadedWorld> fieldsOf(Of<LoadedWorld>) {
+    return Fields<LoadedWorld>()
+        .add("path", &LoadedWorld::path, "Of the file, absolute")
+        .add("name", &LoadedWorld::name, "Of the world")
+        .add("edges", &LoadedWorld::edges, "Walls")
+        .add("poses", &LoadedWorld::poses, "Of its path");
 }
 
-const Fields<RoboClawEmulator::Counts> &fieldsOf(Of<RoboClawEmulator::Counts>) {
+Fields<RoboClawEmulator::Counts> fieldsOf(Of<RoboClawEmulator::Counts>) {
     using C = RoboClawEmulator::Counts;
-    static const auto fields = Fields<C>()
-                                   .add("requests", &C::requests, "Carried out")
-                                   .add("crc_errors", &C::crcErrors, "Damaged requests")
-                                   .add("unknown", &C::unknown, "Bytes of no request")
-                                   .add("timeouts", &C::timeouts, "Times that silence stopped the motors");
-    return fields;
+    return Fields<C>()
+        .add("requests", &C::requests, "Carried out")
+        .add("crc_errors", &C::crcErrors, "Damaged requests")
+        .add("unknown", &C::unknown, "Bytes of no request")
+        .add("timeouts", &C::timeouts, "Times that silence stopped the motors");
 }
 
-const Fields<EmulatorState> &fieldsOf(Of<EmulatorState>) {
+Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
     using E = EmulatorState;
-    static const auto fields =
-        Fields<E>()
-            .add("status", &E::status, "Bits of errors and warnings")
-            .add("temperature_c", &E::temperature_c, "Of the controller", "degC")
-            .add("serial_timeout_s", &E::serialTimeout_s, "It stops then; 0: never", "s")
-            .include(&E::counts);
-    return fields;
+    return Fields<E>()
+        .add("status", &E::status, "Bits of errors and warnings")
+        .add("temperature_c", &E::temperature_c, "Of the controller", "degC")
+        .add("serial_timeout_s", &E::serialTimeout_s, "It stops then; 0: never", "s")
+        .include(&E::counts);
 }
 
-const Fields<LineState> &fieldsOf(Of<LineState>) {
-    static const auto fields = Fields<LineState>()
-                                   .add("link", &LineState::link, "That stays the same, or empty")
-                                   .add("device", &LineState::device, "Empty while it is pulled");
-    return fields;
+Fields<LineState> fieldsOf(Of<LineState>) {
+    return Fields<LineState>()
+        .add("link", &LineState::link, "That stays the same, or empty")
+        .add("device", &LineState::device, "Empty while it is pulled");
 }
 
-const Fields<GpsLineState> &fieldsOf(Of<GpsLineState>) {
+Fields<GpsLineState> fieldsOf(Of<GpsLineState>) {
     using G = GpsLineState;
-    static const auto fields =
-        Fields<G>()
-            .include(&G::line)
-            .add("bytes", &G::bytes, "Sent", "byte")
-            .add("unread_lost", &G::unreadLost, "That no program has read in time", "byte");
-    return fields;
+    return Fields<G>()
+        .include(&G::line)
+        .add("bytes", &G::bytes, "Sent", "byte")
+        .add("unread_lost", &G::unreadLost, "That no program has read in time", "byte");
 }
 
-const Fields<DrivetrainState> &fieldsOf(Of<DrivetrainState>) {
+Fields<DrivetrainState> fieldsOf(Of<DrivetrainState>) {
     using D = DrivetrainState;
-    static const auto fields = Fields<D>()
-                                   .add("wheels_rps", &D::wheels_rps,
-                                        "Front left, front right, rear left, rear right, forward", "rad/s")
-                                   .add("controllers", &D::controllers, "Each")
-                                   .add("battery_v", &D::battery_v, "Voltage", "V")
-                                   .add("battery_charge", &D::batteryCharge, "0 to 1")
-                                   .add("lines", &D::lines, "Pseudo-terminals of the controllers");
-    return fields;
+    return Fields<D>()
+        .add("wheels_rps", &D::wheels_rps, "Front left, front right, rear left, rear right, forward", "rad/s")
+        .add("controllers", &D::controllers, "Each")
+        .add("battery_v", &D::battery_v, "Voltage", "V")
+        .add("battery_charge", &D::batteryCharge, "0 to 1")
+        .add("lines", &D::lines, "Pseudo-terminals of the controllers");
 }
 
-const Fields<LidarModel::Options> &fieldsOf(Of<LidarModel::Options>) {
+Fields<LidarModel::Options> fieldsOf(Of<LidarModel::Options>) {
     using L = LidarModel::Options;
-    static const auto fields = Fields<L>()
-                                   .add("sigma_m", &L::sigma, "Standard deviation of the lidar's range", "m")
-                                   .add("dropouts", &L::dropouts, "Share of its returns that do not come")
-                                   .add("outliers", &L::outliers, "Share that comes from anywhere");
-    return fields;
+    return Fields<L>()
+        .add("sigma_m", &L::sigma, "Standard deviation of the lidar's range", "m")
+        .add("dropouts", &L::dropouts, "Share of its returns that do not come")
+        .add("outliers", &L::outliers, "Share that comes from anywhere");
 }
 
-const Fields<FaultState> &fieldsOf(Of<FaultState>) {
-    static const auto fields = Fields<FaultState>()
-                                   .add("kind", &FaultState::kind, "What the lidar does wrong")
-                                   .choices({"none", "silence", "loss"})
-                                   .add("share", &FaultState::share, "Of the packets that a loss leaves out");
-    return fields;
+Fields<FaultState> fieldsOf(Of<FaultState>) {
+    return Fields<FaultState>()
+        .add("kind", &FaultState::kind, "What the lidar does wrong")
+        .choices({"none", "silence", "loss"})
+        .add("share", &FaultState::share, "Of the packets that a loss leaves out");
 }
 
-const Fields<PacketPump::Counts> &fieldsOf(Of<PacketPump::Counts>) {
+Fields<PacketPump::Counts> fieldsOf(Of<PacketPump::Counts>) {
     using C = PacketPump::Counts;
-    static const auto fields = Fields<C>()
-                                   .add("packets", &C::sent, "Sent")
-                                   .add("position_packets", &C::positions, "Sent besides")
-                                   .add("swallowed", &C::swallowed, "By a fault that was asked for")
-                                   .add("skipped", &C::skipped, "Not made, because the machine stalled")
-                                   .add("send_errors", &C::sendErrors, "Packets that the system did not take")
-                                   .add("worst_lag_s", &C::worstLag_s, "By which one was late", "s");
-    return fields;
+    return Fields<C>()
+        .add("packets", &C::sent, "Sent")
+        .add("position_packets", &C::positions, "Sent besides")
+        .add("swallowed", &C::swallowed, "By a fault that was asked for")
+        .add("skipped", &C::skipped, "Not made, because the machine stalled")
+        .add("send_errors", &C::sendErrors, "Packets that the system did not take")
+        .add("worst_lag_s", &C::worstLag_s, "By which one was late", "s");
 }
 
-const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>) {
+Fields<SimulatorState> fieldsOf(Of<SimulatorState>) {
     using S = SimulatorState;
-    static const auto fields = Fields<S>()
-                                   .add("world", &S::world, "File, or empty")
-                                   .add("stamp", &S::stamp, "On the clock of the lidar's stamps", "s")
-                                   .add("pose", &S::pose, "Where the robot truly is")
-                                   .add("twist", &S::twist, "How it truly moves")
-                                   .add("progress", &S::progress, "Share of the path behind the robot")
-                                   .add("driving", &S::driving, "It follows the path")
-                                   .add("finished", &S::finished, "It is at the end of the path")
-                                   .add("placed", &S::placed, "It was placed off the path")
-                                   .add("touching", &S::touching, "A wall or a person holds it")
-                                   .add("motors", &S::motors, "What drives it")
-                                   .add("gps", &S::gps, "Line of the GPS receiver")
-                                   .include(&S::lidar)
-                                   .add("fault", &S::fault, "Of the lidar")
-                                   .include(&S::packets);
-    return fields;
+    return Fields<S>()
+        .add("world", &S::world, "File, or empty")
+        .add("stamp", &S::stamp, "On the clock of the lidar's stamps", "s")
+        .add("pose", &S::pose, "Where the robot truly is")
+        .add("twist", &S::twist, "How it truly moves")
+        .add("progress", &S::progress, "Share of the path behind the robot")
+        .add("driving", &S::driving, "It follows the path")
+        .add("finished", &S::finished, "It is at the end of the path")
+        .add("placed", &S::placed, "It was placed off the path")
+        .add("touching", &S::touching, "A wall or a person holds it")
+        .add("motors", &S::motors, "What drives it")
+        .add("gps", &S::gps, "Line of the GPS receiver")
+        .include(&S::lidar)
+        .add("fault", &S::fault, "Of the lidar")
+        .include(&S::packets);
 }
 
 } // namespace hermes::simulator

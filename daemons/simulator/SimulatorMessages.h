@@ -61,8 +61,8 @@ struct SimulatorState {
     PacketPump::Counts packets;
 };
 
-const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>);
-const Fields<PacketPump::Counts> &fieldsOf(Of<PacketPump::Counts>);
-const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>);
+Fields<LoadedWorld> fieldsOf(Of<LoadedWorld>);
+Fields<PacketPump::Counts> fieldsOf(Of<PacketPump::Counts>);
+Fields<SimulatorState> fieldsOf(Of<SimulatorState>);
 
 } // namespace hermes::simulator

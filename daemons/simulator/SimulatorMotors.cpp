@@ -52,7 +52,7 @@ void applyFault(MotorChannel &motor, const Call &call) {
 
 } // namespace
 
-Result<QJsonValue> Simulator::setMotorFault(const Call &call) {
+Result<void> Simulator::setMotorFault(const Call &call) {
     const QString device = call.text("device"), kind = call.text("kind");
     const bool second = device.endsWith('2');
     if (device.startsWith("line")) {
@@ -80,7 +80,7 @@ Result<QJsonValue> Simulator::setMotorFault(const Call &call) {
             applyFault(drivetrain.wheel(wheel), call);
     });
     logInfo("simulator", QString("fault of %1: %2").arg(device, kind));
-    return QJsonValue();
+    return {};
 }
 
 DrivetrainState Simulator::motorState(Drivetrain &drivetrain) const {

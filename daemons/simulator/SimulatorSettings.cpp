@@ -26,6 +26,11 @@ SimulatorSettings::SimulatorSettings() {
     add("lidar.height_m", lidar.sensorHeight, "Of the sensor above the floor", "m", 0.01, 10);
     add("lidar.min_range_m", lidar.minRange, "Nearer things return nothing", "m", 0, 10);
     add("lidar.max_range_m", lidar.maxRange, "Farther things return nothing", "m", 1, 131);
+    add("lidar.gps", robot.lidarGps, "A GPS sets its clock; without, that counts from anywhere");
+    add("lidar.clock_s", robot.lidarClock_s, "Of a clock without GPS: ahead of this host's at the start", "s",
+        0, 3600);
+    add("lidar.drift_ppm", robot.lidarDrift_ppm, "Of a clock without GPS: how much faster it goes", "ppm",
+        -1000, 1000);
     group("Lidar");
     add("lidar.sigma_m", lidar.sigma, "Standard deviation of the range", "m", 0, 1);
     add("lidar.dropouts", lidar.dropouts, "Share of the returns that do not come").range(0, 1);

@@ -28,10 +28,10 @@ private:
     // The commands.
     Result<QJsonValue> list();
     Result<QJsonValue> define(const QJsonObject &trigger);
-    Result<QJsonValue> remove(const QString &id);
-    Result<QJsonValue> setArmed(const QString &id, bool armed);
+    Result<void> remove(const QString &id);
+    Result<void> setArmed(const QString &id, bool armed);
     void fireNow(const Call &call, const Reply &reply);
-    Result<QJsonValue> replaceTriggers(const QJsonArray &triggers, int edited);
+    Result<void> replaceTriggers(const QJsonArray &triggers, int edited);
     /// Of the definition in the settings; InvalidParams when there is none.
     Result<int> indexOf(const QString &id);
 

@@ -58,16 +58,13 @@ void SoftwareTrigger::declareCommands() {
     addCommand(Command("trigger.remove", "Removes a trigger")
                    .needs(Role::Engineer)
                    .param(idField())
-                   .returnsNull()
-                   .handler([this](const Call &call) { return remove(call.text("id")); }));
+                   .answers([this](const Call &call) { return remove(call.text("id")); }));
     addCommand(Command("trigger.arm", "Lets a trigger fire by itself; its period or distance begins now")
                    .param(idField())
-                   .returnsNull()
-                   .handler([this](const Call &call) { return setArmed(call.text("id"), true); }));
+                   .answers([this](const Call &call) { return setArmed(call.text("id"), true); }));
     addCommand(Command("trigger.disarm", "It fires no more, until it is armed; definition and counts stay")
                    .param(idField())
-                   .returnsNull()
-                   .handler([this](const Call &call) { return setArmed(call.text("id"), false); }));
+                   .answers([this](const Call &call) { return setArmed(call.text("id"), false); }));
     addCommand(Command("trigger.fire", "Fires an armed trigger now, and gives the firing, as in the topic "
                                        "fired, when its last action has ended")
                    .param(idField())
@@ -98,10 +95,10 @@ Result<int> SoftwareTrigger::indexOf(const QString &id) {
 }
 
 // edited: the element that a command changed; what is wrong with it is told by its own path.
-Result<QJsonValue> SoftwareTrigger::replaceTriggers(const QJsonArray &triggers, int edited) {
+Result<void> SoftwareTrigger::replaceTriggers(const QJsonArray &triggers, int edited) {
     const auto changed = settings().set({{"triggers", triggers}});
     if (changed)
-        return QJsonValue();
+        return {};
     const QString prefix = QString("triggers.%1.").arg(edited);
     QJsonArray errors;
     for (const QJsonValue &error : changed.error().data["errors"].toArray()) {
@@ -125,10 +122,10 @@ Result<QJsonValue> SoftwareTrigger::define(const QJsonObject &trigger) {
     else
         triggers.append(trigger);
     const auto replaced = replaceTriggers(triggers, index);
-    return replaced ? Result<QJsonValue>(QJsonValue(trigger)) : replaced;
+    return replaced ? Result<QJsonValue>(QJsonValue(trigger)) : replaced.error();
 }
 
-Result<QJsonValue> SoftwareTrigger::remove(const QString &id) {
+Result<void> SoftwareTrigger::remove(const QString &id) {
     const auto index = indexOf(id);
     if (!index)
         return index.error();
@@ -137,7 +134,7 @@ Result<QJsonValue> SoftwareTrigger::remove(const QString &id) {
     return replaceTriggers(triggers, *index);
 }
 
-Result<QJsonValue> SoftwareTrigger::setArmed(const QString &id, bool armed) {
+Result<void> SoftwareTrigger::setArmed(const QString &id, bool armed) {
     const auto index = indexOf(id);
     if (!index)
         return index.error();

@@ -62,9 +62,9 @@ struct TriggerState {
     WatchedState watched;
 };
 
-const Fields<Jitter> &fieldsOf(Of<Jitter>);
-const Fields<FiringLog::State> &fieldsOf(Of<FiringLog::State>);
-const Fields<FiringMessage> &fieldsOf(Of<FiringMessage>);
-const Fields<TriggerState> &fieldsOf(Of<TriggerState>);
+Fields<Jitter> fieldsOf(Of<Jitter>);
+Fields<FiringLog::State> fieldsOf(Of<FiringLog::State>);
+Fields<FiringMessage> fieldsOf(Of<FiringMessage>);
+Fields<TriggerState> fieldsOf(Of<TriggerState>);
 
 } // namespace hermes::softwaretrigger

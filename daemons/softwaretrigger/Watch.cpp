@@ -19,12 +19,11 @@ constexpr double allowance = 0.05; // m or rad that a step may exceed what the s
 
 } // namespace
 
-const Fields<TravelPoint> &fieldsOf(Of<TravelPoint>) {
-    static const auto fields = Fields<TravelPoint>()
-                                   .add("pose", &TravelPoint::pose, "As in odometry")
-                                   .add("twist", &TravelPoint::twist, "As in odometry")
-                                   .add("mono", &TravelPoint::mono, "As in odometry", "s");
-    return fields;
+Fields<TravelPoint> fieldsOf(Of<TravelPoint>) {
+    return Fields<TravelPoint>()
+        .add("pose", &TravelPoint::pose, "As in odometry")
+        .add("twist", &TravelPoint::twist, "As in odometry")
+        .add("mono", &TravelPoint::mono, "As in odometry", "s");
 }
 
 Result<std::optional<Travel::Passed>> Travel::add(WireView message) {

@@ -108,8 +108,7 @@ std::vector<Command> Setup::commands() {
     return {findCommand(), proposeCommand(), applyCommand(), undoCommand(),
             Command("setup.samples", "The settings of whole robots that there are")
                 .needs(Role::Observer)
-                .gives<QStringList>()
-                .handler([this](const Call &) { return asJson(files().sampleNames()); })};
+                .answers([this](const Call &) { return files().sampleNames(); })};
 }
 
 SettingsFiles Setup::files() const {
@@ -117,19 +116,17 @@ SettingsFiles Setup::files() const {
 }
 
 Command Setup::findCommand() {
-    return Command(
-               "setup.find",
-               "Looks for a few seconds what is plugged in: serial lines, and lidars that send packets. It "
-               "listens; what is silent is asked for the version of a RoboClaw, which moves nothing, where "
-               "the line is known as a motor controller's (by USB or by the settings) or ask is true. What "
-               "another program uses is left alone")
+    return Command("setup.find",
+                   "Looks for a few seconds what is plugged in: serial lines, and lidars that send packets. "
+                   "It listens; what is silent is asked for the version of a RoboClaw, which moves nothing, "
+                   "where the line is known as a motor controller's (by USB or by the settings) or ask is "
+                   "true. What another program uses is left alone")
         .needs(Role::Engineer)
         .param(Field::boolean("ask", "Ask all silent lines: a motor controller that is no RoboClaw in packet "
                                      "serial mode may take the two bytes for speeds; wheels off the ground")
                    .byDefault(false))
-        .param(Field::boolean("release",
-                              "Processes of the supervisor that use serial lines or receive packets "
-                              "of lidars are ended first, and started again afterwards")
+        .param(Field::boolean("release", "Processes of the supervisor that use serial lines or receive "
+                                         "packets of lidars are ended first, and started again afterwards")
                    .byDefault(false))
         .gives<Findings>()
         .asyncHandler([this](const Call &call, const Reply &reply) {
@@ -238,30 +235,29 @@ void Setup::onFound(Findings findings, const Stopped &stopped, const Reply &repl
 }
 
 Command Setup::proposeCommand() {
-    return Command("setup.propose", "What the settings should be with what the last setup.find has found; "
-                                    "changes nothing")
+    return Command("setup.propose",
+                   "What the settings should be with what the last setup.find has found; changes nothing")
         .needs(Role::Engineer)
         .param(sampleField())
-        .gives<Proposal>()
-        .handler([this](const Call &call) -> Result<QJsonValue> {
+        .answers([this](const Call &call) -> Result<Proposal> {
             if (!found_ && call.text("sample").isEmpty())
                 return Error(ErrorCode::NotReady, "nothing was looked for yet; setup.find does");
             return proposal(call.text("sample"));
         });
 }
 
-Result<QJsonValue> Setup::proposal(const QString &sample) const {
+Result<Proposal> Setup::proposal(const QString &sample) const {
     const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
     if (!base)
         return base.error();
     Proposal proposal = found_ ? propose(*found_, *base, settings_.text("setup.folder")) : Proposal();
     if (sample.isEmpty() && proposal.settings.isEmpty())
-        return asJson(proposal);
+        return proposal;
     const auto next = whole(sample, proposal.settings);
     if (!next)
         return next.error();
     proposal.changes = changesBetween(files().readable(), *next);
-    return asJson(proposal);
+    return proposal;
 }
 
 Result<QJsonObject> Setup::whole(const QString &sample, const QJsonObject &changes) const {
@@ -322,14 +318,13 @@ Command Setup::applyCommand() {
                 [=, settings = *settings](const Result<void> &checked) {
                     isWriting_ = false;
                     const auto written = checked ? write(sample, changes, settings) : checked.error();
-                    written ? reply.result(*written) : reply.error(written.error());
+                    written ? reply.result(asJson(*written)) : reply.error(written.error());
                 },
                 this);
         });
 }
 
-Result<QJsonValue> Setup::write(const QString &sample, const QJsonObject &changes,
-                                const QJsonObject &checked) {
+Result<Applied> Setup::write(const QString &sample, const QJsonObject &changes, const QJsonObject &checked) {
     const auto meant = whole(sample, changes);
     if (!meant || *meant != checked)
         return Error(ErrorCode::NotReady,
@@ -341,7 +336,7 @@ Result<QJsonValue> Setup::write(const QString &sample, const QJsonObject &change
         if (there.contains(daemon) && there[daemon] == checked[daemon])
             fresh.remove(daemon);
     if (fresh.isEmpty())
-        return asJson(Applied{{}, {}, {"all settings are so already; nothing was written"}});
+        return Applied{{}, {}, {"all settings are so already; nothing was written"}};
     const auto written = files().write(fresh);
     if (!written)
         return written.error();
@@ -349,14 +344,11 @@ Result<QJsonValue> Setup::write(const QString &sample, const QJsonObject &change
 }
 
 Command Setup::undoCommand() {
-    return Command(
-               "setup.undo",
-               "Puts the settings files back that the last setup.apply has replaced, whatever was changed "
-               "in them since, and starts their processes anew. What it replaces stays beside, as "
-               "NAME.json.undone")
+    return Command("setup.undo", "Puts the settings files back that the last setup.apply has replaced, "
+                                 "whatever was changed in them since, and starts their processes anew. What "
+                                 "it replaces stays beside, as NAME.json.undone")
         .needs(Role::Engineer)
-        .gives<Applied>()
-        .handler([this](const Call &) -> Result<QJsonValue> {
+        .answers([this](const Call &) -> Result<Applied> {
             if (isWriting_ || isSearching_)
                 return busy(isWriting_ ? "another change" : "a search");
             const auto written = files().undo();
@@ -366,7 +358,7 @@ Command Setup::undoCommand() {
         });
 }
 
-Result<QJsonValue> Setup::take(const QStringList &written, const QStringList &notes) {
+Result<Applied> Setup::take(const QStringList &written, const QStringList &notes) {
     struct Before {
         bool autostart, ran;
         int orders;
@@ -399,9 +391,9 @@ Result<QJsonValue> Setup::take(const QStringList &written, const QStringList &no
                              " is no process of the supervisor any more, and ends; setup.undo puts it back");
     if (!loaded)
         return Error(ErrorCode::InvalidSetting,
-                     loaded.error().message + "; the files are written, and the supervisor goes on with the "
-                                              "settings that it had");
-    return asJson(applied);
+                     loaded.error().message +
+                         "; the files are written, and the supervisor goes on with the settings that it had");
+    return applied;
 }
 
 } // namespace hermes::supervisor

@@ -52,14 +52,14 @@ private:
     void markSimulated(Findings &findings) const;
     /// The settings, by daemons, of a sample or of now with these changes.
     Result<QJsonObject> whole(const QString &sample, const QJsonObject &changes) const;
-    Result<QJsonValue> proposal(const QString &sample) const;
+    Result<Proposal> proposal(const QString &sample) const;
     /// The daemons whose settings file is in the command line of a process.
     QStringList filesOf(const QJsonArray &processes) const;
     /// Writes what of that is new, and takes it. Error: what was checked is no longer what is meant.
-    Result<QJsonValue> write(const QString &sample, const QJsonObject &changes, const QJsonObject &checked);
+    Result<Applied> write(const QString &sample, const QJsonObject &changes, const QJsonObject &checked);
     /// Takes what was written: the supervisor its own settings; the others are started anew, if they ran or
     /// start with it. What starts with the supervisor by these settings only is started, too.
-    Result<QJsonValue> take(const QStringList &written, const QStringList &notes);
+    Result<Applied> take(const QStringList &written, const QStringList &notes);
 
     Settings &settings_;
     const Processes processes_;

@@ -23,7 +23,7 @@ ProcessEntry toEntry(const QJsonObject &json) {
     const QString name = json["name"].toString();
     ProcessEntry entry{name, "hermes-" + name, {}, defaultPort(name)};
     ReadReport report;
-    fieldsOf(Of<ProcessEntry>()).read(WireValue(json), &entry, report);
+    fieldsOf<ProcessEntry>().read(WireValue(json), &entry, report);
     return entry;
 }
 
@@ -97,8 +97,7 @@ void Supervisor::declareSettings() {
 void Supervisor::declareCommands() {
     addCommand(Command("process.list", "All processes, how they are and what they use")
                    .needs(Role::Observer)
-                   .gives<ProcessesMessage>()
-                   .handler([this](const Call &) { return asJson(list()); }));
+                   .answers([this](const Call &) { return list(); }));
     addCommand(processCommand("process.start", "Starts a process", &SupervisedProcess::start));
     addCommand(processCommand("process.stop", "Ends a process: SIGTERM, after 5 s SIGKILL",
                               &SupervisedProcess::stop));
@@ -110,12 +109,11 @@ void Supervisor::declareCommands() {
             .param(Field::text("name", "Of the process"))
             .param(
                 Field::integer("lines", "How many").range(1, int(SupervisedProcess::keptLines)).byDefault(50))
-            .gives<QStringList>()
-            .handler([this](const Call &call) -> Result<QJsonValue> {
+            .answers([this](const Call &call) -> Result<QStringList> {
                 const SupervisedProcess *const process = find(call.text("name"));
                 if (!process)
                     return noProcess(call.text("name"));
-                return asJson(process->output(call.integer("lines")));
+                return process->output(call.integer("lines"));
             }));
     addCommand(
         Command("process.add", "Adds a process to the settings; settings.save keeps it")
@@ -127,29 +125,26 @@ void Supervisor::declareCommands() {
                        .range(0, 65535)
                        .optional())
             .param(Field::boolean("autostart", "Starts with the supervisor").optional())
-            .returnsNull()
             .example({{"name", "camera"}, {"program", "/opt/robot/camera.py"}, {"port", 7480}}, QJsonValue())
-            .handler([this](const Call &call) { return add(call); }));
+            .answers([this](const Call &call) { return add(call); }));
     addCommand(Command("process.remove", "Ends a process and takes it out of the settings")
                    .with("x-destructive", "the entry of the process")
                    .needs(Role::Engineer)
                    .param(Field::text("name", "Of the process"))
-                   .returnsNull()
-                   .handler([this](const Call &call) { return remove(call.text("name")); }));
+                   .answers([this](const Call &call) { return remove(call.text("name")); }));
 }
 
 Command Supervisor::processCommand(const QString &name, const QString &summary,
                                    void (SupervisedProcess::*action)()) {
     return Command(name, summary)
         .param(Field::text("name", "Of the process"))
-        .returnsNull()
         .example({{"name", "scanmatcher"}}, QJsonValue())
-        .handler([this, action](const Call &call) -> Result<QJsonValue> {
+        .answers([this, action](const Call &call) -> Result<void> {
             SupervisedProcess *const process = find(call.text("name"));
             if (!process)
                 return noProcess(call.text("name"));
             (process->*action)();
-            return QJsonValue();
+            return {};
         });
 }
 
@@ -232,13 +227,13 @@ SupervisedProcess *Supervisor::find(const QString &name) const {
     return nullptr;
 }
 
-Result<QJsonValue> Supervisor::add(const Call &call) {
+Result<void> Supervisor::add(const Call &call) {
     QJsonArray entries = settings().value("processes").toArray();
     entries.append(call.params);
     return setEntries(entries);
 }
 
-Result<QJsonValue> Supervisor::remove(const QString &name) {
+Result<void> Supervisor::remove(const QString &name) {
     QJsonArray entries = settings().value("processes").toArray();
     for (int i = 0; i < entries.size(); ++i)
         if (entries[i].toObject()["name"].toString() == name) {
@@ -248,11 +243,9 @@ Result<QJsonValue> Supervisor::remove(const QString &name) {
     return noProcess(name);
 }
 
-Result<QJsonValue> Supervisor::setEntries(const QJsonArray &entries) {
+Result<void> Supervisor::setEntries(const QJsonArray &entries) {
     const auto done = settings().set({{"processes", entries}});
-    if (!done)
-        return done.error();
-    return QJsonValue();
+    return done ? Result<void>() : done.error();
 }
 
 ProcessesMessage Supervisor::list() {

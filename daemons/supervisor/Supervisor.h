@@ -29,9 +29,9 @@ private:
     /// its new entry, what is missing is ended.
     void reconcile();
     SupervisedProcess *find(const QString &name) const;
-    Result<QJsonValue> add(const Call &call);
-    Result<QJsonValue> remove(const QString &name);
-    Result<QJsonValue> setEntries(const QJsonArray &entries);
+    Result<void> add(const Call &call);
+    Result<void> remove(const QString &name);
+    Result<void> setEntries(const QJsonArray &entries);
     void dismiss(std::unique_ptr<SupervisedProcess> process);
     /// Says to itself and to those that it starts of which robot they are.
     void tellRobot();

@@ -60,6 +60,7 @@ void LidarFeed::begin(const Options &options, bool replays) {
     stream.sensor = {options.onlyPort, options.sender, streamTimeout_ns};
     stream.model = options.model;
     stream.dataPort = options.dataPort;
+    stream.clock = options.clock;
     stream_ = LidarStream(stream);
     ring_.reset(); // numbers begin anew
     ring_ = makeAssembler(options.laser, [this](const velodyne::Turn &turn) { takeOver(turn); });
@@ -145,6 +146,8 @@ void LidarFeed::decode(const Datagram &datagram) {
 
 void LidarFeed::takeOver(const velodyne::Turn &turn) {
     ++counts_.turns;
+    counts_.clock = turn.clock;
+    counts_.clockBound_ns = turn.clockBound_ns;
     counts_.beams = turn.beams;
     counts_.beamsBack = turn.beamsBack;
     const bool isBlind = turn.beamsBack < leastBack * turn.beams;
@@ -237,6 +240,7 @@ LidarFeed::Counts LidarFeed::counts() const {
     counts.gps = stream_.gps().counts();
     counts.other = stream_.other();
     counts.otherSensors = stream_.otherSensors();
+    counts.clockSteps = stream_.clockSteps();
     counts.udp = live_.counts();
     const std::lock_guard<std::mutex> queueLock(queueMutex_);
     counts.turnsDropped = turns_.dropped();

@@ -18,6 +18,7 @@ public:
         velodyne::Returns returns = velodyne::Returns::Strongest;
         bool verticalOffsets = true; ///< the lasers' own heights are added to z
         std::int64_t stampOffset_ns = 0;
+        velodyne::ClockChoice clock = velodyne::ClockChoice::Gps;
         std::uint16_t dataPort = velodyne::dataPort; ///< see LidarStream
         std::uint16_t positionPort = 0;              ///< received live as well; 0: none
         std::optional<std::uint16_t> onlyPort{};     ///< only a sensor that sends to it is decoded
@@ -42,6 +43,9 @@ public:
         std::uint32_t beams = 0, beamsBack = 0; ///< of the last turn, all lasers; those with a return
         double blind_s = 0; ///< for so long nearly no beam has come back; 0 when some did in the last turn
         double rpm = 0;
+        velodyne::StampSource clock = velodyne::StampSource::Sensor; ///< of the last turn
+        std::int64_t clockBound_ns = 0;
+        std::uint64_t clockSteps = 0;                 ///< see LidarStream
         const velodyne::SensorModel *model = nullptr; ///< null before the first packet
     };
     using Turn = TurnQueue::Turn;

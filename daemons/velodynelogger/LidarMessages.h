@@ -32,8 +32,8 @@ struct CapturedTurn {
     quint64 points = 0;
 };
 
-const Fields<LidarGps> &fieldsOf(Of<LidarGps>);
-const Fields<LidarMessage> &fieldsOf(Of<LidarMessage>);
-const Fields<CapturedTurn> &fieldsOf(Of<CapturedTurn>);
+Fields<LidarGps> fieldsOf(Of<LidarGps>);
+Fields<LidarMessage> fieldsOf(Of<LidarMessage>);
+Fields<CapturedTurn> fieldsOf(Of<CapturedTurn>);
 
 } // namespace hermes::velodynelogger

@@ -76,7 +76,13 @@ void VelodyneLogger::declareSettings() {
                    .byDefault(true)
                    .appliesOnRestart()
                    .group("Decoding"));
-    addSetting(Field::number("decode.stamp_offset_s", "Added to the sensor's stamps")
+    addSetting(Field::text("decode.clock", "Whose clock stamps the scans: the sensor's, which a GPS sets; "
+                                           "this host's; auto: the sensor's once a GPS has set it")
+                   .choices({"auto", "gps", "host"})
+                   .byDefault("auto")
+                   .appliesOnRestart()
+                   .group("Decoding"));
+    addSetting(Field::number("decode.stamp_offset_s", "Added to the stamps of scans")
                    .unit("s")
                    .range(-3600, 3600)
                    .byDefault(0)
@@ -128,21 +134,18 @@ void VelodyneLogger::declareSourceCommands() {
                        .range(1, 65535)
                        .optional())
             .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false)));
-    addCommand(Command("source.close", "Stops receiving or replaying")
-                   .returnsNull()
-                   .handler([this](const Call &) -> Result<QJsonValue> {
-                       if (const Result<void> fine = source_.mayChange(); !fine)
-                           return fine.error();
-                       closeSource();
-                       return QJsonValue();
-                   }));
+    addCommand(Command("source.close", "Stops receiving or replaying").answers([this](const Call &) {
+        const Result<void> fine = source_.mayChange();
+        if (fine)
+            closeSource();
+        return fine;
+    }));
     addCommand(source_.seekCommand());
     addCommand(source_.speedCommand());
     addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic lidar says, now")
                    .needs(Role::Observer)
-                   .gives<LidarMessage>()
-                   .handler([this](const Call &) { return asJson(lidarState()); }));
+                   .answers([this](const Call &) { return lidarState(); }));
     addCommand(
         Command("capture.turn",
                 "Writes the next complete turn of all lasers to a file in the folder of recordings")

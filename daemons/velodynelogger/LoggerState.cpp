@@ -87,7 +87,7 @@ LidarMessage VelodyneLogger::lidarState() const {
     state.lost = packets.lost;
     state.gaps = packets.gaps;
     state.outOfOrder = packets.outOfOrder;
-    state.clockJumps = packets.clockJumps;
+    state.clockJumps = packets.clockJumps + counts.clockSteps;
     state.wrongSize = packets.wrongSize;
     state.wrongFlag = packets.wrongFlag;
     state.wrongValue = packets.wrongValue;
@@ -133,8 +133,7 @@ QString VelodyneLogger::otherModelText(const LidarFeed::Counts &counts) {
                QString::fromStdString(velodyne::decodedSensors());
     if (wanted != "auto" && wanted != model->key)
         return text + QString("a sensor of model %1 sends, decode.model is %2; expected are the sensor of "
-                              "that setting, or the "
-                              "setting %3 or auto")
+                              "that setting, or the setting %3 or auto")
                           .arg(model->name, wanted, model->key);
     return text + QString("a sensor of model %1 sends, too; expected is one sensor on a port, decoded is %2")
                       .arg(model->name, counts.model ? counts.model->name : "another one");
@@ -185,13 +184,13 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (counts.otherSensors > 0 && !counts.decoded)
         set(HealthLevel::Warn, "no data packet is decoded, those that came are of " + otherSensors(counts));
     else if (counts.blind_s > longestBlindness_s)
-        set(HealthLevel::Warn, QString("packets come from %1, but only %2 of %3 beams (of an eighth of the "
-                                       "last turn) came back, and under 1 % "
-                                       "for %4 s; expected are 1 % at least: is the lidar covered?")
-                                   .arg(source_.name())
-                                   .arg(counts.beamsBack)
-                                   .arg(counts.beams)
-                                   .arg(counts.blind_s, 0, 'f', 0));
+        set(HealthLevel::Warn,
+            QString("packets come from %1, but only %2 of %3 beams (of an eighth of the last turn) came "
+                    "back, and under 1 % for %4 s; expected are 1 % at least: is the lidar covered?")
+                .arg(source_.name())
+                .arg(counts.beamsBack)
+                .arg(counts.beams)
+                .arg(counts.blind_s, 0, 'f', 0));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
             textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) +
@@ -207,8 +206,13 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
         const auto utc_ns = feed_.gps().utc_ns;
         const bool isRolledOver = utc_ns && source_.state() == State::Live &&
                                   nmea::isRolledOver(double(*utc_ns) * 1e-9, stampNow());
+        const QString clock =
+            counts.clock == velodyne::StampSource::Host && counts.turns > 0
+                ? QString("; no GPS sets its clock: scans are stamped by this host's, to %1 ms")
+                      .arg(double(counts.clockBound_ns) * 1e-6, 0, 'f', 1)
+                : QString();
         set(isRolledOver && level == HealthLevel::Ok ? HealthLevel::Warn : level,
-            "packets come from " + source_.name() + pastText(wrong, lost, counts.gps) +
+            "packets come from " + source_.name() + pastText(wrong, lost, counts.gps) + clock +
                 (isRolledOver ? "; the date of the GPS is 1024 weeks off the clock (week roll-over)" : ""));
     }
 }

@@ -1,9 +1,7 @@
-#include "daemons/velodynelogger/PcapRepair.h"
-
-#include "common/capture/PcapWriter.h"
+// How the Velodyne logger mends a recording that was cut off.
 #include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
-#include "daemons/velodynelogger/PacketAccount.h"
+#include "daemons/velodynelogger/Recorder.h"
 
 #include <QDir>
 #include <QRegularExpression>
@@ -69,7 +67,7 @@ Result<bool> repairFile(const QString &path, QJsonObject &entry, PacketAccount &
 
 } // namespace
 
-Result<void> repairPcapFiles(const RecordingPlan &plan, QJsonObject &sidecar) {
+Result<void> Recorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
     PacketAccount account; // of what the sidecar does not know
     QJsonArray files;
     double bytes = 0, packets = 0;

@@ -1,7 +1,6 @@
 #include "daemons/velodynelogger/Recorder.h"
 
 #include "common/recording/DiskError.h"
-#include "daemons/velodynelogger/PcapRepair.h"
 #include "daemons/velodynelogger/ThreadPriority.h"
 #include "protocol/velodyne/PositionPacket.h"
 
@@ -176,10 +175,6 @@ RecordingState Recorder::state() const {
     if (progress.error)
         state.error = diskError(QString::fromStdString(*progress.error), state.path);
     return state;
-}
-
-Result<void> Recorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
-    return repairPcapFiles(plan, sidecar);
 }
 
 } // namespace hermes::velodynelogger

@@ -21,6 +21,8 @@ public:
     Result<void> begin(const RecordingPlan &plan) override;
     void end() override;
     RecordingState state() const override;
+    /// Cuts the capture files back to whole datagrams, and brings `files`, `bytes`, `counts`, `losses` and
+    /// `end` of the sidecar up to what they hold. Reads only what the sidecar does not know.
     Result<void> repair(const RecordingPlan &plan, QJsonObject &sidecar) override;
 
     /// Takes a copy; does nothing unless recording. wait: rather wait for the disk than drop. From one thread

@@ -1,7 +1,10 @@
 #include "daemons/velodynelogger/TurnFile.h"
 
-#include "daemons/velodynelogger/RecordFolder.h"
+#include "common/files/Folder.h"
+#include "common/recording/DiskError.h"
+#include "common/recording/SessionFolder.h"
 
+#include <QDir>
 #include <QTemporaryFile>
 
 #include <unistd.h>
@@ -29,6 +32,18 @@ bool writeAll(QFile &file, const velodyne::Turn &turn, TurnFormat format) {
 }
 
 } // namespace
+
+Result<QString> newTurnFile(const QString &folder, const QString &name, const QString &suffix) {
+    if (const Result<void> fine = checkName("name", name); !fine)
+        return fine.error();
+    if (const Result<void> made = makeFolder(folder); !made)
+        return diskError(made.error().message, folder);
+    const QString path =
+        QDir(folder).absoluteFilePath(name.endsWith('.' + suffix) ? name : name + '.' + suffix);
+    if (QFileInfo::exists(path))
+        return diskError(path + ": it exists already; recordings are not overwritten", path);
+    return path;
+}
 
 Result<void> writeTurn(const QString &path, const velodyne::Turn &turn, TurnFormat format) {
     QTemporaryFile file(path + ".part-XXXXXX");

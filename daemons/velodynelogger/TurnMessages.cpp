@@ -11,6 +11,12 @@ float rounded(double metres) {
     return float(std::round(metres * 1e3) / 1e3);
 }
 
+QString toText(velodyne::StampSource clock) {
+    return clock == velodyne::StampSource::Host  ? "host"
+           : clock == velodyne::StampSource::Gps ? "gps"
+                                                 : "sensor";
+}
+
 TurnHeader headerOf(const FinishedTurn &turn) {
     return {turn.number,
             double(turn.begin_ns) * 1e-9,
@@ -19,7 +25,10 @@ TurnHeader headerOf(const FinishedTurn &turn) {
             turn.firings,
             turn.lostPackets,
             "lidar",
-            turn.replayed};
+            turn.replayed,
+            toText(turn.clock),
+            turn.clock == velodyne::StampSource::Host ? std::optional(double(turn.clockBound_ns) * 1e-9)
+                                                      : std::nullopt};
 }
 
 } // namespace

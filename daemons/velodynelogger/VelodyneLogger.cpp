@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/files/FilesSetting.h"
 #include "common/files/NamedFile.h"
+#include "common/recording/DiskError.h"
 #include "daemons/velodynelogger/TurnFile.h"
 #include "daemons/velodynelogger/TurnMessages.h"
 #include "protocol/wire/Fields.h"
@@ -24,11 +25,10 @@ Playback::Options replayOptions(const Call &call) {
 } // namespace
 
 VelodyneLogger::VelodyneLogger()
-    : Daemon(
-          {"velodynelogger", "Velodyne logger",
-           "Receives an " + QString::fromStdString(velodyne::sensorNames()) +
-               " or replays a capture of one, publishes its horizontal ring as scans and thinned clouds of "
-               "all lasers, records pcap"})
+    : Daemon({"velodynelogger", "Velodyne logger",
+              "Receives an " + QString::fromStdString(velodyne::sensorNames()) +
+                  " or replays a capture of one, publishes its horizontal ring as scans and thinned clouds "
+                  "of all lasers, records pcap"})
     , feed_(recorder_, [this] {
         const auto wake = [this] {
             if (!retry_.isActive())
@@ -53,7 +53,6 @@ VelodyneLogger::VelodyneLogger()
 }
 
 Result<void> VelodyneLogger::start() {
-    folder_.setPath(settings().text("record.folder"));
     second_.start(1000);
     const QString pcap = settings().text("source.pcap");
     recording_.open();
@@ -83,6 +82,7 @@ LidarFeed::Options VelodyneLogger::options() {
     options.returns = velodyne::returnsFromText(settings().text("decode.returns").toStdString());
     options.verticalOffsets = settings().flag("decode.vertical_offsets");
     options.stampOffset_ns = std::int64_t(settings().number("decode.stamp_offset_s") * 1e9);
+    options.clock = velodyne::clockChoiceFromText(settings().text("decode.clock").toStdString());
     options.dataPort = quint16(settings().integer("source.port"));
     options.positionPort = quint16(settings().integer("source.position_port"));
     return options;
@@ -223,7 +223,7 @@ void VelodyneLogger::replayEnded() {
 
 void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
     const QString format = call.text("format");
-    const Result<QString> path = folder_.newFile(call.text("name"), format);
+    const Result<QString> path = newTurnFile(settings().text("record.folder"), call.text("name"), format);
     if (!path || !source_.isOpen()) {
         reply.error(path ? Error(ErrorCode::NotReady, "no source is open; source.open opens one")
                          : path.error());

@@ -6,7 +6,6 @@
 #include "common/recording/ReplaySource.h"
 #include "daemons/velodynelogger/LidarFeed.h"
 #include "daemons/velodynelogger/LidarMessages.h"
-#include "daemons/velodynelogger/RecordFolder.h"
 
 #include <QElapsedTimer>
 
@@ -61,7 +60,6 @@ private:
 
     Recorder recorder_;
     Recording recording_{identity().name, settings(), health(), recorder_};
-    RecordFolder folder_;
     LidarFeed feed_;
     ReplaySource source_{"packets", identity().name, settings(), feed_.player().playback(), sourceActions()};
     QTimer second_;

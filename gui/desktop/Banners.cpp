@@ -1,6 +1,7 @@
 #include "gui/desktop/Banners.h"
 
 #include "gui/desktop/drive/StopBanner.h"
+#include "gui/desktop/widgets/Arrangement.h"
 
 #include <QMainWindow>
 #include <QToolBar>
@@ -14,8 +15,7 @@ constexpr std::chrono::seconds noticeTime{20};
 
 QToolBar *addFixedBar(QMainWindow &window, Qt::ToolBarArea area, const QString &title, const char *name,
                       QWidget *content) {
-    auto *const bar = new QToolBar(title, &window);
-    bar->setObjectName(name);
+    auto *const bar = named(new QToolBar(title, &window), name);
     bar->setMovable(false);
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
     bar->addWidget(content);
@@ -26,17 +26,15 @@ QToolBar *addFixedBar(QMainWindow &window, Qt::ToolBarArea area, const QString &
 Banners::Banners(QMainWindow &window, DriveControl &drive, Sounds &sounds)
     : QObject(&window)
     , window_(window)
-    , note_(new Banner) {
+    , note_(named(new Banner, "noticeBanner")) {
     add(new StopBanner(drive, sounds), "stopLine");
-    auto *const replay = new Banner;
-    replay->setObjectName("replayBanner");
+    auto *const replay = named(new Banner, "replayBanner");
     add(replay, "replayLine");
     connect(&drive.sessions(), &Sessions::replayChanged, replay, [&drive, replay] {
         const QString &text = drive.sessions().replay();
         replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
                      "background: #6a2fb0; color: white;");
     });
-    note_->setObjectName("noticeBanner");
     add(note_, "noticeLine");
     noticed_.setSingleShot(true);
     connect(&noticed_, &QTimer::timeout, note_, [this] { note_->tell({}, {}); });

@@ -1,10 +1,11 @@
 #include "gui/desktop/ButtonBar.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/widgets/ValueEditor.h"
 
 #include <QEvent>
-#include <QHBoxLayout>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QScrollBar>
@@ -63,28 +64,18 @@ ButtonBar::ButtonBar(Fleet &fleet, const Buttons &buttons, MacroRunner &runner, 
     : QWidget(parent)
     , buttons_(buttons)
     , runner_(runner)
-    , end_(new QPushButton(theme::icon("stop"), tr("End")))
-    , text_(new PlainLabel) {
+    , line_(inRow({Part::room()}))
+    , end_(named(new QPushButton(theme::icon("stop"), tr("End")), "endMacro",
+                 tr("Ends what runs here; what the robot has begun goes on. STOP ends it, too.")))
+    , text_(named(new PlainLabel, "macroText")) {
     setObjectName("buttonLine");
-    auto *const line = new QWidget;
-    line_ = new QHBoxLayout(line);
-    line_->setContentsMargins(0, 0, 0, 0);
-    line_->addStretch();
-    auto *const edit = new QPushButton(tr("Edit..."));
-    edit->setObjectName("editButtons");
-    edit->setToolTip(tr("Names, order and commands of these buttons"));
-    end_->setObjectName("endMacro");
-    end_->setToolTip(tr("Ends what runs here; what the robot has begun goes on. STOP ends it, too."));
-    text_->setObjectName("macroText");
+    auto *const edit = named(new QPushButton(tr("Edit...")), "editButtons",
+                             tr("Names, order and commands of these buttons"));
     text_->setWordWrap(true);
     text_->setMinimumSize(36 * fontMetrics().averageCharWidth(), 2 * fontMetrics().lineSpacing());
     text_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
-    auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(4, 0, 4, 0);
-    layout->addWidget(new LineScroll(line));
-    layout->addWidget(text_, 1);
-    layout->addWidget(end_);
-    layout->addWidget(edit);
+    setLayout(inRow({new LineScroll(filled(new QWidget, line_)), {text_, 1}, end_, edit}));
+    layout()->setContentsMargins(4, 0, 4, 0);
 
     refresh_.setSingleShot(true);
     refresh_.setInterval(50);
@@ -102,24 +93,20 @@ ButtonBar::ButtonBar(Fleet &fleet, const Buttons &buttons, MacroRunner &runner, 
 }
 
 void ButtonBar::rebuild() {
-    for (QPushButton *const button : std::exchange(made_, {})) {
-        button->hide();
-        button->deleteLater();
-    }
+    for (QPushButton *const button : std::exchange(made_, {}))
+        discard(button);
     asked_ = -1;
     second_.forget();
     QWidgetList order;
     for (int i = 0; i < int(buttons_.all().size()); ++i) {
-        auto *const button = new QPushButton;
-        button->setObjectName(QString("macro%1").arg(i));
+        auto *const button = named(new QPushButton, QString("macro%1").arg(i));
         connect(button, &QPushButton::clicked, this, [this, i] { press(i); });
         line_->insertWidget(i, button);
         made_.push_back(button);
         order.append(button);
     }
     order.append(end_);
-    for (int i = 1; i < order.size(); ++i)
-        setTabOrder(order[i - 1], order[i]);
+    chainFocus(order);
     update();
 }
 
@@ -128,7 +115,7 @@ void ButtonBar::update() {
     for (std::size_t i = 0; i < made_.size(); ++i) {
         const Macro &macro = buttons_.all()[i];
         const QString hindrance = runner_.hindrance(macro);
-        made_[i]->setText(QString(macro.name).replace('&', "&&"));
+        made_[i]->setText(labelText(macro.name));
         made_[i]->setIcon(runner_.away(macro).isEmpty() ? theme::icon("call")
                                                         : theme::icon(Condition::Unreachable));
         made_[i]->setEnabled(hindrance.isEmpty() && !runner_.isRunning());

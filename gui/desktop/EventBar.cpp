@@ -1,10 +1,10 @@
 #include "gui/desktop/EventBar.h"
 
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/Quantities.h"
 
-#include <QHBoxLayout>
 #include <QPushButton>
 #include <algorithm>
 
@@ -40,27 +40,17 @@ EventBar::EventBar(Events &events, const Sounds &sounds, QWidget *parent)
     : QWidget(parent)
     , events_(events)
     , sounds_(sounds)
-    , text_(new PlainLabel)
-    , others_(new PlainLabel)
-    , acknowledge_(new QPushButton(tr("Acknowled&ge"))) {
+    , text_(named(new PlainLabel, "eventText"))
+    , others_(named(new PlainLabel, "otherEvents", tr("So many more events wait to be acknowledged")))
+    , acknowledge_(named(new QPushButton(tr("Acknowled&ge")), "acknowledge",
+                         tr("I have seen this event; the next one that waits is shown"))) {
     setObjectName("eventLine");
-    text_->setObjectName("eventText");
     text_->letElide(Qt::ElideMiddle);
     text_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     text_->setMargin(4);
-    others_->setObjectName("otherEvents");
-    others_->setToolTip(tr("So many more events wait to be acknowledged"));
-    acknowledge_->setObjectName("acknowledge");
-    acknowledge_->setToolTip(tr("I have seen this event; the next one that waits is shown"));
-    auto *const list = new QPushButton(tr("Events"));
-    list->setObjectName("eventList");
-    list->setToolTip(tr("All events (Ctrl+9)"));
-    auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(4, 0, 4, 0);
-    layout->addWidget(text_, 1);
-    layout->addWidget(others_);
-    layout->addWidget(acknowledge_);
-    layout->addWidget(list);
+    auto *const list = named(new QPushButton(tr("Events")), "eventList", tr("All events (Ctrl+9)"));
+    setLayout(inRow({{text_, 1}, others_, acknowledge_, list}));
+    layout()->setContentsMargins(4, 0, 4, 0);
 
     quiet_.setSingleShot(true);
     connect(acknowledge_, &QPushButton::clicked, this, [this] { events_.acknowledge(shown_); });

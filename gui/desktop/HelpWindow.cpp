@@ -1,11 +1,10 @@
 #include "gui/desktop/HelpWindow.h"
 
+#include "gui/desktop/widgets/Arrangement.h"
 #include <QFile>
 #include <QRegularExpression>
-#include <QScrollBar>
 #include <QTextBlock>
 #include <QTextBrowser>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -23,15 +22,12 @@ QString manual() {
 
 HelpWindow::HelpWindow(QWidget *parent)
     : QDialog(parent)
-    , text_(new QTextBrowser) {
+    , text_(named(new QTextBrowser, "helpText")) {
     setWindowTitle(tr("Help"));
     setObjectName("help");
-    text_->setObjectName("helpText");
     text_->setOpenLinks(false);
     text_->setMarkdown(manual());
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(text_);
+    filled(this, inColumn({text_}));
     connect(text_, &QTextBrowser::anchorClicked, this, [this](const QUrl &link) {
         if (link.path().isEmpty() && link.hasFragment()) // a heading of this page
             showAt(QString(link.fragment()).replace('-', ' '));

@@ -8,13 +8,6 @@
 #include <QLineEdit>
 
 namespace hermes::desktop {
-namespace {
-
-QString asText(QString name) {
-    return name.replace('&', "&&");
-}
-
-} // namespace
 
 LayoutMenu::LayoutMenu(const Layouts &layouts, const LayoutKeeper &keeper, QWidget *parent)
     : QMenu(tr("Layout"), parent)
@@ -33,7 +26,7 @@ void LayoutMenu::fill() {
     auto *const group = new QActionGroup(this);
     connect(this, &QMenu::aboutToShow, group, &QObject::deleteLater);
     for (const QString &name : layouts_.names()) {
-        QAction *const action = addAction(asText(name), this, [this, name] { Q_EMIT chosen(name); });
+        QAction *const action = addAction(labelText(name), this, [this, name] { Q_EMIT chosen(name); });
         action->setObjectName("layout " + name);
         action->setActionGroup(group);
         action->setCheckable(true);
@@ -43,7 +36,7 @@ void LayoutMenu::fill() {
     addAction(tr("&Save as..."), this, &LayoutMenu::askName)->setObjectName("saveLayoutAs");
     addAction(tr("&Default arrangement"), this, &LayoutMenu::resetWanted)->setObjectName("resetLayout");
     addMenu(removal_);
-    removal_->setTitle(tr("D&elete %1").arg(asText(layouts_.current())));
+    removal_->setTitle(tr("D&elete %1").arg(labelText(layouts_.current())));
     removal_->menuAction()->setEnabled(layouts_.names().size() > 1);
 }
 
@@ -52,7 +45,7 @@ void LayoutMenu::addProblem() {
     const QString problem = layouts_.problem() + keeper_.problem();
     if (problem.isEmpty())
         return;
-    auto *const note = addAction(asText(shortLine(problem, 120)));
+    auto *const note = addAction(labelText(shortLine(problem, 120)));
     note->setObjectName("layoutsNotKept");
     note->setEnabled(false);
     addSeparator();

@@ -112,8 +112,10 @@ QJsonObject fromIni(const QString &path, const QByteArray &text) {
 
 } // namespace
 
-QString compactText(const QJsonObject &object) {
-    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
+QString compactText(const QJsonValue &objectOrList) {
+    const QJsonDocument document = objectOrList.isArray() ? QJsonDocument(objectOrList.toArray())
+                                                          : QJsonDocument(objectOrList.toObject());
+    return QString::fromUtf8(document.toJson(QJsonDocument::Compact));
 }
 
 QJsonObject objectOf(const QVariant &text) {

@@ -14,7 +14,7 @@ class QVariant;
 namespace hermes::desktop {
 
 /// As it is kept in a file, and what is kept there.
-QString compactText(const QJsonObject &object);
+QString compactText(const QJsonValue &objectOrList);
 QJsonObject objectOf(const QVariant &text);
 
 /// What of the window is kept between runs, in a JSON file: layouts by name, and the robots apart from them.

@@ -67,8 +67,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , fleet_(fleet)
     , drive_(drive)
     , log_(fleet)
-    , eventWatch_(fleet, log_, events_)
-    , controlWatch_(fleet, drive, events_)
+    , eventWatch_(fleet, log_, drive, events_)
     , runner_(fleet, drive)
     , layouts_(layoutFile)
     , keeper_(layouts_) {
@@ -88,8 +87,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
         findChild<QDockWidget *>("recordings") // seen when its tab is behind others, too
             ->setWindowTitle(drive_.sessions().isRecording() ? tr("Recordings \u25cf") : tr("Recordings"));
     });
-    addEventBar();
-    addButtonBar();
+    addBars();
     banners_ = new Banners(*this, drive_, sounds_); // the last of them is the highest
     addKeys(*topBar);
     addMenus();
@@ -138,7 +136,9 @@ void MainWindow::restoreAll() {
     plotSets.setSets(objectOf(layouts_.value("plotSets")));
     connect(&plotSets, &PlotSets::changed, this,
             [this, &plotSets] { layouts_.setValue("plotSets", compactText(plotSets.sets())); });
-    restoreButtons();
+    buttons_.setState(QJsonDocument::fromJson(layouts_.value("buttons").toUtf8()).array());
+    connect(&buttons_, &Buttons::changed, this,
+            [this] { layouts_.setValue("buttons", compactText(buttons_.state())); });
     drive_.setLimits(objectOf(layouts_.value("limits")));
     map_->setLayers(objectOf(layouts_.value("layers")).toVariantMap());
     showLayout();
@@ -205,13 +205,10 @@ void MainWindow::showHelp() {
     help().showAt(focus && map_->isAncestorOf(focus) ? tr("The map") : QString());
 }
 
-void MainWindow::addEventBar() {
+void MainWindow::addBars() {
     auto *const events = new EventBar(events_, sounds_);
     addFixedBar(*this, Qt::BottomToolBarArea, tr("Last event"), "eventBar", events);
     connect(events, &EventBar::listWanted, this, [this] { showPanel("events"); });
-}
-
-void MainWindow::addButtonBar() {
     auto *const buttons = new ButtonBar(fleet_, buttons_, runner_);
     addToolBarBreak(Qt::BottomToolBarArea); // a line of their own, above that of events
     buttonBar_ = addFixedBar(*this, Qt::BottomToolBarArea, tr("Buttons"), "buttonBar", buttons);
@@ -220,15 +217,6 @@ void MainWindow::addButtonBar() {
         findChild<CommandsPanel *>()->editButtons();
     });
     connect(&buttons_, &Buttons::changed, this, [this] { buttonBar_->setVisible(!buttons_.all().empty()); });
-}
-
-/// Whatever stands there.
-void MainWindow::restoreButtons() {
-    buttons_.setState(QJsonDocument::fromJson(layouts_.value("buttons").toUtf8()).array());
-    connect(&buttons_, &Buttons::changed, this, [this] {
-        layouts_.setValue("buttons",
-                          QString::fromUtf8(QJsonDocument(buttons_.state()).toJson(QJsonDocument::Compact)));
-    });
 }
 
 void MainWindow::showPanel(const QString &name) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "gui/desktop/LayoutKeeper.h"
-#include "gui/desktop/model/ControlWatch.h"
 #include "gui/desktop/model/EventWatch.h"
 #include "gui/desktop/model/MacroRunner.h"
 #include "gui/desktop/panels/Panels.h"
@@ -44,12 +43,10 @@ private:
     void addKeys(TopBar &topBar);
     void restoreAll();
     void addPanel(const PanelKind &kind, QWidget *panel);
-    void addEventBar();
     void addMenus();
     void showHelp();
     HelpWindow &help();
-    void addButtonBar();
-    void restoreButtons();
+    void addBars();
     void showPanel(const QString &name);
     void arrange();
     QMenu *makeLayoutMenu();
@@ -69,7 +66,6 @@ private:
     LogFeed log_;
     Events events_;
     EventWatch eventWatch_;
-    ControlWatch controlWatch_;
     Buttons buttons_;
     MacroRunner runner_;
     MapPanel *map_;

@@ -4,6 +4,7 @@
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/MapPanel.h"
 
+#include "gui/desktop/widgets/Arrangement.h"
 #include <QMessageBox>
 
 namespace hermes::desktop {
@@ -20,8 +21,7 @@ MenuBar::MenuBar(QWidget *parent)
     : QMenuBar(parent) {}
 
 QMenu *MenuBar::addNamed(const QString &title, const char *name) {
-    QMenu *const menu = addMenu(title);
-    menu->setObjectName(name);
+    QMenu *const menu = named(addMenu(title), name);
     menu->setToolTipsVisible(true);
     return menu;
 }
@@ -43,8 +43,7 @@ void MenuBar::addRobot(DriveControl &drive, StopKeys &keys) {
     menu->addAction(tr("Close the window"), this, &MenuBar::closeWanted, QKeySequence(Qt::CTRL + Qt::Key_Q));
     connect(menu, &QMenu::aboutToShow, this, [&drive, release, takeOver] {
         release->setEnabled(drive.isStopped());
-        const QString holder = drive.holder();
-        takeOver->setEnabled(!holder.isEmpty() && holder != DriveControl::tr("you"));
+        takeOver->setEnabled(drive.isHeldByOther());
     });
 }
 
@@ -56,14 +55,6 @@ void MenuBar::addMap(MapPanel &map) {
     view->addSeparator();
     view->addAction(withKey(tr("Closer"), "+"), &map.view(), [&map] { map.view().zoom(MapView::step); });
     view->addAction(withKey(tr("Farther"), "-"), &map.view(), [&map] { map.view().zoom(1 / MapView::step); });
-}
-
-void MenuBar::addRecording(const QList<QAction *> &actions) {
-    addNamed(tr("Recording"), "recordingMenu")->addActions(actions);
-}
-
-void MenuBar::addPanels(const QList<QAction *> &show) {
-    addNamed(tr("Panels"), "panelsMenu")->addActions(show);
 }
 
 void MenuBar::addEvents(Events &events) {

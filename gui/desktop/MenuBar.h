@@ -6,8 +6,6 @@
 
 #include <QMenuBar>
 
-class QDockWidget;
-
 namespace hermes::desktop {
 
 class MapPanel;
@@ -22,9 +20,11 @@ public:
 
     void addRobot(DriveControl &drive, StopKeys &keys);
     void addMap(MapPanel &map);
-    void addRecording(const QList<QAction *> &actions);
+    void addRecording(const QList<QAction *> &actions) {
+        addNamed(tr("Recording"), "recordingMenu")->addActions(actions);
+    }
     /// show: each brings a dock to the front.
-    void addPanels(const QList<QAction *> &show);
+    void addPanels(const QList<QAction *> &show) { addNamed(tr("Panels"), "panelsMenu")->addActions(show); }
     void addEvents(Events &events);
     void addHelp();
 

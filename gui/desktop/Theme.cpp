@@ -1,12 +1,12 @@
 #include "gui/desktop/Theme.h"
 
-#include "gui/desktop/ThemeStyle.h"
-
 #include <QApplication>
 #include <QFile>
 #include <QHash>
 #include <QPainter>
-#include <QStyle>
+#include <QProxyStyle>
+#include <QStyleFactory>
+#include <QStyleOption>
 #include <QSvgRenderer>
 #include <utility>
 
@@ -45,6 +45,39 @@ QIcon drawn(const QString &name, const QColor &colour) {
     return icon;
 }
 
+/// Fusion, where that draws dark on dark: the button for what has no room in a tool bar, and empty ticks.
+class ThemeStyle : public QProxyStyle {
+public:
+    ThemeStyle()
+        : QProxyStyle(QStyleFactory::create("Fusion")) {}
+
+    QIcon standardIcon(StandardPixmap which, const QStyleOption *option,
+                       const QWidget *widget) const override {
+        return which == SP_ToolBarHorizontalExtensionButton
+                   ? theme::icon(QString("extension"))
+                   : QProxyStyle::standardIcon(which, option, widget);
+    }
+
+    void drawPrimitive(PrimitiveElement element, const QStyleOption *option, QPainter *painter,
+                       const QWidget *widget) const override {
+        QProxyStyle::drawPrimitive(element, option, painter, widget);
+        if (!theme::isDark() || (element != PE_IndicatorCheckBox && element != PE_IndicatorRadioButton))
+            return;
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing, true);
+        painter->setBrush(Qt::NoBrush);
+        const bool isEnabled = option->state & State_Enabled;
+        painter->setPen(option->palette.color(isEnabled ? QPalette::Active : QPalette::Disabled,
+                                              isEnabled ? QPalette::PlaceholderText : QPalette::Mid));
+        const QRectF box = QRectF(option->rect).adjusted(0.5, 0.5, -0.5, -0.5);
+        if (element == PE_IndicatorCheckBox)
+            painter->drawRoundedRect(box, 2, 2);
+        else
+            painter->drawEllipse(box);
+        painter->restore();
+    }
+};
+
 QPalette darkPalette() {
     QPalette palette;
     const QColor window(0x23, 0x26, 0x29), base(0x1b, 0x1e, 0x20), text(0xea, 0xec, 0xee),
@@ -73,21 +106,16 @@ QPalette lightPalette() {
     return palette;
 }
 
-const char *iconOf(Condition condition) {
-    switch (condition) {
-    case Condition::Ready:
-        return "ready";
-    case Condition::Busy:
-        return "busy";
-    case Condition::Warning:
-        return "warning";
-    case Condition::Fault:
-        return "fault";
-    case Condition::Unreachable:
-        break;
-    }
-    return "unreachable";
-}
+/// By the conditions in their order.
+struct Look {
+    const char *icon;
+    QRgb light, dark;
+};
+constexpr Look looks[]{{"ready", 0x177531, 0x4cc36a},
+                       {"busy", 0x0b63c4, 0x58a6ff},
+                       {"warning", 0x8f5600, 0xe8a317},
+                       {"fault", 0xc4201d, 0xff6b62},
+                       {"unreachable", 0x5c636a, 0x8b9299}};
 
 } // namespace
 
@@ -104,20 +132,15 @@ bool isDark() {
 }
 
 QColor colour(Condition condition) {
-    const bool dark = isDark();
-    switch (condition) {
-    case Condition::Ready:
-        return dark ? QColor(0x4c, 0xc3, 0x6a) : QColor(0x17, 0x75, 0x31);
-    case Condition::Busy:
-        return dark ? QColor(0x58, 0xa6, 0xff) : QColor(0x0b, 0x63, 0xc4);
-    case Condition::Warning:
-        return dark ? QColor(0xe8, 0xa3, 0x17) : QColor(0x8f, 0x56, 0x00);
-    case Condition::Fault:
-        return dark ? QColor(0xff, 0x6b, 0x62) : QColor(0xc4, 0x20, 0x1d);
-    case Condition::Unreachable:
-        break;
-    }
-    return dark ? QColor(0x8b, 0x92, 0x99) : QColor(0x5c, 0x63, 0x6a);
+    const Look &look = looks[int(condition)];
+    return isDark() ? look.dark : look.light;
+}
+
+void tint(QWidget &widget, QPalette::ColorRole role, std::optional<Condition> condition) {
+    QPalette palette;
+    if (condition)
+        palette.setColor(role, colour(*condition));
+    widget.setPalette(palette);
 }
 
 QColor mixed(const QColor &from, const QColor &to, double share) {
@@ -132,7 +155,7 @@ QFont fixedFont() {
 }
 
 QIcon icon(Condition condition) {
-    return drawn(iconOf(condition), colour(condition));
+    return drawn(looks[int(condition)].icon, colour(condition));
 }
 
 QIcon icon(const QString &name) {

@@ -6,6 +6,7 @@
 #include <QFont>
 #include <QIcon>
 #include <QPalette>
+#include <optional>
 
 namespace hermes::desktop {
 
@@ -18,6 +19,11 @@ void apply();
 bool isDark();
 
 QColor colour(Condition condition);
+/// What is written on a widget has the colour of a condition; nothing: that of its palette.
+void tint(QWidget &widget, QPalette::ColorRole role, std::optional<Condition> condition);
+inline std::optional<Condition> faultIf(bool isFault) {
+    return isFault ? std::optional(Condition::Fault) : std::nullopt;
+}
 /// This share of the way from one colour to another.
 QColor mixed(const QColor &from, const QColor &to, double share);
 /// For text in columns.

@@ -3,11 +3,11 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/widgets/AgedLabel.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/Quantities.h"
 #include "protocol/wire/Fields.h"
 
 #include <QComboBox>
-#include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QPushButton>
 #include <QSet>
@@ -55,26 +55,17 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     , drive_(drive)
     , powerFeed_(
           fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
-    , robots_(new RobotBox)
-    , link_(new PlainLabel)
-    , control_(new AgedLabel)
-    , power_(new AgedLabel)
-    , release_(new QPushButton(tr("&Release")))
-    , stop_(new QPushButton(tr("STOP"))) {
+    , robots_(named(new RobotBox, "robots", tr("The robot that the panels show and drive")))
+    , link_(named(new PlainLabel, "link", tr("The longest time that a daemon of this robot takes to answer")))
+    , control_(named(new AgedLabel, "lease"))
+    , power_(named(new AgedLabel, "power", powerTip({})))
+    , release_(
+          named(new QPushButton(tr("&Release")), "release",
+                tr("Ends the emergency stop and faults that hold the robot. The robot does not move by it.")))
+    , stop_(named(new QPushButton(tr("STOP")), "stop",
+                  tr("Emergency stop over the network (Space or F12). It does not replace a wired one."))) {
     setBackgroundRole(QPalette::Window); // a tool bar's is that of buttons
-    robots_->setObjectName("robots");
-    robots_->setToolTip(tr("The robot that the panels show and drive"));
     robots_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
-    link_->setObjectName("link");
-    link_->setToolTip(tr("The longest time that a daemon of this robot takes to answer"));
-    control_->setObjectName("lease");
-    power_->setObjectName("power");
-    power_->setToolTip(powerTip({}));
-    release_->setObjectName("release");
-    release_->setToolTip(
-        tr("Ends the emergency stop and faults that hold the robot. The robot does not move by it."));
-    stop_->setObjectName("stop");
-    stop_->setToolTip(tr("Emergency stop over the network (Space or F12). It does not replace a wired one."));
     stop_->setFocusPolicy(Qt::NoFocus);
     QFont big = stop_->font();
     big.setBold(true);
@@ -86,21 +77,13 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     control_->keepRoom(160);
     power_->keepRoom(280);
 
-    auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(8, 0, 8, 0);
     auto *const label = new PlainLabel(tr("Ro&bot"));
     label->setBuddy(robots_);
-    layout->addWidget(label);
-    layout->addWidget(robots_);
-    layout->addSpacing(12);
-    layout->addWidget(link_);
-    layout->addSpacing(12);
-    layout->addWidget(control_);
-    layout->addSpacing(12);
-    layout->addWidget(power_);
-    layout->addStretch();
-    layout->addWidget(release_);
-    layout->addWidget(stop_);
+    QBoxLayout *const row = inRow({label, robots_, link_, control_, power_, Part::room(), release_, stop_});
+    for (const int place : {4, 3, 2}) // apart from each other
+        row->insertSpacing(place, 12);
+    setLayout(row);
+    row->setContentsMargins(8, 0, 8, 0);
 
     connect(robots_, QOverload<int>::of(&QComboBox::activated), this, [this](int index) {
         fleet_.choose(fleet_.robotAt(robots_->itemData(index).toString()));
@@ -149,10 +132,7 @@ void TopBar::updateLink() {
                 (daemon->isKnown() && !daemon->isConnected() && !isMeantToRest(process)))
                 wrong = tr("%1: %2").arg(daemon->name(), daemon->conditionWord());
         }
-    QPalette palette;
-    if (!wrong.isEmpty())
-        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    link_->setPalette(palette);
+    theme::tint(*link_, QPalette::WindowText, theme::faultIf(!wrong.isEmpty()));
     link_->setText(!wrong.isEmpty() ? wrong
                    : worst < 0      ? tr("no link")
                                     : tr("link %1 ms").arg(worst, 0, 'f', worst < 10 ? 1 : 0));

@@ -53,10 +53,9 @@ bool speaksTls(const InterfaceUrl &url) {
     return socket.waitForEncrypted(int(adviceTimeout.count()));
 }
 
-/// Of an address, in the usual framing.
-bool speaksPlainText(const InterfaceUrl &url) {
+bool answersAt(const QString &address) {
     Client client;
-    return connectOnce(client, placeOf(url), adviceTimeout) &&
+    return connectOnce(client, address, adviceTimeout) &&
            client.callAndWait("daemon.info", QJsonObject(), adviceTimeout);
 }
 
@@ -68,7 +67,7 @@ QStringList aboutTls(const Error &error, const InterfaceUrl &url) {
             QString("its keys and yours in %1 are of different authorities, or its keys have expired; one "
                     "authority must issue both (hermesctl keys issue), and HERMES_KEYS=FOLDER chooses yours")
                 .arg(keys)};
-    if (error.message.contains("SSL") && speaksPlainText(url))
+    if (error.message.contains("SSL") && answersAt(placeOf(url))) // in the usual framing
         return {QString("the daemon there speaks plain text, no TLS; name it as %1").arg(placeOf(url))};
     if (!error.message.contains("closed by the peer"))
         return {};
@@ -134,25 +133,23 @@ QStringList otherFraming(const Arguments &arguments) {
         if (framing == url->protocol())
             continue;
         const QString other = QString("%1?protocol=%2").arg(url->toString(), framing);
-        Client client;
-        if (!connectOnce(client, other, adviceTimeout) ||
-            !client.callAndWait("daemon.info", QJsonObject(), adviceTimeout))
-            continue;
-        return {QString("the daemon at %1 speaks %2, and was spoken to in %3; name it as '%4'")
-                    .arg(url->toString(), framing, url->protocol(), other)};
+        if (answersAt(other))
+            return {QString("the daemon at %1 speaks %2, and was spoken to in %3; name it as '%4'")
+                        .arg(url->toString(), framing, url->protocol(), other)};
     }
     return {"the connection is open, but what is at the other end does not answer: it is busy or stopped, or "
             "is no daemon of Hermes; --timeout S waits longer"};
 }
 
+/// Of the word after the daemon, in a list of what it has.
+QStringList aboutName(const QJsonArray &list, const Arguments &arguments) {
+    const QStringList near = nearest(arguments.words.value(1), namesOf(list));
+    return near.isEmpty() ? QStringList() : QStringList(QString("did you mean %1?").arg(near.join(" or ")));
+}
+
 QStringList aboutMethod(Client &client, const Arguments &arguments) {
-    const QJsonArray methods = ofDaemon(client, arguments, "rpc.discover")["methods"].toArray();
-    const QStringList near = nearest(arguments.words.value(1), namesOf(methods));
-    QStringList lines;
-    if (!near.isEmpty())
-        lines.append(QString("did you mean %1?").arg(near.join(" or ")));
-    lines.append(QString("hermesctl discover %1 lists all").arg(theDaemon(arguments)));
-    return lines;
+    return aboutName(ofDaemon(client, arguments, "rpc.discover")["methods"].toArray(), arguments)
+           << QString("hermesctl discover %1 lists all").arg(theDaemon(arguments));
 }
 
 /// Below a schema: a member, or any element of a list.
@@ -215,9 +212,7 @@ QStringList aboutSettings(const QJsonValue &errors, Client &client, const Argume
 
 QStringList aboutTopic(Client &client, const Arguments &arguments) {
     const auto topics = ask(client, arguments, "topics.list");
-    const QStringList near =
-        topics ? nearest(arguments.words.value(1), namesOf(topics->toArray())) : QStringList();
-    return near.isEmpty() ? QStringList() : QStringList(QString("did you mean %1?").arg(near.join(" or ")));
+    return topics ? aboutName(topics->toArray(), arguments) : QStringList();
 }
 
 QStringList aboutControl(const Error &error, const Arguments &arguments) {

@@ -17,7 +17,7 @@ struct Arguments {
     bool timeoutIsGiven = false;
     double rate_hz = 0; ///< 0: every message
     int count = 0;      ///< 0: without end
-    int days = 0;       ///< 0: as usual
+    int days = 2 * 365; ///< that keys are valid
     int port = 0;       ///< 0: the usual one
     QString role;
     double speed = 1;

@@ -9,9 +9,6 @@
 #include "gui/hermesctl/Markdown.h"
 #include "gui/hermesctl/NetworkBrowser.h"
 #include "gui/hermesctl/Output.h"
-#include "gui/hermesctl/PatientCall.h"
-#include "gui/hermesctl/Question.h"
-#include "gui/hermesctl/Table.h"
 #include "gui/hermesctl/Waiting.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
@@ -21,7 +18,6 @@
 #include <QEventLoop>
 #include <QJsonArray>
 #include <QJsonDocument>
-#include <QTimer>
 #include <functional>
 
 namespace hermes::ctl {
@@ -90,40 +86,6 @@ QString logLine(WireView record) {
         .arg(time.toString(Qt::ISODateWithMs), read->level, read->source, read->text);
 }
 
-} // namespace
-
-Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
-                       const QJsonValue &params, Client::Repeats repeats) {
-    return PatientCall(client, arguments).run(method, params, repeats);
-}
-
-Result<QJsonValue> askAgain(Client &client, const Arguments &arguments, const QString &method,
-                            QJsonObject params) {
-    constexpr double longest_s = 5;
-    for (int waits = 0;; ++waits) {
-        // Urgent: where a line damages much, a stop is not to wait for a repeat.
-        const auto result = ask(client, arguments, method, params, Client::Repeats::AtOnce);
-        if (result)
-            return result;
-        const Error &error = result.error();
-        const double wait_s = error.data["retry_after_s"].toDouble();
-        if (wait_s > 0 && wait_s <= longest_s && waits < 2 && !arguments.timeoutIsGiven) {
-            note(QString("%1; tried again in %2 s").arg(error.message).arg(wait_s, 0, 'f', 1));
-            QEventLoop pause;
-            QTimer::singleShot(int(wait_s * 1000) + 1, &pause, &QEventLoop::quit);
-            pause.exec();
-        } else if (error.data["confirm"].toBool() && canAsk() && !params.contains("confirm")) {
-            if (!isConfirmed(printable(error.message) + ". Do you confirm?"))
-                return error;
-            params.insert("confirm", true);
-        } else {
-            return error;
-        }
-    }
-}
-
-namespace {
-
 Result<void> listNetwork(const Arguments &arguments) {
     constexpr std::chrono::seconds howLong{2};
     const auto found = [howLong] {
@@ -178,6 +140,10 @@ QJsonArray wrongItems(const Result<QJsonValue> &status) {
 }
 
 } // namespace
+
+void print(const Arguments &arguments, const QJsonValue &value, const QString &text) {
+    arguments.json ? printJson(value) : printLine(text);
+}
 
 Result<void> listDaemons(const Arguments &arguments) {
     if (arguments.network)
@@ -269,10 +235,8 @@ Result<void> document(Client &client, const Arguments &arguments) {
     const auto schema = ask(client, arguments, "settings.schema");
     if (!schema)
         return schema.error();
-    if (arguments.json)
-        printJson(QJsonObject{{"description", *description}, {"settings", *schema}});
-    else
-        printLine(descriptionAsMarkdown(description->toObject(), schema->toObject()).trimmed());
+    print(arguments, QJsonObject{{"description", *description}, {"settings", *schema}},
+          descriptionAsMarkdown(description->toObject(), schema->toObject()).trimmed());
     return {};
 }
 
@@ -324,11 +288,11 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
     const auto records = ask(client, arguments, "log.tail", QJsonObject{{"count", count}});
     if (!records)
         return records.error();
-    const auto print = [&arguments](const WireValue &record) {
-        arguments.json ? printJson(record.toJson()) : printLine(logLine(record));
+    const auto show = [&arguments](const WireValue &record) {
+        print(arguments, record.toJson(), logLine(record));
     };
     for (const QJsonValue &record : records->toArray())
-        print(WireValue(record));
+        show(WireValue(record));
     if (!arguments.follow)
         return {};
     QEventLoop loop;
@@ -337,7 +301,7 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
         result = Error(ErrorCode::Disconnected, reason);
         loop.quit();
     });
-    client.subscribe("log", {{"queue", 1000}}, [&print](const TopicUpdate &update) { print(update.data); });
+    client.subscribe("log", {{"queue", 1000}}, [&show](const TopicUpdate &update) { show(update.data); });
     runStream(loop);
     return result;
 }

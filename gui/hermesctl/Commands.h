@@ -23,6 +23,8 @@ Result<void> emergencyStopRobots(const Arguments &arguments);
 
 /// Keys for TLS, in the folder of this user: docs/security.md.
 Result<void> keysInit(const Arguments &arguments);
+/// Error: --role is none that a certificate can have.
+Result<void> checkKeyRole(const Arguments &arguments);
 Result<void> keysIssue(const Arguments &arguments);
 Result<void> keysRevoke(const Arguments &arguments);
 Result<void> keysList(const Arguments &arguments);
@@ -53,6 +55,11 @@ Result<void> watch(Client &client, const Arguments &arguments);
 Result<void> drive(Client &client, const Arguments &arguments);
 /// Error: no velocity, and no terminal for keys.
 Result<void> checkDrive(const Arguments &arguments);
+/// "vx", "vy", "omega".
+const QStringList &velocityNames();
+
+/// For programs (--json) a value as one line, for people a text.
+void print(const Arguments &arguments, const QJsonValue &value, const QString &text);
 
 /// Calls and waits: as long as the daemon answers other requests, or for the time-out of the command line.
 Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,

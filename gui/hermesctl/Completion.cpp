@@ -4,19 +4,74 @@
 #include "common/Role.h"
 #include "common/client/DaemonAddress.h"
 #include "common/schema/SchemaText.h"
-#include "gui/hermesctl/CompletionScripts.h"
 #include "gui/hermesctl/Descriptions.h"
-#include "gui/hermesctl/DriveLine.h"
 #include "gui/hermesctl/Hosts.h"
 #include "gui/hermesctl/Subcommands.h"
-#include "gui/hermesctl/TypedLine.h"
 
 #include <QJsonArray>
+#include <algorithm>
 
 namespace hermes::ctl {
 namespace {
 
 constexpr std::chrono::milliseconds promptTimeout{400}; // with a connection, and with each reply
+
+/// The words as the shell takes them, the last one is that before the cursor.
+QStringList splitLine(const QString &line) {
+    QStringList words{QString()};
+    QChar quote;
+    for (int i = 0; i < line.size(); ++i) {
+        const QChar c = line[i];
+        if (!quote.isNull() && c == quote)
+            quote = QChar();
+        else if (quote.isNull() && (c == '"' || c == '\''))
+            quote = c;
+        else if (c == '\\' && i + 1 < line.size() && quote != '\'')
+            words.last() += line[++i];
+        else if (quote.isNull() && c.isSpace())
+            words.append(QString());
+        else
+            words.last() += c;
+    }
+    const QString last = words.takeLast();
+    words.removeAll(QString());
+    return words << last;
+}
+
+/// A command line that is being typed, as far as it goes: from the program's name to the cursor.
+struct TypedLine {
+    Arguments arguments;   ///< of the words before the last one; only what says whom to ask
+    QString current;       ///< the last word, begun or empty
+    QString pendingOption; ///< whose value it is, where the option is a word of its own
+
+    static TypedLine read(const QString &line) {
+        TypedLine result;
+        QStringList words = splitLine(line).mid(1);
+        if (!words.isEmpty())
+            result.current = words.takeLast();
+        for (int i = 0; i < words.size(); ++i) {
+            const QString &word = words[i];
+            const Option *const option = findOption(word.section('=', 0, 0));
+            if (!word.startsWith('-'))
+                result.arguments.takeWord(word);
+            else if (!option)
+                continue;
+            else if (!option->hasValue() || word.contains('='))
+                option->take(result.arguments, word.section('=', 1));
+            else if (i + 1 == words.size())
+                result.pendingOption = word;
+            else
+                option->take(result.arguments, words[++i]);
+        }
+        return result;
+    }
+
+    /// NAME=VALUE stands there.
+    bool isGiven(const QString &name) const {
+        return std::any_of(arguments.words.begin(), arguments.words.end(),
+                           [&name](const QString &word) { return word.startsWith(name + '='); });
+    }
+};
 
 struct Candidate {
     QString text;
@@ -91,10 +146,10 @@ private:
         return plain(daemonNames(), before + listed);
     }
 
-    static Candidates plain(const QStringList &texts, const QString &before = {}, const QString &after = {}) {
+    static Candidates plain(const QStringList &texts, const QString &before = {}) {
         Candidates found;
         for (const QString &text : texts)
-            found.push_back({before + text + after, QString()});
+            found.push_back({before + text, QString()});
         return found;
     }
 
@@ -189,10 +244,7 @@ private:
 
     Candidates samples() {
         line_.arguments.words = QStringList(line_.arguments.daemons.value(0, "supervisor"));
-        Candidates found;
-        for (const QJsonValue &name : ask("setup.samples").toArray())
-            found.push_back({name.toString(), QString()});
-        return found;
+        return plain(ask("setup.samples").toVariant().toStringList());
     }
 
     Candidates velocities() const {
@@ -249,19 +301,6 @@ int printCandidates(const QString &line) {
             printLine(quotedForShell(candidate.text) + '\t' + printable(candidate.meaning.simplified()));
     }
     return 0;
-}
-
-Result<void> completion(const Arguments &arguments) {
-    const QString script = completionScript(arguments.words.first());
-    if (script.isEmpty())
-        return Error(ErrorCode::InvalidParams,
-                     QString("there is no completion for \"%1\", expected one of %2")
-                         .arg(arguments.words.first(), completionShells().join(", ")));
-    if (arguments.json)
-        printJson(script);
-    else
-        printLine(script.trimmed());
-    return {};
 }
 
 } // namespace hermes::ctl

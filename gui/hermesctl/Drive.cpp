@@ -5,15 +5,16 @@
 #include "common/platform/Pipes.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/DriveKeys.h"
-#include "gui/hermesctl/DriveLine.h"
 #include "gui/hermesctl/Driver.h"
 #include "gui/hermesctl/KeyTerminal.h"
+#include "gui/hermesctl/Nearest.h"
 #include "gui/hermesctl/Waiting.h"
 #include "protocol/wire/Fields.h"
 
 #include <QElapsedTimer>
 #include <QEventLoop>
 #include <QTimer>
+#include <cmath>
 #include <cstdio>
 
 namespace hermes::ctl {
@@ -47,15 +48,14 @@ Result<void> tellWhereItWent(Client &client, const Arguments &arguments, const D
     if (!to)
         return to.error();
     const Pose2D from = driver.from().value_or(*to), moved = from.inverse() * *to;
-    if (arguments.json)
-        printJson(QJsonObject{{"seconds", driver.seconds()},
-                              {"from", asJson(from)},
-                              {"to", asJson(*to)},
-                              {"moved", asJson(moved)}});
-    else
-        printLine(QString("drove for %1 s and stands; by the odometry it went %2, and is at %3")
-                      .arg(driver.seconds(), 0, 'f', 1)
-                      .arg(text(moved), text(*to)));
+    print(arguments,
+          QJsonObject{{"seconds", driver.seconds()},
+                      {"from", asJson(from)},
+                      {"to", asJson(*to)},
+                      {"moved", asJson(moved)}},
+          QString("drove for %1 s and stands; by the odometry it went %2, and is at %3")
+              .arg(driver.seconds(), 0, 'f', 1)
+              .arg(text(moved), text(*to)));
     return {};
 }
 
@@ -112,7 +112,39 @@ private:
     const bool hadInput_ = !isOtherEndGone(stdin);
 };
 
+/// What the command line says after the daemon; absent: no velocity, keys drive. Error: an unknown name, one
+/// that is there twice, or no finite number.
+Result<std::optional<Twist2D>> velocityOf(const Arguments &arguments) {
+    const QStringList words = arguments.words.mid(1);
+    std::array<std::optional<double>, 3> values;
+    for (const QString &word : words) {
+        const QString name = word.section('=', 0, 0), text = word.section('=', 1);
+        const int place = velocityNames().indexOf(name);
+        if (place < 0)
+            return Error(ErrorCode::InvalidParams,
+                         QString("\"%1\": there is no velocity %2, expected vx, vy or omega%3")
+                             .arg(word, name, didYouMean(name, velocityNames())));
+        if (values.at(std::size_t(place)))
+            return Error(ErrorCode::InvalidParams, QString("%1 is there twice").arg(name));
+        bool ok = false;
+        const double value = text.toDouble(&ok);
+        if (!ok || !std::isfinite(value))
+            return Error(ErrorCode::InvalidParams,
+                         QString("%1 is \"%2\", expected a number of %3")
+                             .arg(name, text, name == "omega" ? QString("rad/s") : QString("m/s")));
+        values.at(std::size_t(place)) = value;
+    }
+    if (words.isEmpty())
+        return std::optional<Twist2D>();
+    return std::optional<Twist2D>({values[0].value_or(0), values[1].value_or(0), values[2].value_or(0)});
+}
+
 } // namespace
+
+const QStringList &velocityNames() {
+    static const QStringList names{"vx", "vy", "omega"};
+    return names;
+}
 
 Result<void> checkDrive(const Arguments &arguments) {
     const auto velocity = velocityOf(arguments);

@@ -29,8 +29,12 @@ DriveKeys::Action DriveKeys::takeOne(char key, double now) {
         sequence_ += key;
         return Action::None;
     }
-    if (std::exchange(sequence_, {}).size() == 2)
-        return takeArrow(key, now);
+    if (std::exchange(sequence_, {}).size() == 2) {
+        const int arrow = QByteArray("ABCD").indexOf(key); // up, down, right, left
+        if (arrow < 0)
+            return stop();
+        key = "wsda"[arrow];
+    }
     switch (key) {
     case 'w':
     case 'W':
@@ -55,21 +59,6 @@ DriveKeys::Action DriveKeys::takeOne(char key, double now) {
     case endOfInput:
         stop();
         return Action::Quit;
-    default:
-        return stop();
-    }
-}
-
-DriveKeys::Action DriveKeys::takeArrow(char letter, double now) {
-    switch (letter) {
-    case 'A':
-        return press(way_, 1, now);
-    case 'B':
-        return press(way_, -1, now);
-    case 'C':
-        return press(turn_, -1, now);
-    case 'D':
-        return press(turn_, 1, now);
     default:
         return stop();
     }

@@ -28,7 +28,6 @@ private:
     };
 
     Action takeOne(char key, double now);
-    Action takeArrow(char letter, double now);
     Action press(Axis &axis, double sign, double now);
     Action stop();
 

@@ -1,16 +1,75 @@
+#include "common/daemon/SignalWatcher.h"
+#include "common/tls/FolderPlace.h"
 #include "common/tls/KeyBundle.h"
 #include "common/tls/KeyFolder.h"
 #include "gui/hermesctl/Commands.h"
-#include "gui/hermesctl/NewKeyFolder.h"
-#include "gui/hermesctl/Pairing.h"
-#include "gui/hermesctl/PairingCode.h"
-#include "gui/hermesctl/SignalsHeld.h"
+#include "gui/hermesctl/PairingStream.h"
 
+#include <QDir>
 #include <QSslCertificate>
 #include <QTcpSocket>
+#include <QTemporaryDir>
 
 namespace hermes::ctl {
 namespace {
+
+/// A folder of keys that comes into being whole, or not at all: it is written beside its place, and put there
+/// in the end. What was not kept is removed; what this one has not made is left alone.
+class NewKeyFolder {
+public:
+    explicit NewKeyFolder(const QString &place)
+        : place_(placeOf(place)) {}
+
+    /// Error: there are keys already, or something else.
+    Result<void> check() const {
+        const QFileInfo info(place_);
+        if (!info.exists() && !info.isSymLink())
+            return {};
+        if (!info.isDir())
+            return failed("is no folder");
+        if (QDir(place_).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::System | QDir::NoDotAndDotDot))
+            return {};
+        const bool hasKeys = QFile::exists(QDir(place_).filePath(KeyFolder::keyFile()));
+        return failed(hasKeys ? "there are keys already; they are not replaced"
+                              : "the folder is not empty; nothing in it is replaced");
+    }
+
+    /// Error also when programs could not use them: KeyFolder::load().
+    Result<void> stage(const KeyBundle &keys) {
+        QDir().mkpath(QFileInfo(place_).path());
+        // Only its owner may enter. Nobody knows its name before: there is no other one, nor a link, in its
+        // place.
+        staged_ = std::make_unique<QTemporaryDir>(place_ + "-XXXXXX");
+        if (!staged_->isValid())
+            return failed(staged_->errorString());
+        if (const auto written = keys.write(staged_->path()); !written)
+            return written;
+        if (const auto usable = KeyFolder::load(staged_->path()); !usable)
+            return usable.error();
+        const auto revoked = KeyFolder::revoked(staged_->path());
+        return revoked ? Result<void>() : revoked.error();
+    }
+
+    Result<void> keep() {
+        if (!takePlace(staged_->path(), place_))
+            return failed(qt_error_string() +
+                          "; nothing was kept here: revoke the keys where they were made");
+        staged_->setAutoRemove(false);
+        return {};
+    }
+
+private:
+    static QString placeOf(const QString &path) {
+        const QFileInfo info(path); // a link stays one, and leads to the keys
+        return QDir::cleanPath(info.exists() ? info.canonicalFilePath() : info.absoluteFilePath());
+    }
+    Error failed(const QString &why) const {
+        return {ErrorCode::InputOutput, QString("%1: %2").arg(place_, why), QJsonObject{{"path", place_}}};
+    }
+
+    const QString place_;
+    std::unique_ptr<QTemporaryDir> staged_;
+};
 
 using Stream = std::unique_ptr<PairingStream>;
 
@@ -68,7 +127,7 @@ Result<KeyBundle> take(PairingStream &stream, NewKeyFolder &folder) {
     const auto keys = KeyBundle::fromJson(*json);
     if (!keys)
         return keys.error();
-    const SignalsHeld held;
+    const SignalWatcher ignored(nullptr); // what is begun is ended in order, whoever asks for the end
     if (const auto staged = folder.stage(*keys); !staged)
         return staged.error();
     if (const auto agreed = agree(stream, deadline); !agreed)
@@ -100,12 +159,11 @@ Result<void> keysJoin(const Arguments &arguments) {
     if (!keys)
         return keys.error();
     const PeerCertificate own = toPeer(QSslCertificate(keys->certificate));
-    if (arguments.json)
-        printJson(QJsonObject{
-            {"folder", KeyFolder::usual()}, {"name", own.name}, {"role", own.role}, {"serial", own.serial}});
-    else
-        printLine(QString("%1: the keys of %2 (%3); serial number %4.")
-                      .arg(KeyFolder::usual(), own.name, own.role, own.serial));
+    print(arguments,
+          QJsonObject{
+              {"folder", KeyFolder::usual()}, {"name", own.name}, {"role", own.role}, {"serial", own.serial}},
+          QString("%1: the keys of %2 (%3); serial number %4.")
+              .arg(KeyFolder::usual(), own.name, own.role, own.serial));
     return {};
 }
 

@@ -1,10 +1,7 @@
-#include "gui/hermesctl/Keys.h"
-
 #include "common/Role.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyFolder.h"
 #include "gui/hermesctl/Commands.h"
-#include "gui/hermesctl/Table.h"
 
 #include <QHostInfo>
 #include <QJsonArray>
@@ -12,7 +9,6 @@
 namespace hermes::ctl {
 namespace {
 
-constexpr int usualDays = 2 * 365;
 constexpr int daysOfAuthority = 20 * 365;
 
 QString stateOf(const Authority::Issued &one) {
@@ -30,42 +26,31 @@ Result<void> checkKeyRole(const Arguments &arguments) {
                      .arg(found, roleNames().join(", ")));
 }
 
-int daysOfKeys(const Arguments &arguments) {
-    return arguments.days > 0 ? arguments.days : usualDays;
-}
-
 Result<void> keysInit(const Arguments &arguments) {
     const QString owner =
         QString("%1@%2").arg(qEnvironmentVariable("USER", "user"), QHostInfo::localHostName());
-    const auto done = Authority(KeyFolder::usual()).init(owner, daysOfAuthority, usualDays);
+    const auto done = Authority(KeyFolder::usual()).init(owner, daysOfAuthority, Arguments().days);
     if (!done)
         return done;
-    if (arguments.json)
-        printJson(QJsonObject{{"folder", KeyFolder::usual()}, {"name", owner}});
-    else
-        printLine(
-            QString("%1: the authority, and the keys of %2, an engineer.\n"
-                    "Keep authority.key secret: who has it can make keys for all robots of this "
-                    "authority.\nNext, for a robot:  hermesctl keys pair NAME --role daemon, or keys issue")
-                .arg(KeyFolder::usual(), owner));
+    print(arguments, QJsonObject{{"folder", KeyFolder::usual()}, {"name", owner}},
+          QString("%1: the authority, and the keys of %2, an engineer.\n"
+                  "Keep authority.key secret: who has it can make keys for all robots of this "
+                  "authority.\nNext, for a robot:  hermesctl keys pair NAME --role daemon, or keys issue")
+              .arg(KeyFolder::usual(), owner));
     return {};
 }
 
 Result<void> keysIssue(const Arguments &arguments) {
     const QString name = arguments.words.first();
-    if (const auto fine = checkKeyRole(arguments); !fine)
-        return fine;
-    const auto folder = Authority(KeyFolder::usual()).issue({name, arguments.role}, daysOfKeys(arguments));
+    const auto folder = Authority(KeyFolder::usual()).issue({name, arguments.role}, arguments.days);
     if (!folder)
         return folder.error();
-    if (arguments.json)
-        printJson(QJsonObject{{"folder", *folder}, {"name", name}, {"role", arguments.role}});
-    else
-        printLine(QString("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to where "
-                          "its programs look for keys (usually ~/.config/hermes/keys), and delete it here. "
-                          "For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
-                          ".config/hermes/keys\n  scp -p %1/* %2:.config/hermes/keys/")
-                      .arg(*folder, name));
+    print(arguments, QJsonObject{{"folder", *folder}, {"name", name}, {"role", arguments.role}},
+          QString("%1: the keys of %2. Copy the folder, by a way that nobody else can read, to where "
+                  "its programs look for keys (usually ~/.config/hermes/keys), and delete it here. "
+                  "For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
+                  ".config/hermes/keys\n  scp -p %1/* %2:.config/hermes/keys/")
+              .arg(*folder, name));
     return {};
 }
 
@@ -74,13 +59,11 @@ Result<void> keysRevoke(const Arguments &arguments) {
     if (!count)
         return count.error();
     const QString file = KeyFolder::usual() + '/' + KeyFolder::revokedFile();
-    if (arguments.json)
-        printJson(QJsonObject{{"revoked", *count}, {"file", file}});
-    else
-        printLine(QString("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect within a "
-                          "second, also on those who are connected.")
-                      .arg(*count)
-                      .arg(file));
+    print(arguments, QJsonObject{{"revoked", *count}, {"file", file}},
+          QString("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect within a "
+                  "second, also on those who are connected.")
+              .arg(*count)
+              .arg(file));
     return {};
 }
 

@@ -10,7 +10,6 @@
 namespace hermes::ctl {
 namespace {
 
-const QString nameKey = "name";
 const QString schemaKey = "schema";
 const QString defaultKey = "default";
 

@@ -82,6 +82,21 @@ void printJson(const QJsonValue &value) {
     printLine(QString::fromUtf8(compactJson(value)));
 }
 
+void printTable(const std::vector<QStringList> &rows) {
+    std::vector<int> widths;
+    for (const QStringList &row : rows) {
+        widths.resize(std::max(widths.size(), std::size_t(row.size())));
+        for (int i = 0; i < row.size(); ++i)
+            widths[std::size_t(i)] = std::max(widths[std::size_t(i)], row[i].size());
+    }
+    for (const QStringList &row : rows) {
+        QString line;
+        for (int i = 0; i < row.size(); ++i)
+            line += row[i].leftJustified(widths[std::size_t(i)] + 2);
+        printLine(line.trimmed());
+    }
+}
+
 bool readerIsGone() {
     if (!destination.file)
         return false;

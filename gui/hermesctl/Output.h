@@ -4,7 +4,8 @@
 
 #include <QEventLoop>
 #include <QJsonValue>
-#include <QString>
+#include <QStringList>
+#include <vector>
 
 namespace hermes::ctl {
 
@@ -18,6 +19,9 @@ void printLine(const QString &text);
 
 /// One value as one line.
 void printJson(const QJsonValue &value);
+
+/// Rows with columns below each other; the first row is the heading.
+void printTable(const std::vector<QStringList> &rows);
 
 /// Checks what was printed.
 void checkOutput();

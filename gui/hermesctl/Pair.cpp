@@ -1,13 +1,10 @@
+#include "common/daemon/SignalWatcher.h"
 #include "common/platform/Console.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyBundle.h"
 #include "common/tls/KeyFolder.h"
 #include "gui/hermesctl/Commands.h"
-#include "gui/hermesctl/Keys.h"
-#include "gui/hermesctl/Pairing.h"
-#include "gui/hermesctl/PairingCode.h"
 #include "gui/hermesctl/PairingServer.h"
-#include "gui/hermesctl/SignalsHeld.h"
 
 #include <QDir>
 #include <QJsonArray>
@@ -80,11 +77,8 @@ Result<PairingServer::Joined> waitForOther(PairingServer &server, const Argument
                         }});
 }
 
-Result<void> handOver(PairingStream &stream, const QString &folder) {
-    const auto keys = KeyBundle::read(folder);
-    if (!keys)
-        return keys.error();
-    const QByteArray json = keys->toJson();
+Result<void> handOver(PairingStream &stream, const KeyBundle &keys) {
+    const QByteArray json = keys.toJson();
     if (json.size() > KeyBundle::maxJsonBytes)
         return Error(ErrorCode::OverLimit, "the list of revoked certificates is too long");
     const QDeadlineTimer deadline(longestTransfer);
@@ -109,26 +103,24 @@ Error notTaken(const Authority &authority, const QString &name, const QString &f
 
 void tellSuccess(const Arguments &arguments, const QString &address, const QString &serial) {
     const QString &name = arguments.words.first();
-    if (arguments.json)
-        printJson(
-            QJsonObject{{"name", name}, {"role", arguments.role}, {"serial", serial}, {"address", address}});
-    else
-        printLine(QString("%1 (%2) at %3 has its keys; serial number %4.")
-                      .arg(name, arguments.role, address, serial));
+    print(
+        arguments,
+        QJsonObject{{"name", name}, {"role", arguments.role}, {"serial", serial}, {"address", address}},
+        QString("%1 (%2) at %3 has its keys; serial number %4.").arg(name, arguments.role, address, serial));
 }
 
 /// From here on the code was proven.
 Result<void> give(const Authority &authority, const PairingServer::Joined &joined,
                   const Arguments &arguments) {
-    const SignalsHeld held;
+    const SignalWatcher ignored(nullptr); // what is begun is ended in order, whoever asks for the end
     const QString &name = arguments.words.first();
-    const auto folder = authority.issue({name, arguments.role}, daysOfKeys(arguments));
+    const auto folder = authority.issue({name, arguments.role}, arguments.days);
     if (!folder)
         return folder.error();
     const auto keys = KeyBundle::read(*folder);
-    const auto given = handOver(*joined.stream, *folder);
-    if (!keys || !given)
-        return notTaken(authority, name, *folder, keys ? given.error() : keys.error());
+    const auto given = keys ? handOver(*joined.stream, *keys) : keys.error();
+    if (!given)
+        return notTaken(authority, name, *folder, given.error());
     if (!QDir(*folder).removeRecursively()) // the only copy of the key is there now
         note(QString("%1 cannot be removed: delete it, the key in it is in use elsewhere").arg(*folder));
     tellSuccess(arguments, joined.address, toPeer(QSslCertificate(keys->certificate)).serial);
@@ -138,8 +130,6 @@ Result<void> give(const Authority &authority, const PairingServer::Joined &joine
 } // namespace
 
 Result<void> keysPair(const Arguments &arguments) {
-    if (const auto fine = checkKeyRole(arguments); !fine)
-        return fine;
     const Authority authority(KeyFolder::usual());
     if (const auto can = authority.canIssue(arguments.words.first()); !can)
         return can;

@@ -72,9 +72,9 @@ void PairingServer::look(int most_ms) {
     for (const Guest &guest : guests_)
         all.push_back(guest.stream->awaited());
     sockets::waitFor(all, most_ms);
-    isReady_.clear();
-    for (auto one = all.begin() + 1; one != all.end(); ++one)
-        isReady_.push_back(one->isReady);
+    auto awaited = all.begin();
+    for (Guest &guest : guests_)
+        guest.isReady = (++awaited)->isReady;
     if (all.front().isReady)
         accept();
 }
@@ -85,20 +85,16 @@ void PairingServer::accept() {
         sockets::accept(listening_, [&address](const sockaddr *from) { address = textOf(from); });
     if (socket == sockets::none)
         return;
-    if (guests_.size() == maxGuests) {
+    if (guests_.size() == maxGuests)
         guests_.pop_front();
-        isReady_.erase(isReady_.begin());
-    }
     auto stream = std::make_unique<PairingStream>(PairingStream::Side::Server, socket, secret_);
     guests_.push_back({std::move(stream), address, QDeadlineTimer(longestHandshake)});
-    isReady_.push_back(true); // what it says is there already, perhaps
 }
 
 /// Hears those who are ready, until one has proven the code.
 Result<void> PairingServer::advance(const Listener &listener) {
-    auto ready = isReady_.begin();
     for (auto guest = guests_.begin(); guest != guests_.end();) {
-        const auto state = *ready++ ? guest->stream->handshake() : PairingStream::Handshake::UnderWay;
+        const auto state = guest->isReady ? guest->stream->handshake() : PairingStream::Handshake::UnderWay;
         if (state == PairingStream::Handshake::Done) {
             joined_ = std::make_unique<Joined>(Joined{std::move(guest->stream), guest->address});
             return {};

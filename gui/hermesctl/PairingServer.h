@@ -6,7 +6,6 @@
 #include <chrono>
 #include <functional>
 #include <list>
-#include <vector>
 
 namespace hermes::ctl {
 
@@ -40,6 +39,7 @@ private:
         std::unique_ptr<PairingStream> stream;
         QString address;
         QDeadlineTimer deadline;
+        bool isReady = true; ///< as last looked; what it says is there already, perhaps
     };
 
     void close();
@@ -50,8 +50,7 @@ private:
     const PairingSecret secret_;
     sockets::Socket listening_ = sockets::none;
     int wrong_ = 0;
-    std::list<Guest> guests_;   // in their handshakes, the oldest first
-    std::vector<bool> isReady_; // of each guest, as last looked
+    std::list<Guest> guests_; // in their handshakes, the oldest first
     std::unique_ptr<Joined> joined_;
 };
 

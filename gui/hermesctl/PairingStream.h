@@ -2,7 +2,7 @@
 
 #include "common/Result.h"
 #include "common/platform/Sockets.h"
-#include "gui/hermesctl/PairingSecret.h"
+#include "gui/hermesctl/Pairing.h"
 
 #include <QByteArray>
 #include <QDeadlineTimer>

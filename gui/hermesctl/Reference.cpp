@@ -34,6 +34,13 @@ A parameter without a default is marked `required` or `optional`. A setting appl
 
 )";
 
+/// What a daemon tells of itself.
+struct DaemonDescription {
+    QString name;            ///< as in the program hermes-NAME
+    QJsonObject description; ///< OpenRPC
+    QJsonObject settings;    ///< JSON Schema
+};
+
 /// As GitHub makes the anchor of a heading.
 QString anchor(const QString &heading) {
     QString result;
@@ -137,8 +144,8 @@ QJsonObject asJson(const std::vector<DaemonDescription> &daemons) {
     return all;
 }
 
-} // namespace
-
+/// The reference of all on one page, with a table of contents; what all have alike stands there once.
+/// Without versions: it changes only with what they describe.
 QString referenceAsMarkdown(const std::vector<DaemonDescription> &daemons) {
     const bool isOne = daemons.size() < 2;
     const QJsonArray methods = isOne ? QJsonArray() : commonOf(daemons, methodsKey);
@@ -165,6 +172,8 @@ QString referenceAsMarkdown(const std::vector<DaemonDescription> &daemons) {
     return page + '\n' + rest;
 }
 
+} // namespace
+
 Result<void> documentAll(const Arguments &arguments) {
     const QStringList words = arguments.daemons.isEmpty() ? daemonNames() : arguments.daemons;
     std::vector<DaemonDescription> daemons;
@@ -186,10 +195,7 @@ Result<void> documentAll(const Arguments &arguments) {
     if (daemons.empty())
         return Error(ErrorCode::Disconnected,
                      QString("no daemon answers at its default port on %1").arg(arguments.host));
-    if (arguments.json)
-        printJson(asJson(daemons));
-    else
-        printLine(referenceAsMarkdown(daemons).trimmed());
+    print(arguments, asJson(daemons), referenceAsMarkdown(daemons).trimmed());
     return {};
 }
 

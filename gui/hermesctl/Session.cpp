@@ -1,7 +1,6 @@
 // hermesctl session: the recorder of the robot records, replays and tells of sessions.
 #include "common/progress/Progress.h"
 #include "gui/hermesctl/Commands.h"
-#include "gui/hermesctl/Table.h"
 
 #include <QDateTime>
 #include <QJsonArray>

@@ -1,15 +1,18 @@
 // hermesctl setup: from what is plugged in to settings of the daemons.
 #include "protocol/messages/Setup.h"
 #include "common/client/DaemonAddress.h"
+#include "common/daemon/SignalWatcher.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Question.h"
-#include "gui/hermesctl/Table.h"
 #include "gui/hermesctl/Waiting.h"
-#include "gui/hermesctl/WheelTest.h"
 #include "gui/setup/SetupText.h"
+#include "gui/setup/WheelSettings.h"
+#include "gui/setup/WheelTurn.h"
 #include "protocol/wire/Fields.h"
 
-#include <QJsonArray>
+#include <QEventLoop>
+#include <QHostInfo>
+#include <optional>
 
 namespace hermes::ctl {
 namespace {
@@ -20,6 +23,71 @@ Result<void> connectTo(Client &client, const Arguments &arguments, int place, co
     if (!address)
         return address.error();
     return connectOnce(client, *address, arguments.timeout);
+}
+
+const QString choices =
+    "Enter: it turned forward; b: backward; fl, fr, rl, rr: that one turned instead (flb: "
+    "backward); n: none; q: give up";
+
+QString initials(const QString &wheel) {
+    return wheel.left(1) + wheel.section('_', 1).left(1);
+}
+
+/// The mean speed that the encoder of a wheel tells while it turns, in rad/s.
+Result<double> turn(Client &motors, const Arguments &arguments, const QString &wheel) {
+    QEventLoop loop;
+    Result<double> measured = 0.0;
+    WheelTurn turn(motors, "hermesctl on " + QHostInfo::localHostName(), arguments.timeout);
+    SignalWatcher signals(nullptr);
+    QObject::connect(&signals, &SignalWatcher::received, &turn, &WheelTurn::giveUp);
+    turn.begin(wheel, [&](const Result<double> &result) {
+        measured = result;
+        loop.quit();
+    });
+    loop.exec();
+    return measured;
+}
+
+/// "": as told; "b": backward; "fl", "fr", "rl", "rr": that one instead, with a "b" behind it backward; "n":
+/// none. Nothing for all else.
+std::optional<SeenWheel> seenWheel(const QString &told, const QString &answer) {
+    if (answer == "n")
+        return SeenWheel{};
+    if (answer.isEmpty() || answer == "b")
+        return SeenWheel{told, answer == "b"};
+    for (const QString &wheel : wheelNames())
+        if (answer == initials(wheel) || answer == initials(wheel) + 'b')
+            return SeenWheel{wheel, answer.size() == 3};
+    return std::nullopt;
+}
+
+/// Turns each wheel slowly for a second and asks what a person has seen; gives the settings `wheels` that are
+/// to change. The robot stands when it is back. Error: the test was given up.
+Result<QJsonObject> testWheels(Client &motors, const Arguments &arguments) {
+    const auto settings =
+        motors.callAndWait("settings.get", QJsonObject{{"path", "wheels"}}, arguments.timeout);
+    if (!settings)
+        return settings.error();
+    std::map<QString, SeenWheel> seen;
+    for (const QString &wheel : wheelNames()) {
+        note(QString("%1 is told to turn forward, at %2 rad/s for %3 s")
+                 .arg(wheel)
+                 .arg(WheelTurn::speed)
+                 .arg(WheelTurn::turn_s));
+        const auto measured = turn(motors, arguments, wheel);
+        if (!measured)
+            return measured.error();
+        note(QString("its encoder tells %1 rad/s").arg(*measured, 0, 'f', 2));
+        std::optional<SeenWheel> one;
+        while (!one) {
+            const QString answer = answerTo(QString("What turned? %1:").arg(choices));
+            if (answer == "q")
+                return Error(ErrorCode::NotReady, "the test of the wheels was given up");
+            one = seenWheel(wheel, answer);
+        }
+        seen[wheel] = *one;
+    }
+    return wheelSettings(settings->toObject(), seen);
 }
 
 class SetUp {
@@ -33,15 +101,11 @@ public:
         return found ? Result<void>() : found.error();
     }
 
-    Result<void> undo() {
-        const auto undone = call("setup.undo", {});
-        return undone ? tell<Applied>(*undone) : undone.error();
-    }
+    Result<void> undo() { return change("setup.undo", {}); }
 
     /// Of a sample, of what was found, or of both.
     Result<void> apply(const QString &sample, const QJsonObject &settings) {
-        const auto applied = call("setup.apply", QJsonObject{{"sample", sample}, {"settings", settings}});
-        return applied ? tell<Applied>(*applied) : applied.error();
+        return change("setup.apply", {{"sample", sample}, {"settings", settings}});
     }
 
     /// Without questions; the settings of now are changed.
@@ -101,14 +165,16 @@ public:
     }
 
 private:
-    Result<QJsonValue> call(const QString &method, const QJsonObject &params) {
-        return ask(supervisor_, arguments_, method, params);
-    }
-
+    /// raw: the answer as it came.
     template <typename T>
-    static Result<T> read(const QJsonValue &value, const char *method) {
+    Result<T> call(const QString &method, const QJsonObject &params, QJsonValue *raw = nullptr) {
+        const auto answer = ask(supervisor_, arguments_, method, params);
+        if (!answer)
+            return answer.error();
+        if (raw)
+            *raw = *answer;
         ReadReport report;
-        auto message = readMessage<T>(WireValue(value), report);
+        auto message = readMessage<T>(WireValue(*answer), report);
         if (!message)
             return Error(ErrorCode::InternalError, QString("%1: %2").arg(method, report.text()));
         return *std::move(message);
@@ -116,16 +182,13 @@ private:
 
     Result<Findings> find(bool ask, bool release) {
         note("listening and asking; this takes some seconds");
-        const auto answer = [&] {
+        QJsonValue answer;
+        const auto found = [&] {
             const Waiting waiting(longestSearch, "searching at most, second");
-            return call("setup.find", QJsonObject{{"ask", ask}, {"release", release}});
+            return call<Findings>("setup.find", {{"ask", ask}, {"release", release}}, &answer);
         }();
-        if (!answer)
-            return answer.error();
-        const auto found = read<Findings>(*answer, "setup.find");
-        if (!found)
-            return found.error();
-        arguments_.json ? printJson(*answer) : show(*found);
+        if (found)
+            arguments_.json ? printJson(answer) : show(*found);
         return found;
     }
 
@@ -139,12 +202,9 @@ private:
     }
 
     Result<Proposal> propose(const QString &sample) {
-        const auto answer = call("setup.propose", QJsonObject{{"sample", sample}});
-        if (!answer)
-            return answer.error();
-        auto proposal = read<Proposal>(*answer, "setup.propose");
+        const auto proposal = call<Proposal>("setup.propose", {{"sample", sample}});
         if (!proposal)
-            return proposal.error();
+            return proposal;
         for (const QString &text : proposal->notes)
             note(text);
         if (!arguments_.json)
@@ -161,9 +221,10 @@ private:
                                change.now.isEmpty() ? QString() : QString("  (now %1)").arg(change.now)));
     }
 
-    template <typename T>
-    Result<void> tell(const QJsonValue &answer) {
-        const auto applied = read<T>(answer, "setup.apply");
+    /// Tells what was done.
+    Result<void> change(const QString &method, const QJsonObject &params) {
+        QJsonValue answer;
+        const auto applied = call<Applied>(method, params, &answer);
         if (!applied)
             return applied.error();
         if (arguments_.json) {
@@ -180,10 +241,7 @@ private:
     }
 
     Result<QString> chooseSample() {
-        const auto answer = call("setup.samples", {});
-        if (!answer)
-            return answer.error();
-        const auto names = read<QStringList>(*answer, "setup.samples");
+        const auto names = call<QStringList>("setup.samples", {});
         if (!names)
             return names.error();
         while (true) {

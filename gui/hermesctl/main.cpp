@@ -65,13 +65,6 @@ int finish(const Result<void> &result, const QStringList &advice, const Argument
 }
 
 int runDaemonCommand(const Subcommand &command, const Arguments &arguments) {
-    for (int i = 0; i < arguments.words.size(); ++i) {
-        const QString &word = arguments.words[i];
-        if (command.meaning(i).contains('=') && word.indexOf('=') <= 0)
-            return usageError(QString("\"%1\": expected NAME=VALUE").arg(word), arguments.json);
-    }
-    if (const auto checked = command.check ? command.check(arguments) : Result<void>(); !checked)
-        return usageError(checked.error().message, arguments.json);
     const QString &daemon = arguments.words.first();
     const auto address = daemonAddress(daemon, arguments.host);
     if (!address)
@@ -127,15 +120,19 @@ int run(Arguments arguments) {
         arguments.words.prepend(arguments.recorder);
     if (ofAll)
         return finish(documentAll(arguments), {}, arguments);
+    const QString first = std::holds_alternative<DaemonCommand>(command->run) ? arguments.words.first() : "";
+    if (first.contains('=') && !first.contains(':')) // else it is the query of an address
+        return usageError(QString("\"%1\" is no daemon; usage: hermesctl %2").arg(first, command->usage),
+                          arguments.json);
+    for (int i = 0; i < arguments.words.size(); ++i) {
+        const QString &word = arguments.words[i];
+        if (command->meaning(i).contains('=') && word.indexOf('=') <= 0)
+            return usageError(QString("\"%1\": expected NAME=VALUE").arg(word), arguments.json);
+    }
+    if (const auto checked = command->check ? command->check(arguments) : Result<void>(); !checked)
+        return usageError(checked.error().message, arguments.json);
     return std::holds_alternative<RobotCommand>(command->run) ? runRobotCommand(*command, arguments)
                                                               : runDaemonCommand(*command, arguments);
-}
-
-void printVersion(bool json) {
-    if (json)
-        printJson(QJsonObject{{"name", "hermesctl"}, {"version", projectVersion()}});
-    else
-        printLine("hermesctl " + projectVersion());
 }
 
 } // namespace
@@ -154,7 +151,8 @@ int main(int argc, char **argv) {
     if (arguments->help || arguments->command == "help")
         printLine(QString::fromStdString(fittedHelp(helpText().toStdString())).trimmed());
     else if (arguments->version)
-        printVersion(arguments->json);
+        print(*arguments, QJsonObject{{"name", "hermesctl"}, {"version", projectVersion()}},
+              "hermesctl " + projectVersion());
     else if (arguments->command.isEmpty())
         status = usageError("a command is missing", arguments->json);
     else

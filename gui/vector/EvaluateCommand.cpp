@@ -16,19 +16,17 @@ struct EvaluateCommand {
     OutputOptions output;
 
     void run() const {
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         Input logInput(log), trajectoryInput(trajectory);
         const Evaluation evaluation(
             valueOrFail(vectorlib::readCarmenLog(logInput.stream(), logInput.name())),
             valueOrFail(vectorlib::readTum(trajectoryInput.stream(), trajectoryInput.name())),
             trajectoryInput.name());
         evaluation.expectSameDrive(logInput.name(), trajectoryInput.name(), std::cerr);
-        out << evaluation.summary().dump(2) << '\n';
-        if (pictures.areWanted())
-            pictures.write(
-                evaluation.picture(fileName(trajectory) + " beside the reference of " + fileName(log)));
+        files.out << evaluation.summary().dump(2) << '\n';
+        files.draw([&] {
+            return evaluation.picture(fileName(trajectory) + " beside the reference of " + fileName(log));
+        });
         files.commit();
     }
     static std::string fileName(const std::string &path) {
@@ -39,18 +37,17 @@ struct EvaluateCommand {
 } // namespace
 
 void addEvaluateCommand(CLI::App &app) {
-    auto command = std::make_shared<EvaluateCommand>();
     CLI::App *sub = app.add_subcommand(
         "evaluate", "Errors of a trajectory beside a log's corrected poses: from pose to pose, and where a "
                     "place is met again (JSON)");
+    auto *const command =
+        commandOf<EvaluateCommand>(*sub, "hermes-vector evaluate intel.log.gz intel.tum --svg errors.svg");
     sub->add_option("LOG", command->log, "CARMEN log whose scan poses are a corrected reference")->required();
     sub->add_option("TRAJECTORY", command->trajectory,
                     "TUM file: stamp x y z qx qy qz qw; of as many poses as the log has scans, or poses at "
                     "the times of some scans")
         ->required();
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector evaluate intel.log.gz intel.tum --svg errors.svg"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

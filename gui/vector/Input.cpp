@@ -36,8 +36,6 @@ std::string worldFile(const std::string &nameOrPath) {
     throw Failure(nameOrPath + ": found no such file, expected one, or the name of a world: " + list);
 }
 
-namespace fs = std::filesystem;
-
 /// Bytes of a file through zlib, which passes on what is not compressed.
 class Input::Buffer : public std::streambuf {
 public:

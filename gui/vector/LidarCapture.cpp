@@ -9,9 +9,11 @@ namespace hermes::vector {
 
 namespace {
 
-LidarStream::Options streamOf(const SensorOptions &options, velodyne::Model model) {
+LidarStream::Options streamOf(const SensorOptions &options, velodyne::Model model,
+                              velodyne::ClockChoice clock) {
     LidarStream::Options stream;
     stream.model = model;
+    stream.clock = clock;
     stream.sensor.port = options.port;
     stream.sensor.address = addressFrom(options.sender); // none of an empty one
     return stream;
@@ -48,10 +50,11 @@ void SensorOptions::addTo(CLI::App &sub) {
               "Of a capture: the sensor that has this address");
 }
 
-LidarCapture::LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model)
+LidarCapture::LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model,
+                           velodyne::ClockChoice clock)
     : name_(input.name())
     , options_(options)
-    , stream_(streamOf(options, model)) {
+    , stream_(streamOf(options, model, clock)) {
     if (const Outcome<void> opened = reader_.open(input.stream(), name_); !opened)
         throw Failure(opened.error());
 }

@@ -25,7 +25,8 @@ class LidarCapture {
 public:
     /// input: to be kept while this is used. model: the sensor's; Blank for any. Throws Failure when it is no
     /// capture that can be read.
-    LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model = velodyne::Model::Blank);
+    LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model = velodyne::Model::Blank,
+                 velodyne::ClockChoice clock = velodyne::ClockChoice::Gps);
 
     /// Feeds all of them to an assembler and lets the sensor's position packets tell the hour. Gives a
     /// message about who else sent data packets and what was left out, or nothing. Throws Failure where the

@@ -58,10 +58,10 @@ private:
         std::optional<MapFile> mapFile;
         if (!options.outMap.empty())
             mapFile.emplace(files, options.outMap);
-        std::ostream *trajectoryFile = openIfNamed(files, options.outTrajectory);
-        std::ostream *graphFile = openIfNamed(files, options.outGraph);
-        std::ostream *trustFile = openIfNamed(files, options.outTrust);
-        std::ostream *svgFile = openIfNamed(files, options.svg);
+        std::ostream *trajectoryFile = files.openIfNamed(options.outTrajectory);
+        std::ostream *graphFile = files.openIfNamed(options.outGraph);
+        std::ostream *trustFile = files.openIfNamed(options.outTrust);
+        std::ostream *svgFile = files.openIfNamed(options.svg);
         std::ostream &summaryFile = files.open(options.summary);
 
         std::optional<MapProgress> progress(run.closesLoops);
@@ -108,8 +108,8 @@ private:
         apply(run.localizer);
 
         OutputSet files(options.force);
-        std::ostream *trajectoryFile = openIfNamed(files, options.outTrajectory);
-        std::ostream *svgFile = openIfNamed(files, options.svg);
+        std::ostream *trajectoryFile = files.openIfNamed(options.outTrajectory);
+        std::ostream *svgFile = files.openIfNamed(options.svg);
         std::ostream &summaryFile = files.open(options.summary);
         Progress progress("finding, scan");
         const MapSourceReport report =
@@ -173,9 +173,6 @@ private:
         tracker.builder.extract.vectorize.settings.sigma = options.sigma;
     }
     void setUp(vectorlib::MapLocalizer &localizer) const { setUp(localizer.tracker); }
-    static std::ostream *openIfNamed(OutputSet &files, const std::string &path) {
-        return path.empty() ? nullptr : &files.open(path);
-    }
     static void conclude(nlohmann::ordered_json &json, Clock::time_point begin, std::ostream &summary) {
         json["seconds"] = std::chrono::duration<double>(Clock::now() - begin).count();
         summary << json.dump(2) << '\n';

@@ -5,11 +5,15 @@
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Pgm.h"
 
+#include <filesystem>
+#include <set>
+
 namespace hermes::vector {
 
 CLI::Validator MapFile::knownName() {
     const auto check = [](const std::string &path) {
-        return isKnown(path)
+        static const std::set<std::string> known{".csv", ".svg", ".geojson", ".dxf", ".pgm"};
+        return known.count(std::filesystem::u8path(path).extension().u8string()) > 0
                    ? std::string()
                    : "found " + path + ", expected a name that ends with .csv, .svg, .geojson, .dxf or .pgm";
     };

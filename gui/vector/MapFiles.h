@@ -4,8 +4,6 @@
 #include "vectorlib/io/MapDrawing.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <filesystem>
 
 namespace hermes::vector {
 
@@ -13,15 +11,6 @@ namespace hermes::vector {
 /// it).
 class MapFile {
 public:
-    /// The kinds, for messages and checks.
-    static const std::vector<std::string> &extensions() {
-        static const std::vector<std::string> known = {".csv", ".svg", ".geojson", ".dxf", ".pgm"};
-        return known;
-    }
-    static bool isKnown(const std::string &path) {
-        const std::string extension = std::filesystem::u8path(path).extension().u8string();
-        return std::find(extensions().begin(), extensions().end(), extension) != extensions().end();
-    }
     /// Lets only names of these kinds through.
     static CLI::Validator knownName();
 

@@ -121,9 +121,10 @@ private:
 } // namespace
 
 void addMapMergeCommand(CLI::App &app) {
-    auto command = std::make_shared<MapMergeCommand>();
     CLI::App *sub = app.add_subcommand(
         "map-merge", "Join two maps where they show the same place (the motion between them as JSON)");
+    auto *const command =
+        commandOf<MapMergeCommand>(*sub, "hermes-vector map-merge monday.csv tuesday.csv --out both.csv");
     sub->add_option("A", command->first, "A map (CSV by map --out-map); the result has its frame")
         ->required();
     sub->add_option("B", command->second, "The map that is moved onto it")->required();
@@ -135,8 +136,6 @@ void addMapMergeCommand(CLI::App &app) {
     addOption(*sub, "--summary FILE", command->summary,
               "The motion and how sure it is; standard output when not given");
     sub->add_flag("--force", command->force, "Overwrite files that exist");
-    sub->footer(example("hermes-vector map-merge monday.csv tuesday.csv --out both.csv"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

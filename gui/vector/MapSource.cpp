@@ -79,7 +79,8 @@ double findSecondsPerTurn(const vectorlib::CarmenLog &log, vectorlib::CarmenOdom
     return check.secondsPerTurn().value_or(0);
 }
 
-MapSourceReport readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
+void readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink,
+             MapSourceReport &report) {
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
     const vectorlib::CarmenLog log = valueOrFail(vectorlib::readCarmenLog(
@@ -102,7 +103,6 @@ MapSourceReport readLog(Input &input, const MapSourceOptions &options, const Map
             scan.reference = log.scans[i].laserPose;
         sink(scan, i / options.every, total);
     }
-    MapSourceReport report;
     report.damagedLines = log.damaged;
     report.odometryRefused = log.odometryRefused;
     report.odometryLeaps = drive.leaps();
@@ -113,7 +113,6 @@ MapSourceReport readLog(Input &input, const MapSourceOptions &options, const Map
     report.isTurnTold = options.secondsPerTurn.has_value();
     if (log.firstDamage)
         report.firstDamage = log.firstDamage->message();
-    return report;
 }
 
 // The sensor counts clockwise, vectorlib the other way: the points of a turn are taken from the last to the
@@ -130,7 +129,8 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
     scan.fault = turn.partial ? MapScan::Fault::Partial : MapScan::Fault::None;
 }
 
-MapSourceReport readCapture(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
+void readCapture(Input &input, const MapSourceOptions &options, const MapScanSink &sink,
+                 MapSourceReport &report) {
     MapScan scan;
     std::size_t turns = 0;
     RecordedSession *const session = options.session.get();
@@ -143,18 +143,18 @@ MapSourceReport readCapture(Input &input, const MapSourceOptions &options, const
             scan.odometry = session->over(scan.begin(), scan.end());
         sink(scan, (turns - 1) / options.every, 0);
     });
-    MapSourceReport report;
-    report.otherSensors = LidarCapture(input, options.sensor).read(assembler);
+    report.otherSensors = LidarCapture(input, options.sensor, velodyne::Model::Blank,
+                                       session ? session->clock() : velodyne::ClockChoice::Gps)
+                              .read(assembler);
     if (!session)
-        return report;
+        return;
     report.odometryRefused = session->refused();
     report.mount = options.mount.value_or(session->tracker().sensorOnRobot);
     if (const std::string problems = session->problems(); !problems.empty())
         report.otherSensors += (report.otherSensors.empty() ? "" : "; ") + problems;
-    return report;
 }
 
-MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
+void readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
     std::vector<std::string> names;
     for (const fs::directory_entry &entry : fs::directory_iterator(fs::u8path(options.path)))
         if (entry.is_regular_file() &&
@@ -175,7 +175,6 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
         scan.stamp = double(i / options.every);
         sink(scan, i / options.every, (names.size() + options.every - 1) / options.every);
     }
-    return {};
 }
 
 /// Options that say nothing of what is read.
@@ -195,12 +194,12 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
                                                    " is none");
 }
 
-MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
+void readAny(const MapSourceOptions &options, const MapScanSink &sink, MapSourceReport &report) {
     std::error_code ignored;
     if (options.session) {
         Input input(*captureIn(options.path));
         refuseUnused(options, true, false);
-        return readCapture(input, options, sink);
+        return readCapture(input, options, sink, report);
     }
     if (fs::is_directory(fs::u8path(options.path), ignored)) {
         refuseUnused(options, false, false);
@@ -208,29 +207,27 @@ MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink
     }
     Input input(options.path);
     refuseUnused(options, input.isCapture(), !input.isCapture());
-    return input.isCapture() ? readCapture(input, options, sink) : readLog(input, options, sink);
+    input.isCapture() ? readCapture(input, options, sink, report) : readLog(input, options, sink, report);
 }
 
 } // namespace
 
 MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink) {
     using Fault = MapScan::Fault;
-    std::size_t repeated = 0, empty = 0, stampsBack = 0;
+    MapSourceReport report;
     std::optional<double> last;
-    MapSourceReport report = readAny(options, [&](MapScan &scan, std::size_t number, std::size_t total) {
+    const auto take = [&](MapScan &scan, std::size_t number, std::size_t total) {
         if (scan.fault == Fault::None && scan.points.empty())
             scan.fault = Fault::Empty;
-        repeated += scan.fault == Fault::Repeated;
-        empty += scan.fault == Fault::Empty;
+        report.repeated += scan.fault == Fault::Repeated;
+        report.empty += scan.fault == Fault::Empty;
         if (scan.fault != Fault::Repeated) {
-            stampsBack += last && scan.stamp < *last;
+            report.stampsBack += last && scan.stamp < *last;
             last = scan.stamp;
         }
         sink(scan, number, total);
-    });
-    report.repeated = repeated;
-    report.empty = empty;
-    report.stampsBack = stampsBack;
+    };
+    readAny(options, take, report);
     return report;
 }
 

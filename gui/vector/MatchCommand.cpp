@@ -37,21 +37,12 @@ struct MatchCommand {
     std::string fixedPath, movingPath, expected, method;
     std::optional<double> deviationXY, deviationAlpha;
     bool isMap = false;
-    double noise = 0, sigma = 0.03;
-    SegmentOptions segment;
+    SegmentSetSettings reading;
     SearchOptions search;
     OutputOptions output;
 
     void run() const {
-        SegmentSetSettings reading;
-        reading.segmentation = [this](std::size_t points) {
-            return segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, points));
-        };
-        reading.sigma = sigma;
-        reading.noise = noise;
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         const SegmentSet fixed = loadSegmentSet(fixedPath, reading),
                          moving = loadSegmentSet(movingPath, reading);
         if (isMap && fixed.kind == SegmentSet::Kind::Points)
@@ -60,13 +51,14 @@ struct MatchCommand {
         const Transformation2D around =
             expected.empty() ? Transformation2D() : Transformation2D(parsePose(expected));
         const Matched result = match(fixed, moving, around);
-        write(out, result, fixed, moving);
+        write(files.out, result, fixed, moving);
         if (result.solutions.empty())
             std::cerr << "hermes-vector: no solution: " << result.text() << '\n';
-        if (pictures.areWanted())
-            pictures.write(pictureOf(
-                result, fixed, moving,
-                expected.empty() && result.method != "finder" ? std::nullopt : std::make_optional(around)));
+        files.draw([&] {
+            return pictureOf(result, fixed, moving,
+                             expected.empty() && result.method != "finder" ? std::nullopt
+                                                                           : std::make_optional(around));
+        });
         files.commit();
     }
 
@@ -86,11 +78,10 @@ struct MatchCommand {
         if (wantsFinder || (!expected.empty() && !areScans))
             return matchByFinder(fixed, moving, searchSettings(), around, inMap);
         if (!expected.empty())
-            return matchTracking(
-                fixed, moving, {around, deviationXY.value_or(0.15), deviationAlpha.value_or(0.10)},
-                segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, fixed.points.size())),
-                noise);
-        const Matched anywhere = matchGlobally(fixed, moving, noise);
+            return matchTracking(fixed, moving,
+                                 {around, deviationXY.value_or(0.15), deviationAlpha.value_or(0.10)},
+                                 reading.segmentation(fixed.points.size()), reading.noise);
+        const Matched anywhere = matchGlobally(fixed, moving, reading.noise);
         const bool mayTryLines = method.empty() && !areScans && anywhere.solutions.empty();
         return mayTryLines ? matchByFinder(fixed, moving, searchSettings(), around, false) : anywhere;
     }
@@ -192,11 +183,12 @@ struct MatchCommand {
 } // namespace
 
 void addMatchCommand(CLI::App &app) {
-    auto command = std::make_shared<MatchCommand>();
     CLI::App *sub = app.add_subcommand(
         "match",
         "Find the motion between two scans, or the place of a scan in a map, without known partners (JSON). "
         "Both must show the same place: scans of different places that look alike match, too");
+    auto *const command =
+        commandOf<MatchCommand>(*sub, "hermes-vector match first.csv second.csv --svg match.svg");
     const std::string kinds = "points (CSV x,y or ascii PCD), segments (CSV x1,y1,x2,y2)";
     sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
         ->required();
@@ -217,17 +209,15 @@ void addMatchCommand(CLI::App &app) {
         ->check(CLI::IsMember({"global", "finder", "relations"}));
     sub->add_flag("--map", command->isMap,
                   "The static segments were seen from many places: what they do not show hides nothing");
-    addOption(*sub, "--sigma M", command->sigma, aboveZero(),
+    addOption(*sub, "--sigma M", command->reading.sigma, aboveZero(),
               "Largest standard deviation of points from their line, metres")
         ->capture_default_str();
-    addOption(*sub, "--noise M", command->noise, aboveZero(),
+    addOption(*sub, "--noise M", command->reading.noise, aboveZero(),
               "For the covariance: standard deviation of points, or of the ends of segments, metres (points: "
               "as they scatter; segments: 0.01)");
     command->search.addTo(*sub, "0.2");
-    command->segment.addTo(*sub, "defaults by the number of points");
+    command->reading.segment.addTo(*sub, "defaults by the number of points");
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector match first.csv second.csv --svg match.svg"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

@@ -30,13 +30,12 @@ MatchOutcome outcomeOf(GlobalPairVerdict verdict) {
         return MatchOutcome::Ambiguous;
     case GlobalPairVerdict::OpenDirection:
         return MatchOutcome::OpenDirection;
-    case GlobalPairVerdict::TooUnlike:
-        return MatchOutcome::Nowhere;
     case GlobalPairVerdict::NothingFixed:
     case GlobalPairVerdict::NothingMoving:
         return MatchOutcome::TooLittle;
+    default:
+        return MatchOutcome::Nowhere;
     }
-    return MatchOutcome::Nowhere;
 }
 
 MatchOutcome outcomeOf(RelationOutcome outcome) {

@@ -4,6 +4,7 @@
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/relations/RelationMatcher.h"
 
+#include <algorithm>
 #include <string>
 
 namespace hermes::vector {
@@ -27,17 +28,10 @@ inline const char *name(MatchOutcome outcome) {
 }
 
 /// For people; what is known beyond it follows after a colon.
-inline const char *describe(MatchOutcome outcome) {
-    switch (outcome) {
-    case MatchOutcome::OpenDirection:
-        return "open direction";
-    case MatchOutcome::TooLittle:
-        return "too little";
-    case MatchOutcome::BadSettings:
-        return "bad settings";
-    default:
-        return name(outcome);
-    }
+inline std::string describe(MatchOutcome outcome) {
+    std::string text = name(outcome);
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return text;
 }
 
 /// The outcome in these words; and for outcomes but Found the reason, for people, where the method's own

@@ -27,21 +27,18 @@ struct ObserveCommand {
     OutputOptions output;
 
     void run() const {
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         const std::vector<Segment> world = loadWorld();
         const vectorlib::Pose2D at = parsePose(pose);
         const std::vector<Segment> view = observe(world, at);
         std::vector<Point> scan;
         if (rays > 0) {
             scan = simulate(world, at);
-            vectorlib::writeCsvPoints(out, scan);
+            vectorlib::writeCsvPoints(files.out, scan);
         } else {
-            vectorlib::writeCsvSegments(out, view);
+            vectorlib::writeCsvSegments(files.out, view);
         }
-        if (pictures.areWanted())
-            pictures.write(pictureOf(world, at, view, scan));
+        files.draw([&] { return pictureOf(world, at, view, scan); });
         files.commit();
     }
 
@@ -92,10 +89,11 @@ struct ObserveCommand {
 } // namespace
 
 void addObserveCommand(CLI::App &app) {
-    auto command = std::make_shared<ObserveCommand>();
     CLI::App *sub =
         app.add_subcommand("observe", "What a sensor sees of a world: the exact view (CSV x1,y1,x2,y2) or a "
                                       "simulated scan (CSV x,y), in the sensor's frame");
+    auto *const command = commandOf<ObserveCommand>(
+        *sub, "hermes-vector observe pillars --pose 1,1,0.5 --scan 720 --noise 0.01");
     sub->add_option("WORLD", command->in,
                     "World: JSON with edges, or the name of one that came with the program")
         ->required();
@@ -121,8 +119,6 @@ void addObserveCommand(CLI::App &app) {
         ->needs(scan)
         ->capture_default_str();
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector observe pillars --pose 1,1,0.5 --scan 720 --noise 0.01"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

@@ -1,6 +1,7 @@
 #include "gui/vector/Options.h"
 
 #include "common/AngleText.h"
+#include "vectorlib/io/LatexExport.h"
 #include "vectorlib/io/TextInput.h"
 
 #include <cmath>
@@ -106,6 +107,19 @@ void OutputOptions::addTo(CLI::App &command, bool withPictures) {
                   "Also write the picture as a LaTeX document");
     }
     command.add_flag("--force", force, "Overwrite files that exist");
+}
+
+void Outputs::draw(const std::function<vectorlib::SvgPicture()> &picture) const {
+    if (!svg_ && !latex_)
+        return;
+    vectorlib::SvgPicture drawn = picture();
+    if (svg_)
+        drawn.write(*svg_);
+    if (!latex_)
+        return;
+    vectorlib::LatexExport document(*latex_);
+    document.picture(drawn);
+    document.finish();
 }
 
 void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {

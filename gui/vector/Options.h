@@ -2,10 +2,13 @@
 
 #include "gui/vector/Output.h"
 #include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/io/Svg.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
+#include <memory>
 #include <optional>
 
 namespace hermes::vector {
@@ -18,7 +21,25 @@ struct OutputOptions {
 
     /// Adds --out, --svg and --latex (if wanted) and --force.
     void addTo(CLI::App &command, bool withPictures);
-    PictureFiles openPictures(OutputSet &files) const { return {files, svg, latex}; }
+};
+
+/// What a command writes by these options: its result, and the picture beside it as SVG, as a LaTeX document,
+/// as both or not at all. What is wrong with a path is told before any work is done, see OutputSet::open().
+class Outputs : public OutputSet {
+public:
+    explicit Outputs(const OutputOptions &options)
+        : OutputSet(options.force)
+        , out(open(options.out))
+        , svg_(openIfNamed(options.svg))
+        , latex_(openIfNamed(options.latex)) {}
+
+    std::ostream &out;
+
+    /// The picture is asked for where it is wanted.
+    void draw(const std::function<vectorlib::SvgPicture()> &picture) const;
+
+private:
+    std::ostream *svg_, *latex_;
 };
 
 /// Adds an option with a usage as "--k N": its name, and what the help calls its value.
@@ -69,6 +90,15 @@ private:
 
 /// The footer of a command's help: an example of its use.
 std::string example(const std::string &text);
+
+/// What a subcommand runs, for its options to set; the subcommand keeps it. usage: an example for its help.
+template <typename Command>
+Command *commandOf(CLI::App &sub, const std::string &usage) {
+    const auto command = std::make_shared<Command>();
+    sub.footer(example(usage));
+    sub.callback([command] { command->run(); });
+    return command.get();
+}
 
 // One function a subcommand; each in a file of its own.
 void addSegmentCommand(CLI::App &app);

@@ -3,7 +3,6 @@
 #include "common/platform/HeldFile.h"
 #include "common/platform/TemporaryNames.h"
 #include "gui/vector/Failure.h"
-#include "vectorlib/io/LatexExport.h"
 
 #include <array>
 #include <cerrno>
@@ -185,16 +184,6 @@ void OutputSet::commit() {
         if (file->direct.is_open())
             finish(file->direct, file->path, [&file] { file->direct.close(); });
     finish(std::cout, "standard output", [] { std::cout.flush(); });
-}
-
-void PictureFiles::write(vectorlib::SvgPicture picture) const {
-    if (svg_)
-        picture.write(*svg_);
-    if (!latex_)
-        return;
-    vectorlib::LatexExport document(*latex_);
-    document.picture(picture);
-    document.finish();
 }
 
 } // namespace hermes::vector

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "vectorlib/io/Svg.h"
-
 #include <memory>
 #include <ostream>
 #include <string>
@@ -24,6 +22,8 @@ public:
     /// A stream for the path. Throws Failure when the target exists (unless force), is a folder, is asked for
     /// twice or cannot be written.
     std::ostream &open(const std::string &path);
+    /// nullptr for the empty path.
+    std::ostream *openIfNamed(const std::string &path) { return path.empty() ? nullptr : &open(path); }
     /// Makes a folder, and those above it, where they are missing; what was made and is empty goes again
     /// unless commit() is reached. Throws Failure when it cannot be made.
     void makeFolder(const std::string &path);
@@ -41,22 +41,6 @@ private:
     bool force_, committed_ = false;
     std::vector<std::unique_ptr<File>> files_;
     std::vector<Folder> folders_; ///< a folder before what lies in it
-};
-
-/// The picture that a command leaves beside its result: as SVG, as a LaTeX document, as both or not at all.
-class PictureFiles {
-public:
-    /// Of an empty path none is made. What is wrong with a path is told before any work is done, see
-    /// OutputSet::open().
-    PictureFiles(OutputSet &files, const std::string &svg, const std::string &latex)
-        : svg_(svg.empty() ? nullptr : &files.open(svg))
-        , latex_(latex.empty() ? nullptr : &files.open(latex)) {}
-
-    bool areWanted() const { return svg_ || latex_; }
-    void write(vectorlib::SvgPicture picture) const;
-
-private:
-    std::ostream *svg_, *latex_;
 };
 
 } // namespace hermes::vector

@@ -111,36 +111,33 @@ RecordedSession::RecordedSession(const std::string &folder)
     for (const std::string &file : files_)
         readers_.push_back(valueOrFail(mcap::Reader::open(file)));
     readSettings();
-    for (mcap::Reader &reader : readers_) {
+    for (mcap::Reader &reader : readers_)
         reader.select([](const mcap::Channel &channel) { return channel.topic == "motorcontrol/odometry"; });
-        reader.seek(0);
-    }
 }
 
 void RecordedSession::readSettings() {
-    const std::map<std::string, std::string> daemons{{"scanmatcher/settings", "scanmatcher"},
-                                                     {"velodynelogger/settings", "velodynelogger"}};
     for (mcap::Reader &reader : readers_) {
         reader.select([&](const mcap::Channel &channel) {
-            return daemons.count(channel.topic) > 0 && settings_.count(daemons.at(channel.topic)) == 0;
+            return (channel.topic == matcherTopic || channel.topic == loggerTopic) &&
+                   settings_.count(channel.topic) == 0;
         });
         while (const auto message = reader.next())
-            settings_.emplace(daemons.at(reader.channels().at(message->channel).topic),
+            settings_.emplace(reader.channels().at(message->channel).topic,
                               JsonData::parse(message->data, nullptr, false));
     }
 }
 
-std::optional<double> RecordedSession::number(const char *daemon, std::string path) const {
-    const auto found = settings_.find(daemon);
+std::optional<double> RecordedSession::number(const char *topic, std::string path) const {
+    const auto found = settings_.find(topic);
     std::replace(path.begin(), path.end(), '.', '/');
     return found == settings_.end() ? std::nullopt : numberAt(found->second, '/' + path);
 }
 
 vectorlib::ScanTrackerSettings RecordedSession::tracker() const {
-    if (settings_.count("scanmatcher") == 0)
+    if (settings_.count(matcherTopic) == 0)
         return {};
     return vectorlib::namedTrackerSettings([&](const char *name) {
-        if (const auto value = number("scanmatcher", name))
+        if (const auto value = number(matcherTopic, name))
             return *value;
         throw Failure(files_[0] + ": found no setting " + name +
                       " in scanmatcher/settings, expected a number");
@@ -149,13 +146,20 @@ vectorlib::ScanTrackerSettings RecordedSession::tracker() const {
 
 velodyne::TurnAssembler::Options RecordedSession::decoding() const {
     velodyne::TurnAssembler::Options options;
-    if (const auto laser = number("velodynelogger", "decode.laser");
+    if (const auto laser = number(loggerTopic, "decode.laser");
         laser && *laser >= 0 && *laser < velodyne::maxLasers())
         options.laser = int(*laser);
-    if (const auto offset = number("velodynelogger", "decode.stamp_offset_s");
-        offset && std::abs(*offset) <= 3600)
+    if (const auto offset = number(loggerTopic, "decode.stamp_offset_s"); offset && std::abs(*offset) <= 3600)
         options.stampOffset_ns = std::int64_t(*offset * 1e9);
     return options;
+}
+
+velodyne::ClockChoice RecordedSession::clock() const {
+    const auto found = settings_.find(loggerTopic);
+    const JsonData::json_pointer path("/decode/clock");
+    if (found == settings_.end() || !found->second.contains(path) || !found->second.at(path).is_string())
+        return velodyne::ClockChoice::Gps;
+    return velodyne::clockChoiceFromText(found->second.at(path).get<std::string>());
 }
 
 std::optional<vectorlib::OdometrySample> RecordedSession::nextSample() {

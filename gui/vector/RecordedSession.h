@@ -31,7 +31,9 @@ public:
     /// As the daemons had them when the recording began; where that is not known, as they are by default.
     vectorlib::ScanTrackerSettings tracker() const;
     velodyne::TurnAssembler::Options decoding() const;
-    std::optional<double> sigma() const { return number("scanmatcher", "matcher.sigma_m"); }
+    /// Whose clock stamped the scans. The sensor's, where the recording is older than the choice.
+    velodyne::ClockChoice clock() const;
+    std::optional<double> sigma() const { return number(matcherTopic, "matcher.sigma_m"); }
 
     /// The robot's way during a scan (seconds since the Unix epoch), when it is known. Scans in the order of
     /// time.
@@ -42,13 +44,16 @@ public:
     std::string problems() const;
 
 private:
-    std::optional<double> number(const char *daemon, std::string path) const;
+    static constexpr const char *matcherTopic = "scanmatcher/settings";
+    static constexpr const char *loggerTopic = "velodynelogger/settings";
+
+    std::optional<double> number(const char *topic, std::string path) const;
     void readSettings();
     std::optional<vectorlib::OdometrySample> nextSample();
 
     std::vector<std::string> files_;
     std::vector<mcap::Reader> readers_;
-    std::map<std::string, nlohmann::json> settings_; ///< by daemon
+    std::map<std::string, nlohmann::json> settings_; ///< by topic
     std::size_t reader_ = 0;
     std::optional<vectorlib::OdometrySample> next_; ///< not yet in the buffer
     vectorlib::OdometryBuffer buffer_;

@@ -25,9 +25,7 @@ struct RegisterCommand {
     OutputOptions output;
 
     void run() const {
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         Input input(in);
         const vectorlib::PairTable table = valueOrFail(vectorlib::readCsvPairs(input.stream(), input.name()));
         if (weights == "column" && !table.hasWeights)
@@ -48,9 +46,8 @@ struct RegisterCommand {
         if (!registration.isSolvable())
             std::cerr
                 << "hermes-vector: all lines are parallel: the shift along them is not known and left at 0\n";
-        write(out, registration, t);
-        if (pictures.areWanted())
-            pictures.write(pictureOf(table.pairs, t));
+        write(files.out, registration, t);
+        files.draw([&] { return pictureOf(table.pairs, t); });
         files.commit();
     }
 
@@ -93,9 +90,10 @@ struct RegisterCommand {
 } // namespace
 
 void addRegisterCommand(CLI::App &app) {
-    auto command = std::make_shared<RegisterCommand>();
     CLI::App *sub = app.add_subcommand(
         "register", "Find the motion that brings segments onto their known partners (JSON)");
+    auto *const command =
+        commandOf<RegisterCommand>(*sub, "hermes-vector register pairs.csv --weights length");
     sub->add_option("IN", command->in,
                     "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
         ->required();
@@ -112,8 +110,6 @@ void addRegisterCommand(CLI::App &app) {
               "Weight of the translation in the ambiguity")
         ->capture_default_str();
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector register pairs.csv --weights length"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

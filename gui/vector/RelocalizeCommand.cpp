@@ -132,19 +132,12 @@ SvgPicture pictureOf(const SegmentSet &map, const SegmentSet &scan, const vector
 
 struct RelocalizeCommand {
     std::string map, scan;
-    double sigma = 0.03, seconds = 3;
-    SegmentOptions segment;
+    double seconds = 3;
+    SegmentSetSettings reading;
     OutputOptions output;
 
     void run() const {
-        SegmentSetSettings reading;
-        reading.segmentation = [this](std::size_t points) {
-            return segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, points));
-        };
-        reading.sigma = sigma;
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         const SegmentSet known = loadSegmentSet(map, reading), seen = loadSegmentSet(scan, reading);
         if (known.kind == SegmentSet::Kind::Points)
             throw CLI::ValidationError("MAP", "found points in " + map + ", expected a map or segments");
@@ -177,9 +170,8 @@ struct RelocalizeCommand {
                      {"places", Json::array()}};
         for (const vectorlib::Place &place : result.places)
             json["places"].push_back(placeAsJson(place));
-        out << json.dump(2) << '\n';
-        if (pictures.areWanted())
-            pictures.write(pictureOf(known, seen, result));
+        files.out << json.dump(2) << '\n';
+        files.draw([&] { return pictureOf(known, seen, result); });
         files.commit();
     }
 };
@@ -187,25 +179,24 @@ struct RelocalizeCommand {
 } // namespace
 
 void addRelocalizeCommand(CLI::App &app) {
-    auto command = std::make_shared<RelocalizeCommand>();
     CLI::App *sub = app.add_subcommand(
         "relocalize", "Find where in a whole map a scan was taken, without an expected pose (JSON)");
+    auto *const command =
+        commandOf<RelocalizeCommand>(*sub, "hermes-vector relocalize map.csv scan.csv --svg place.svg");
     sub->add_option("MAP", command->map, "A map by hermes-vector map, or segments (CSV x1,y1,x2,y2)")
         ->required();
     sub->add_option("SCAN", command->scan,
                     "One scan: points (CSV x,y or ascii PCD), or segments (CSV x1,y1,x2,y2); out of a log by "
                     "hermes-vector map LOG --scan N")
         ->required();
-    addOption(*sub, "--sigma M", command->sigma, aboveZero(),
+    addOption(*sub, "--sigma M", command->reading.sigma, aboveZero(),
               "Largest standard deviation of points from their line, metres")
         ->capture_default_str();
     addOption(*sub, "--seconds S", command->seconds, between(0.001, 1e6),
               "Longest search; what is left by then is not searched")
         ->capture_default_str();
-    command->segment.addTo(*sub, "defaults by the number of points");
+    command->reading.segment.addTo(*sub, "defaults by the number of points");
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector relocalize map.csv scan.csv --svg place.svg"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

@@ -33,8 +33,7 @@ struct RingCommand {
     OutputOptions output;
 
     void run() const {
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
+        Outputs files(output);
         std::error_code ignored;
         Input input(std::filesystem::is_directory(std::filesystem::u8path(in), ignored)
                         ? captureIn(in).value_or(in)
@@ -49,12 +48,12 @@ struct RingCommand {
         velodyne::TurnAssembler assembler(options, [&](const velodyne::Turn &t) {
             ++turns;
             if (turn < 0 || std::uint64_t(turn) == t.number)
-                write(out, t);
-            if (!out)
+                write(files.out, t);
+            if (!files.out)
                 files.commit(); // tells what is wrong; the rest of the capture need not be read
         });
-        out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
-                    : "turn,stamp,azimuth,range,intensity,x,y\n");
+        files.out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
+                          : "turn,stamp,azimuth,range,intensity,x,y\n");
         const std::string otherSensors = capture.read(assembler);
         if (!otherSensors.empty())
             std::cerr << "hermes-vector: " << otherSensors << '\n';
@@ -97,10 +96,11 @@ struct RingCommand {
 } // namespace
 
 void addRingCommand(CLI::App &app) {
-    auto command = std::make_shared<RingCommand>();
     CLI::App *sub = app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an " +
                                                    velodyne::sensorNames() +
                                                    " (CSV turn,stamp,azimuth,range,intensity,x,y)");
+    auto *const command =
+        commandOf<RingCommand>(*sub, "hermes-vector ring drive.pcap --turn 3 --out ring.csv");
     sub->add_option("PCAP", command->in,
                     "Capture, pcap or pcapng; of a recording NAME-0001.pcap, NAME-0002.pcap ... its "
                     "first file, or its folder")
@@ -123,8 +123,6 @@ void addRingCommand(CLI::App &app) {
                   "Of z leave out the lasers' own heights above the sensor's origin")
         ->needs(all);
     command->output.addTo(*sub, false);
-    sub->footer(example("hermes-vector ring drive.pcap --turn 3 --out ring.csv"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

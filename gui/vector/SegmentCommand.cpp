@@ -17,22 +17,19 @@ struct SegmentCommand {
     void run() const {
         vectorlib::EarSegmenter<double> segmenter;
         segmenter.settings = segment.over({});
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation &clusters = segmenter(points);
-        out << "index,cluster\n";
+        files.out << "index,cluster\n";
         const std::size_t rows = clusters.labels.size();
         std::optional<Progress> progress("writing, row");
         for (std::size_t i = 0; i < rows; ++i) {
-            out << i << ',' << clusters.labels[i] << '\n';
+            files.out << i << ',' << clusters.labels[i] << '\n';
             if (i % 4096 == 0 || i + 1 == rows)
                 progress->update(double(i + 1), double(rows));
         }
         progress.reset();
-        if (pictures.areWanted())
-            pictures.write(pictureOf(points, clusters));
+        files.draw([&] { return pictureOf(points, clusters); });
         files.commit();
     }
 
@@ -59,15 +56,14 @@ struct SegmentCommand {
 } // namespace
 
 void addSegmentCommand(CLI::App &app) {
-    auto command = std::make_shared<SegmentCommand>();
     CLI::App *sub = app.add_subcommand(
         "segment", "Split a scan into clusters of neighbouring points (CSV index,cluster; -1 is "
                    "an outlier)");
+    auto *const command =
+        commandOf<SegmentCommand>(*sub, "hermes-vector segment scan.csv --open --svg scan.svg");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
     command->segment.addTo(*sub, "defaults 10, 0.05, 0.20, 15");
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector segment scan.csv --open --svg scan.svg"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

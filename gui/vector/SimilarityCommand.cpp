@@ -17,8 +17,7 @@ struct SimilarityCommand {
 
     void run() const {
         using vectorlib::Number;
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
+        Outputs files(output);
         Input input(in);
         const vectorlib::PairTable table = valueOrFail(vectorlib::readCsvPairs(input.stream(), input.name()));
         const NearFrames frames(table.pairs);
@@ -27,11 +26,11 @@ struct SimilarityCommand {
             if (!criterion.add(frames.toNear(p)))
                 throw Failure(input.name() +
                               ": found segments or weights that are far too large, expected metres");
-        out << "x,y,alpha,criterion\n";
+        files.out << "x,y,alpha,criterion\n";
         for (const std::string &text : poses) {
             const vectorlib::Pose2D pose = parsePose(text);
-            out << Number(pose.x) << ',' << Number(pose.y) << ',' << Number(pose.theta) << ','
-                << Number(criterion(frames.toNear(vectorlib::Transformation2D(pose)))) << '\n';
+            files.out << Number(pose.x) << ',' << Number(pose.y) << ',' << Number(pose.theta) << ','
+                      << Number(criterion(frames.toNear(vectorlib::Transformation2D(pose)))) << '\n';
         }
         files.commit();
     }
@@ -40,10 +39,11 @@ struct SimilarityCommand {
 } // namespace
 
 void addSimilarityCommand(CLI::App &app) {
-    auto command = std::make_shared<SimilarityCommand>();
     CLI::App *sub = app.add_subcommand(
         "similarity",
         "How much segments differ from their known partners under motions (CSV x,y,alpha,criterion)");
+    auto *const command =
+        commandOf<SimilarityCommand>(*sub, "hermes-vector similarity pairs.csv --pose 0,0,0 --pose 1,-2,0.3");
     sub->add_option("IN", command->in,
                     "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
         ->required();
@@ -54,8 +54,6 @@ void addSimilarityCommand(CLI::App &app) {
         ->allow_extra_args(false) // what follows one is not another
         ->type_name("X,Y,ALPHA");
     command->output.addTo(*sub, false);
-    sub->footer(example("hermes-vector similarity pairs.csv --pose 0,0,0 --pose 1,-2,0.3"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

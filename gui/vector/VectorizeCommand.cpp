@@ -40,22 +40,19 @@ struct VectorizeCommand {
                                                        " searches no break points, expected aftls");
         vectorlib::EarSegmenter<double> segmenter;
         segmenter.settings = segment.over({});
-        OutputSet files(output.force);
-        std::ostream &out = files.open(output.out);
-        const PictureFiles pictures = output.openPictures(files);
+        Outputs files(output);
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation clusters = noSegment ? oneCluster(points.size()) : segmenter(points);
         const std::vector<Row> rows = vectorize(points, clusters);
-        out << "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2\n";
+        files.out << "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2\n";
         for (const Row &r : rows) {
-            out << r.cluster << ',' << r.first << ',' << r.last;
+            files.out << r.cluster << ',' << r.first << ',' << r.last;
             for (const double v : {r.line.a, r.line.b, r.line.c, r.sigma, r.segment.begin().x,
                                    r.segment.begin().y, r.segment.end().x, r.segment.end().y})
-                out << ',' << Number(v);
-            out << '\n';
+                files.out << ',' << Number(v);
+            files.out << '\n';
         }
-        if (pictures.areWanted())
-            pictures.write(pictureOf(points, rows));
+        files.draw([&] { return pictureOf(points, rows); });
         files.commit();
     }
 
@@ -124,11 +121,12 @@ struct VectorizeCommand {
 } // namespace
 
 void addVectorizeCommand(CLI::App &app) {
-    auto command = std::make_shared<VectorizeCommand>();
-    command->settings.polyline = false;
     CLI::App *sub = app.add_subcommand(
         "vectorize", "Replace points by line segments (CSV cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
+    auto *const command = commandOf<VectorizeCommand>(
+        *sub, "hermes-vector vectorize scan.csv --algorithm ftls --sigma 0.02 --polyline");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
+    command->settings.polyline = false;
     std::vector<std::string> names;
     std::string help;
     for (const NamedVectorizer &v : vectorizers()) {
@@ -150,8 +148,6 @@ void addVectorizeCommand(CLI::App &app) {
                   "Join the consecutive lines of a cluster where they cross");
     command->segment.addTo(*sub, "defaults 10, 0.05, 0.20, 15");
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector vectorize scan.csv --algorithm ftls --sigma 0.02 --polyline"));
-    sub->callback([command] { command->run(); });
 }
 
 } // namespace hermes::vector

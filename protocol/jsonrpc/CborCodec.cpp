@@ -35,9 +35,9 @@ std::vector<CodecFrame> CborCodec::splitFrames(const QByteArray &bytes) {
         if (size > quint32(frameLimit())) {
             frames.push_back(
                 {{},
-                 RpcError(ErrorCode::OverLimit, QStringLiteral("frame of %1 bytes, larger than %2, skipped")
-                                                    .arg(size)
-                                                    .arg(frameLimit()))});
+                 RpcError(
+                     ErrorCode::OverLimit,
+                     QString("frame of %1 bytes, larger than %2, skipped").arg(size).arg(frameLimit()))});
             toSkip_ = size;
             frame_ = QByteArray();
         } else if (take(prefixBytes + int(size))) {

@@ -14,10 +14,9 @@ std::vector<CodecFrame> SerialCodec::splitFrames(const QByteArray &bytes) {
     std::vector<CodecFrame> frames;
     for (SerialLink::Arrival &arrival : link_.receive(bytes)) {
         if (arrival.tooLarge)
-            frames.push_back(
-                {{},
-                 RpcError(ErrorCode::OverLimit,
-                          QStringLiteral("message larger than %1 bytes, skipped").arg(frameLimit()))});
+            frames.push_back({{},
+                              RpcError(ErrorCode::OverLimit,
+                                       QString("message larger than %1 bytes, skipped").arg(frameLimit()))});
         else
             frames.push_back({std::move(arrival.message), std::nullopt, 0, arrival.inPieces});
     }

@@ -1,10 +1,8 @@
 #pragma once
 
-#include "protocol/mcap/Contents.h"
-#include "vectorlib/error/Result.h"
+#include "protocol/mcap/Scan.h"
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <set>
 
@@ -15,18 +13,15 @@ namespace hermes::mcap {
 class Reader {
 public:
     /// Fails when it is no regular file, or none of MCAP. path: in UTF-8.
-    static vectorlib::Result<Reader, std::string> open(const std::string &path);
-    Reader(Reader &&) noexcept;
-    Reader &operator=(Reader &&) noexcept;
-    ~Reader();
+    static Outcome<Reader> open(const std::string &path);
 
-    const std::map<std::uint16_t, Schema> &schemas() const { return contents_.schemas; }
-    const std::map<std::uint16_t, Channel> &channels() const { return contents_.channels; }
-    std::uint64_t start_ns() const { return contents_.start_ns; } ///< least log time
-    std::uint64_t end_ns() const { return contents_.end_ns; }     ///< greatest log time
+    const std::map<std::uint16_t, Schema> &schemas() const { return found_.contents.schemas; }
+    const std::map<std::uint16_t, Channel> &channels() const { return found_.contents.channels; }
+    std::uint64_t start_ns() const { return found_.contents.start_ns; } ///< least log time
+    std::uint64_t end_ns() const { return found_.contents.end_ns; }     ///< greatest log time
     /// Messages of each channel.
-    const std::map<std::uint16_t, std::uint64_t> &counts() const { return contents_.counts; }
-    bool isWhole() const { return whole_; } ///< it ended in order
+    const std::map<std::uint16_t, std::uint64_t> &counts() const { return found_.contents.counts; }
+    bool isWhole() const { return found_.whole; } ///< it ended in order
 
     /// Only messages of these channels follow, from where seek() went.
     void select(const std::function<bool(const Channel &)> &wanted);
@@ -38,39 +33,28 @@ public:
     std::optional<Message> next();
 
     /// What could not be read so far; empty: nothing.
-    std::string problem() const;
+    std::string problem() const { return file_.problem(); }
 
 private:
-    struct OpenChunk;
-    struct Source; ///< the file, and what could not be read of it
+    struct OpenChunk {
+        std::string records;
+        /// To give, the next one last: log time, and where the message begins in the records.
+        std::vector<std::pair<std::uint64_t, std::size_t>> messages;
+    };
 
-    Reader();
+    Reader(File file, Found found);
     void openChunks();
-    void openChunk(std::size_t number);
+    void openChunk(const Chunk &told);
     bool isWanted(const Chunk &chunk) const;
 
-    std::unique_ptr<Source> source_;
-    Contents contents_;
-    bool whole_ = false;
-    std::vector<std::size_t> order_; ///< of the chunks, by their least log time
+    File file_;
+    Found found_; ///< its chunks in the order of their least log times
     std::set<std::uint16_t> unwanted_;
     std::uint64_t from_ns_ = 0;
-    std::size_t nextChunk_ = 0; ///< in order_
-    std::vector<OpenChunk> open_;
-    std::optional<std::size_t> given_; ///< of open_: the one whose message was given last
+    std::size_t nextChunk_ = 0;
+    /// By the log time of the next message, and the place in the file.
+    std::map<std::pair<std::uint64_t, std::uint64_t>, OpenChunk> open_;
+    bool given_ = false; ///< the next message of the first of them
 };
-
-/// What repair() found in a file, and what it left there.
-struct Repaired {
-    Contents contents;
-    std::uint64_t bytes = 0;    ///< of the file, now
-    std::uint64_t cutBytes = 0; ///< taken off its end
-    std::string problem;        ///< what could not be read; empty: nothing
-};
-
-/// Cuts a file that was cut off back to its last whole chunk and writes the end that is missing. A file that
-/// ended in order stays as it is. Whenever it is interrupted, it can be called again. Not for a file that is
-/// still written.
-vectorlib::Result<Repaired, std::string> repair(const std::string &path);
 
 } // namespace hermes::mcap

@@ -1,119 +1,94 @@
 #include "protocol/mcap/Scan.h"
 
+#include "protocol/mcap/Records.h"
+
 #include <algorithm>
-#include <zlib.h>
+#include <filesystem>
 
 namespace hermes::mcap {
 
 namespace {
 
-// Schemas and channels of a file, in bytes: a chunk of a few bytes may be unpacked to many.
-constexpr std::uint64_t mostDefinitions = 16 << 20;
 constexpr std::uint64_t largestSummary = 256 << 20;
+constexpr std::uint64_t largestHeader = 4096; // that may be cut off: a longer one is damaged
 
 class Scan {
 public:
-    Scan(File &file, Problems &problems)
-        : file_(file)
-        , problems_(problems) {}
+    explicit Scan(File &file)
+        : file_(file) {}
 
-    bool begin();
-    void readEnd();
+    bool isMcap();
+    bool readEnd();
     void readAll();
     Found &found() { return found_; }
 
 private:
     bool takeSummary(std::string_view records);
-    bool takeStatistics(std::string_view content);
     bool areChunksDisjoint(std::uint64_t end);
-    bool define(const Record &record);
     bool takeNext(std::uint64_t &offset);
-    void accept(std::uint64_t end);
     void takeChunk(std::uint64_t &offset, std::uint64_t bytes);
-    void takeMessages(std::string_view records, Chunk &chunk, std::map<std::uint16_t, std::string> &entries);
+    void accept(std::uint64_t end);
 
     File &file_;
-    Problems &problems_;
     Found found_;
-    std::uint64_t definitions_ = 0;
+    Contents &contents_ = found_.contents;
 };
 
-bool Scan::begin() {
+/// Whether it begins like a file of MCAP, or was cut off before that could be seen.
+bool Scan::isMcap() {
     std::string head;
-    if (!file_.read(0, magic.size() + headBytes, head) || head.compare(0, magic.size(), magic) != 0)
+    if (!file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size() + headBytes), head) ||
+        head.compare(0, magic.size(), magic.substr(0, head.size())) != 0)
         return false;
-    Fields header(std::string_view(head).substr(magic.size()));
-    const auto op = Op(header.number<std::uint8_t>());
-    return op == Op::Header && header.number<std::uint64_t>() <= file_.size() - head.size();
+    std::uint8_t op = std::uint8_t(Op::Header);
+    std::uint64_t length = 0;
+    takeFields(std::string_view(head).substr(std::min(head.size(), magic.size())), op, length);
+    return Op(op) == Op::Header && length <= std::max(file_.size() - head.size(), largestHeader);
 }
 
-/// By footer and summary; found_.whole tells whether they are there.
-void Scan::readEnd() {
+/// By footer and summary. false: they are not there.
+bool Scan::readEnd() {
+    const std::uint64_t footerAt = file_.size() - footerBytes - magic.size(); // huge: the file is too short
     std::string end, summary;
-    const std::uint64_t endBytes = footerBytes + magic.size();
-    if (file_.size() < magic.size() + endBytes)
-        return;
-    const std::uint64_t footerAt = file_.size() - endBytes;
-    if (!file_.read(footerAt, endBytes, end) || end.compare(footerBytes, magic.size(), magic) != 0)
-        return;
-    Fields fields(end);
-    const auto footer = takeRecord(fields);
-    if (!footer || footer->op != Op::Footer || footer->content.size() != footerBytes - headBytes)
-        return;
-    Fields places(footer->content);
-    const auto begin = places.number<std::uint64_t>();
-    places.number<std::uint64_t>(); // where the offsets begin
-    const auto sum = places.number<std::uint32_t>();
-    if (begin == 0) {
-        found_.whole = true;
-        return;
-    }
+    if (!file_.read(footerAt, footerBytes + magic.size(), end) ||
+        end.compare(footerBytes, magic.size(), magic) != 0)
+        return false;
+    RecordCursor footer(end);
+    std::uint64_t begin = 0, offsets = 0;
+    std::uint32_t sum = 0;
+    if (!footer.next() || footer.op != Op::Footer || footer.content.size() != footerBytes - headBytes ||
+        !takeFields(footer.content, begin, offsets, sum))
+        return false;
+    if (begin == 0) // there is no summary
+        return true;
     if (begin > footerAt || footerAt - begin > largestSummary ||
         !file_.read(begin, footerAt - begin, summary))
-        return problems_.add(footerAt, "the summary is not where the footer tells");
-    const auto crc = [](uLong before, std::string_view bytes) {
-        return crc32(before, reinterpret_cast<const Bytef *>(bytes.data()), uInt(bytes.size()));
-    };
-    if (sum != 0 && sum != crc(crc(0, summary), std::string_view(end).substr(0, footerBytes - 4)))
-        return problems_.add(begin, "the sum of the summary is wrong");
-    found_.whole = takeSummary(summary) && areChunksDisjoint(begin);
-    if (!found_.whole)
-        problems_.add(begin, "the summary is damaged");
+        return file_.note(footerAt, "the summary is not where the footer tells");
+    if (sum != 0 && sum != sumOf(std::string_view(end).substr(0, footerBytes - 4), sumOf(summary)))
+        return file_.note(begin, "the sum of the summary is wrong");
+    return (takeSummary(summary) && areChunksDisjoint(begin)) || file_.note(begin, "the summary is damaged");
 }
 
 bool Scan::takeSummary(std::string_view records) {
-    Fields left(records);
-    while (const auto record = takeRecord(left)) {
-        if (record->op == Op::Schema || record->op == Op::Channel) {
-            if (!define(*record))
-                return false;
-        } else if (record->op == Op::Statistics) {
-            if (!takeStatistics(record->content))
-                return false;
-        } else if (record->op == Op::ChunkIndex) {
-            auto chunk = toChunk(record->content);
-            if (!chunk)
-                return false;
-            found_.contents.add(std::move(*chunk));
+    RecordCursor record(records);
+    bool isSound = true;
+    while (isSound && record.next()) {
+        isSound = define(contents_, record.op, record.content);
+        if (record.op == Op::Statistics) {
+            const std::size_t countsAt = std::min<std::size_t>(record.content.size(), 8 + 2 + 4 * 4 + 8 + 8);
+            isSound = takeFields(record.content.substr(countsAt), contents_.counts);
+        } else if (record.op == Op::ChunkIndex) {
+            Chunk chunk;
+            isSound = take(record.content, chunk);
+            contents_.add(std::move(chunk));
         }
     }
-    return left.ok();
-}
-
-bool Scan::takeStatistics(std::string_view content) {
-    Fields fields(content);
-    fields.bytes(8 + 2 + 4 * 4 + 8 + 8); // all but the map can be counted
-    Fields counts(fields.text());
-    while (!counts.left().empty()) {
-        const auto channel = counts.number<std::uint16_t>();
-        found_.contents.counts[channel] = counts.number<std::uint64_t>();
-    }
-    return fields.ok() && counts.ok();
+    return isSound && !record.isCut();
 }
 
 /// So that no bytes of the file are unpacked more than once.
 bool Scan::areChunksDisjoint(std::uint64_t end) {
-    auto &chunks = found_.contents.chunks;
+    auto &chunks = contents_.chunks;
     std::sort(chunks.begin(), chunks.end(),
               [](const Chunk &a, const Chunk &b) { return a.offset < b.offset; });
     std::uint64_t free = 0;
@@ -125,130 +100,112 @@ bool Scan::areChunksDisjoint(std::uint64_t end) {
     return true;
 }
 
-/// The first of an id counts.
-bool Scan::define(const Record &record) {
-    auto &[schemas, channels, counts, chunks, start, end] = found_.contents;
-    definitions_ += record.content.size();
-    if (definitions_ > mostDefinitions)
-        return false;
-    if (record.op == Op::Schema) {
-        auto schema = toSchema(record.content);
-        return schema && (schemas.emplace(schema->id, std::move(*schema)), true);
-    }
-    auto channel = toChannel(record.content);
-    return channel && (channels.emplace(channel->id, std::move(*channel)), true);
-}
-
 void Scan::readAll() {
-    found_.contents = {};
-    definitions_ = 0;
+    contents_ = {};
+    found_.missing = beginning("hermes");
     std::uint64_t offset = magic.size();
     while (takeNext(offset)) {
     }
-    if (!found_.whole && found_.cut < file_.size())
-        problems_.add(found_.cut, "no whole record follows; " + std::to_string(file_.size() - found_.cut) +
-                                      " bytes are lost");
+    if (!found_.whole && (found_.bytes == 0 || found_.bytes < file_.size()))
+        file_.note(found_.bytes, "no whole record follows; " + std::to_string(file_.size() - found_.bytes) +
+                                     " bytes are lost");
 }
 
 /// false: the data end, in order or not.
 bool Scan::takeNext(std::uint64_t &offset) {
+    const std::uint64_t at = offset;
     std::string record;
-    if (!file_.read(offset, headBytes, record))
+    std::uint8_t first = 0;
+    std::uint64_t length = 0;
+    if (!file_.read(at, headBytes, record) || !takeFields(record, first, length))
         return false;
-    Fields head(record);
-    const auto op = Op(head.number<std::uint8_t>());
-    const auto length = head.number<std::uint64_t>();
-    const std::uint64_t left = file_.size() - offset - headBytes;
-    if (op == Op(0) || op == Op::DataEnd || op == Op::Footer || length > left)
+    const auto op = Op(first);
+    if (op == Op(0) || op == Op::DataEnd || op == Op::Footer || length > file_.size() - at - headBytes)
         return false;
+    offset += headBytes + length;
     if (op == Op::Chunk) {
         takeChunk(offset, headBytes + length);
-        return true;
+    } else if (op != Op::MessageIndex) { // one here is of a chunk that is damaged
+        if (op == Op::Message)
+            file_.note(at, "a message outside of a chunk");
+        const bool isDefinition = op == Op::Schema || op == Op::Channel;
+        if (isDefinition && !(length <= mostDefinitions && file_.read(at + headBytes, length, record) &&
+                              define(contents_, op, record)))
+            file_.note(at, "the schema or channel is damaged");
+        accept(offset);
     }
-    const std::uint64_t at = offset;
-    offset += headBytes + length;
-    if (op == Op::MessageIndex)
-        return true; // of a chunk that is damaged
-    if (op == Op::Message)
-        problems_.add(at, "a message outside of a chunk");
-    if (op == Op::Schema || op == Op::Channel) {
-        const bool isRead = length <= mostDefinitions && file_.read(at + headBytes, length, record);
-        if (!isRead || !define({op, record}))
-            problems_.add(at, "the schema or channel is damaged");
-    }
-    accept(offset);
     return true;
+}
+
+/// offset: where the chunk ends; then, where its indexes end that are there.
+void Scan::takeChunk(std::uint64_t &offset, std::uint64_t bytes) {
+    IndexedChunk chunk;
+    chunk.offset = offset - bytes;
+    chunk.bytes = bytes;
+    std::string records, there;
+    if (!file_.load(chunk, records))
+        return;
+    RecordCursor record(records);
+    bool isSound = true;
+    while (record.next())
+        isSound = define(contents_, record.op, record.content) && isSound;
+    const auto add = [&](const Message &message, std::size_t at) { chunk.add(message, at); };
+    if (!eachMessage(contents_, records, add) || !isSound)
+        file_.note(chunk.offset, "the chunk has damaged records, or some of no known channel");
+    accept(offset);
+    if (chunk.entries.empty())
+        return;
+    found_.missing = chunk.indexesAt(offset);
+    contents_.add(chunk);
+    if (file_.read(offset, chunk.indexBytes, there) && there == found_.missing) {
+        found_.missing.clear();
+        accept(offset += chunk.indexBytes);
+    }
 }
 
 /// What ends there stays in a file that is mended.
 void Scan::accept(std::uint64_t end) {
-    if (!found_.indexes.empty()) { // they cannot be put between records any more
-        found_.contents.chunks.back().indexes.clear();
-        found_.contents.chunks.back().indexBytes = 0;
-        found_.indexes.clear();
+    if (!found_.missing.empty() && !contents_.chunks.empty()) { // cannot be put between records any more
+        contents_.chunks.back().indexes.clear();
+        contents_.chunks.back().indexBytes = 0;
     }
-    found_.cut = end;
-}
-
-void Scan::takeChunk(std::uint64_t &offset, std::uint64_t bytes) {
-    Chunk chunk;
-    chunk.offset = offset;
-    chunk.bytes = bytes;
-    offset += bytes;
-    std::string records;
-    if (const auto loaded = loadChunk(file_, chunk, records); !loaded)
-        return problems_.add(chunk.offset, loaded.error());
-    std::map<std::uint16_t, std::string> entries;
-    takeMessages(records, chunk, entries);
-    accept(offset);
-    if (entries.empty())
-        return;
-    std::string there;
-    putIndexes(found_.indexes, entries, offset, chunk);
-    if (file_.read(offset, chunk.indexBytes, there) && there == found_.indexes) {
-        found_.indexes.clear();
-        found_.cut = offset += chunk.indexBytes;
-    }
-    found_.contents.add(std::move(chunk));
-}
-
-void Scan::takeMessages(std::string_view records, Chunk &chunk,
-                        std::map<std::uint16_t, std::string> &entries) {
-    Fields left(records);
-    bool isSound = true;
-    for (std::uint64_t at = 0; const auto record = takeRecord(left);
-         at = records.size() - left.left().size()) {
-        if (record->op == Op::Schema || record->op == Op::Channel)
-            isSound = define(*record) && isSound;
-        if (record->op != Op::Message)
-            continue;
-        const auto message = toMessage(record->content);
-        if (!message || found_.contents.channels.count(message->channel) == 0) {
-            isSound = false;
-            continue;
-        }
-        const std::uint64_t time_ns = message->logTime_ns;
-        chunk.start_ns = entries.empty() ? time_ns : std::min(chunk.start_ns, time_ns);
-        chunk.end_ns = entries.empty() ? time_ns : std::max(chunk.end_ns, time_ns);
-        std::string &entry = entries[message->channel];
-        putNumber(entry, time_ns);
-        putNumber(entry, at);
-        ++found_.contents.counts[message->channel];
-    }
-    if (!isSound || !left.ok())
-        problems_.add(chunk.offset, "the chunk has damaged records, or some of no known channel");
+    found_.missing.clear();
+    found_.bytes = end;
 }
 
 } // namespace
 
-Outcome<Found> readContents(File &file, Problems &problems) {
-    Scan scan(file, problems);
-    if (!scan.begin())
+Outcome<Found> readContents(File &file) {
+    Scan scan(file);
+    if (!scan.isMcap())
         return file.path() + ": found no header, expected an MCAP file";
-    scan.readEnd();
+    scan.found().whole = scan.readEnd();
     if (!scan.found().whole || scan.found().contents.chunks.empty())
         scan.readAll();
+    if (scan.found().whole)
+        scan.found().bytes = file.size();
+    scan.found().problem = file.problem();
     return std::move(scan.found());
+}
+
+Outcome<Found> repair(const std::string &path) {
+    auto file = File::open(path);
+    if (!file)
+        return file.error();
+    auto found = readContents(*file);
+    if (!found || found->whole)
+        return found;
+    const std::string end = found->missing + ending(found->contents, found->bytes + found->missing.size());
+    const auto name = std::filesystem::u8path(path);
+    std::error_code error;
+    std::filesystem::resize_file(name, found->bytes, error);
+    if (error)
+        return path + ": cannot be cut: " + error.message();
+    std::ofstream stream(name, std::ios::binary | std::ios::app);
+    if (!stream.write(end.data(), std::streamsize(end.size())).flush())
+        return path + ": its end cannot be written";
+    found->bytes += end.size();
+    return found;
 }
 
 } // namespace hermes::mcap

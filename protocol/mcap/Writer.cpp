@@ -1,8 +1,8 @@
 #include "protocol/mcap/Writer.h"
+
 #include "protocol/mcap/Records.h"
 
 #include <algorithm>
-#include <zlib.h>
 #include <zstd.h>
 
 namespace hermes::mcap {
@@ -13,42 +13,35 @@ constexpr int zstdLevel = 1; // the fastest: a robot has little to spare
 
 } // namespace
 
-Writer::Writer(Sink sink, std::string library, std::size_t chunkBytes)
+Writer::Writer(Sink sink, const std::string &library, std::size_t chunkBytes)
     : sink_(std::move(sink))
     , chunkBytes_(std::min<std::size_t>(chunkBytes, largestChunk))
     , packer_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
-    std::string begin(magic);
-    {
-        const PutRecord record(begin, Op::Header);
-        putText(begin, ""); // no profile
-        putText(begin, library);
-    }
-    give(begin);
+    give(beginning(library));
 }
 
 std::uint16_t Writer::addSchema(std::string name, std::string encoding, std::string data) {
     const auto id = std::uint16_t(contents_.schemas.size() + 1);
-    if (id == 0)
-        return 0;
-    const Schema &schema =
-        contents_.schemas[id] = {id, std::move(name), std::move(encoding), std::move(data)};
-    std::string record;
-    put(record, schema);
-    give(record);
-    return id;
+    return add(Op::Schema, Schema{id, std::move(name), std::move(encoding), std::move(data)});
 }
 
 std::uint16_t Writer::addChannel(std::uint16_t schema, std::string topic, std::string encoding,
                                  std::map<std::string, std::string> metadata) {
     const auto id = std::uint16_t(contents_.channels.size() + 1);
-    if (id == 0 || (schema != 0 && contents_.schemas.count(schema) == 0))
+    if (schema != 0 && contents_.schemas.count(schema) == 0)
         return 0;
-    const Channel &channel =
-        contents_.channels[id] = {id, schema, std::move(topic), std::move(encoding), std::move(metadata)};
+    return add(Op::Channel, Channel{id, schema, std::move(topic), std::move(encoding), std::move(metadata)});
+}
+
+/// Its id, or 0.
+template <typename T>
+std::uint16_t Writer::add(Op op, const T &definition) {
     std::string record;
-    put(record, channel);
+    put(record, op, definition);
+    if (definition.id == 0 || !define(contents_, op, std::string_view(record).substr(headBytes)))
+        return 0;
     give(record);
-    return id;
+    return definition.id;
 }
 
 bool Writer::write(const Message &message) {
@@ -58,14 +51,8 @@ bool Writer::write(const Message &message) {
         closeChunk();
     if (ended_)
         return false;
-    const std::uint64_t time_ns = message.logTime_ns;
-    chunk_.start_ns = records_.empty() ? time_ns : std::min(chunk_.start_ns, time_ns);
-    chunk_.end_ns = records_.empty() ? time_ns : std::max(chunk_.end_ns, time_ns);
-    std::string &index = indexes_[message.channel];
-    putNumber(index, time_ns);
-    putNumber(index, std::uint64_t(records_.size()));
-    put(records_, message);
-    ++contents_.counts[message.channel];
+    chunk_.add(message, records_.size());
+    put(records_, Op::Message, message);
     return records_.size() < chunkBytes_ || closeChunk();
 }
 
@@ -83,22 +70,13 @@ bool Writer::closeChunk() {
     chunk_.unpackedBytes = records_.size();
     chunk_.offset = bytes_;
     std::string out;
-    {
-        const PutRecord record(out, Op::Chunk);
-        for (const std::uint64_t value : {chunk_.start_ns, chunk_.end_ns, chunk_.unpackedBytes})
-            putNumber(out, value);
-        const auto *const bytes = reinterpret_cast<const Bytef *>(records_.data());
-        putNumber(out, std::uint32_t(crc32(0, bytes, uInt(records_.size()))));
-        putText(out, chunk_.compression);
-        putNumber(out, chunk_.packedBytes);
-        out += stored;
-    }
+    putRecord(out, Op::Chunk, chunk_.start_ns, chunk_.end_ns, chunk_.unpackedBytes, sumOf(records_),
+              chunk_.compression, chunk_.packedBytes, stored);
     chunk_.bytes = out.size();
-    putIndexes(out, indexes_, bytes_ + out.size(), chunk_);
-    contents_.add(std::move(chunk_));
+    out += chunk_.indexesAt(bytes_ + out.size());
+    contents_.add(chunk_);
     chunk_ = {};
     records_.clear();
-    indexes_.clear();
     return give(out);
 }
 

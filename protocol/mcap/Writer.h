@@ -9,6 +9,8 @@ struct ZSTD_CCtx_s;
 
 namespace hermes::mcap {
 
+enum class Op : std::uint8_t;
+
 /// Makes an MCAP file, with an index, of messages. Its chunks are packed by zstd. Source: specification of
 /// MCAP, https://mcap.dev/spec.
 class Writer {
@@ -18,11 +20,11 @@ public:
 
     /// library: who writes the file. chunkBytes: a chunk with as many is closed; it has more if a single
     /// message has.
-    Writer(Sink sink, std::string library, std::size_t chunkBytes = 1 << 20);
+    Writer(Sink sink, const std::string &library, std::size_t chunkBytes = 1 << 20);
 
-    /// The id of the new schema; 0: there are no more ids.
+    /// The id of the new schema; 0: there are no more ids, or more than mostDefinitions.
     std::uint16_t addSchema(std::string name, std::string encoding, std::string data);
-    /// The id of the new channel; 0: there are no more ids, or no such schema. schema: 0 for none.
+    /// The id of the new channel; 0: as of a schema, or there is no such schema. schema: 0 for none.
     std::uint16_t addChannel(std::uint16_t schema, std::string topic, std::string encoding,
                              std::map<std::string, std::string> metadata);
     /// false: the sink failed, there is no such channel, or the message is larger than largestMessage.
@@ -37,6 +39,8 @@ public:
     static constexpr std::size_t largestMessage = largestChunk - 4096;
 
 private:
+    template <typename T>
+    std::uint16_t add(Op op, const T &definition);
     bool give(std::string_view records);
 
     Sink sink_;
@@ -45,8 +49,7 @@ private:
     std::uint64_t bytes_ = 0;
     Contents contents_;
     std::string records_; ///< of the chunk that is collected
-    Chunk chunk_;
-    std::map<std::uint16_t, std::string> indexes_; ///< of each of its channels: log times and offsets
+    IndexedChunk chunk_;
     std::string packed_;
     std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s *)> packer_;
 };

@@ -41,9 +41,9 @@ struct ProcessesMessage {
     std::vector<ProcessStatus> processes;
 };
 
-const Fields<ProcessEntry> &fieldsOf(Of<ProcessEntry>);
-const Fields<ProcessStatus> &fieldsOf(Of<ProcessStatus>);
-const Fields<ProcessesMessage> &fieldsOf(Of<ProcessesMessage>);
+Fields<ProcessEntry> fieldsOf(Of<ProcessEntry>);
+Fields<ProcessStatus> fieldsOf(Of<ProcessStatus>);
+Fields<ProcessesMessage> fieldsOf(Of<ProcessesMessage>);
 
 /// What tells a robot from all others: its id, a UUID, whatever people call it.
 struct RobotIdentity {
@@ -115,15 +115,15 @@ struct SubscriptionAnswer {
     quint64 subscription = 0;
 };
 
-const Fields<RobotIdentity> &fieldsOf(Of<RobotIdentity>);
-const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>);
-const Fields<HealthItem> &fieldsOf(Of<HealthItem>);
-const Fields<DaemonStatus> &fieldsOf(Of<DaemonStatus>);
-const Fields<LogMessage> &fieldsOf(Of<LogMessage>);
-const Fields<CommandMessage> &fieldsOf(Of<CommandMessage>);
-const Fields<SettingsChange> &fieldsOf(Of<SettingsChange>);
-const Fields<SavedSettings> &fieldsOf(Of<SavedSettings>);
-const Fields<TopicDescription> &fieldsOf(Of<TopicDescription>);
-const Fields<SubscriptionAnswer> &fieldsOf(Of<SubscriptionAnswer>);
+Fields<RobotIdentity> fieldsOf(Of<RobotIdentity>);
+Fields<DaemonInfo> fieldsOf(Of<DaemonInfo>);
+Fields<HealthItem> fieldsOf(Of<HealthItem>);
+Fields<DaemonStatus> fieldsOf(Of<DaemonStatus>);
+Fields<LogMessage> fieldsOf(Of<LogMessage>);
+Fields<CommandMessage> fieldsOf(Of<CommandMessage>);
+Fields<SettingsChange> fieldsOf(Of<SettingsChange>);
+Fields<SavedSettings> fieldsOf(Of<SavedSettings>);
+Fields<TopicDescription> fieldsOf(Of<TopicDescription>);
+Fields<SubscriptionAnswer> fieldsOf(Of<SubscriptionAnswer>);
 
 } // namespace hermes

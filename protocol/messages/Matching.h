@@ -48,9 +48,9 @@ struct ScanResult {
     SegmentsMessage segments;
 };
 
-const Fields<PoseMessage> &fieldsOf(Of<PoseMessage>);
-const Fields<StepTimes> &fieldsOf(Of<StepTimes>);
-const Fields<MatchMessage> &fieldsOf(Of<MatchMessage>);
-const Fields<ScanResult> &fieldsOf(Of<ScanResult>);
+Fields<PoseMessage> fieldsOf(Of<PoseMessage>);
+Fields<StepTimes> fieldsOf(Of<StepTimes>);
+Fields<MatchMessage> fieldsOf(Of<MatchMessage>);
+Fields<ScanResult> fieldsOf(Of<ScanResult>);
 
 } // namespace hermes

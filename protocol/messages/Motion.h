@@ -32,9 +32,9 @@ struct TruthMessage {
     bool touching = false;
 };
 
-const Fields<Pose2D> &fieldsOf(Of<Pose2D>);
-const Fields<Twist2D> &fieldsOf(Of<Twist2D>);
-const Fields<OdometryMessage> &fieldsOf(Of<OdometryMessage>);
-const Fields<TruthMessage> &fieldsOf(Of<TruthMessage>);
+Fields<Pose2D> fieldsOf(Of<Pose2D>);
+Fields<Twist2D> fieldsOf(Of<Twist2D>);
+Fields<OdometryMessage> fieldsOf(Of<OdometryMessage>);
+Fields<TruthMessage> fieldsOf(Of<TruthMessage>);
 
 } // namespace hermes

@@ -62,11 +62,11 @@ struct PowerMessage {
     BatteryState battery;
 };
 
-const Fields<LeaseState> &fieldsOf(Of<LeaseState>);
-const Fields<MotionHold> &fieldsOf(Of<MotionHold>);
-const Fields<StandConfirmation> &fieldsOf(Of<StandConfirmation>);
-const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>);
-const Fields<BatteryState> &fieldsOf(Of<BatteryState>);
-const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>);
+Fields<LeaseState> fieldsOf(Of<LeaseState>);
+Fields<MotionHold> fieldsOf(Of<MotionHold>);
+Fields<StandConfirmation> fieldsOf(Of<StandConfirmation>);
+Fields<ControllerPower> fieldsOf(Of<ControllerPower>);
+Fields<BatteryState> fieldsOf(Of<BatteryState>);
+Fields<PowerMessage> fieldsOf(Of<PowerMessage>);
 
 } // namespace hermes

@@ -26,7 +26,7 @@ struct RecordingStatus {
     std::optional<double> freeBytes;
     std::optional<RecordingError> error;
     std::optional<QString> name, session, folder, path;
-    std::optional<double> start, bytes;
+    std::optional<double> start, duration_s, bytes; ///< duration: so far, by a clock that never jumps
     std::optional<qint64> files;
     std::optional<NamedCounts> counts, losses;
 };
@@ -36,8 +36,10 @@ struct RecordingEntry {
     QString name;
     std::optional<QString> folder, session;
     std::optional<QStringList> loggers;
-    std::optional<double> start;
+    std::optional<double> start, start_mono;
+    std::optional<QString> boot;
     std::optional<std::optional<double>> end; ///< nothing: not yet
+    std::optional<double> duration_s;         ///< by a clock that never jumps; only where it has ended
     std::optional<std::optional<QString>> ended;
     std::optional<bool> complete;
     std::optional<qint64> files;
@@ -57,9 +59,9 @@ struct SourceStatus {
     std::optional<QString> error;
 };
 
-const Fields<RecordingError> &fieldsOf(Of<RecordingError>);
-const Fields<RecordingStatus> &fieldsOf(Of<RecordingStatus>);
-const Fields<RecordingEntry> &fieldsOf(Of<RecordingEntry>);
-const Fields<SourceStatus> &fieldsOf(Of<SourceStatus>);
+Fields<RecordingError> fieldsOf(Of<RecordingError>);
+Fields<RecordingStatus> fieldsOf(Of<RecordingStatus>);
+Fields<RecordingEntry> fieldsOf(Of<RecordingEntry>);
+Fields<SourceStatus> fieldsOf(Of<SourceStatus>);
 
 } // namespace hermes

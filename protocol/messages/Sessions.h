@@ -52,11 +52,12 @@ struct SessionState {
 /// Of what session.list gives a list, the latest first.
 struct SessionSummary {
     QString name, session;
-    double start = 0;          ///< s since the epoch
-    std::optional<double> end; ///< the same; nothing: it goes on
-    double bytes = 0;          ///< of all parts
-    QStringList daemons;       ///< that have a part of it
-    QStringList problems;      ///< "velodynelogger: cut off"
+    double start = 0;                      ///< s since the epoch
+    std::optional<double> end;             ///< the same; nothing: it goes on
+    double bytes = 0;                      ///< of all parts
+    QStringList daemons;                   ///< that have a part of it
+    QStringList problems;                  ///< "velodynelogger: cut off"
+    std::optional<double> duration_s = {}; ///< by a clock that never jumps; nothing: it goes on
 };
 
 /// A topic of a session, in its MCAP files.
@@ -89,14 +90,14 @@ struct SessionFiles {
     QStringList paths;
 };
 
-const Fields<SessionText> &fieldsOf(Of<SessionText>);
-const Fields<SessionFiles> &fieldsOf(Of<SessionFiles>);
-const Fields<SessionPart> &fieldsOf(Of<SessionPart>);
-const Fields<SessionMark> &fieldsOf(Of<SessionMark>);
-const Fields<SessionReplay> &fieldsOf(Of<SessionReplay>);
-const Fields<SessionState> &fieldsOf(Of<SessionState>);
-const Fields<SessionSummary> &fieldsOf(Of<SessionSummary>);
-const Fields<SessionTopic> &fieldsOf(Of<SessionTopic>);
-const Fields<SessionInfo> &fieldsOf(Of<SessionInfo>);
+Fields<SessionText> fieldsOf(Of<SessionText>);
+Fields<SessionFiles> fieldsOf(Of<SessionFiles>);
+Fields<SessionPart> fieldsOf(Of<SessionPart>);
+Fields<SessionMark> fieldsOf(Of<SessionMark>);
+Fields<SessionReplay> fieldsOf(Of<SessionReplay>);
+Fields<SessionState> fieldsOf(Of<SessionState>);
+Fields<SessionSummary> fieldsOf(Of<SessionSummary>);
+Fields<SessionTopic> fieldsOf(Of<SessionTopic>);
+Fields<SessionInfo> fieldsOf(Of<SessionInfo>);
 
 } // namespace hermes

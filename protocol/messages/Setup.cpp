@@ -4,97 +4,69 @@
 
 namespace hermes {
 
-const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>) {
+Fields<FoundSerial> fieldsOf(Of<FoundSerial>) {
     using S = FoundSerial;
-    static const auto fields =
-        Fields<S>()
-            .add("path", &S::path, "A name that stays the same, where there is one")
-            .add("device", &S::device, "Its name of today")
-            .add("about", &S::about, "What the system knows of the adapter, or empty")
-            .mayBeMissing()
-            .add("kind", &S::kind,
-                 "A RoboClaw; NMEA sentences; something else that talks by itself; something that answers, "
-                 "but not as a RoboClaw; silent, also when asked; silent and not asked; in use by another "
-                 "program, and left alone; cannot be opened")
-            .choices(S::kinds())
-            .add("text", &S::text, "The version of a controller, a sentence, or why there is nothing")
-            .mayBeMissing()
-            .add("baud", &S::baud, "At which it was understood; 0: it was not")
-            .mayBeMissing()
-            .add("addresses", &S::addresses, "At which a controller answered, 128 to 135")
-            .mayBeMissing()
-            .add("any_address", &S::anyAddress, "It answers at all of them, as a controller on USB does")
-            .mayBeMissing()
-            .add("simulated", &S::simulated, "A process of the supervisor is at the far end")
-            .mayBeMissing();
-    return fields;
+    return Fields<S>()
+        .add("path", &S::path, "A name that stays the same, where there is one")
+        .add("device", &S::device, "Its name of today")
+        .addMaybe("about", &S::about, "What the system knows of the adapter, or empty")
+        .add("kind", &S::kind,
+             "A RoboClaw; NMEA sentences; something else that talks by itself; something that answers, "
+             "but not as a RoboClaw; silent, also when asked; silent and not asked; in use by another "
+             "program, and left alone; cannot be opened")
+        .choices(S::kinds())
+        .addMaybe("text", &S::text, "The version of a controller, a sentence, or why there is nothing")
+        .addMaybe("baud", &S::baud, "At which it was understood; 0: it was not")
+        .addMaybe("addresses", &S::addresses, "At which a controller answered, 128 to 135")
+        .addMaybe("any_address", &S::anyAddress, "It answers at all of them, as a controller on USB does")
+        .addMaybe("simulated", &S::simulated, "A process of the supervisor is at the far end");
 }
 
-const Fields<FoundLidar> &fieldsOf(Of<FoundLidar>) {
+Fields<FoundLidar> fieldsOf(Of<FoundLidar>) {
     using L = FoundLidar;
-    static const auto fields =
-        Fields<L>()
-            .add("address", &L::address, "Whence its packets came")
-            .add("model", &L::model, "As VLP-16; empty: an unknown one")
-            .add("key", &L::key, "As the setting decode.model has it; empty: an unknown one")
-            .mayBeMissing()
-            .add("port", &L::port, "UDP port at which they came")
-            .add("rate_hz", &L::rate_hz, "Data packets a second", "Hz")
-            .mayBeMissing()
-            .add("positions", &L::positions, "It sends position packets, too")
-            .mayBeMissing()
-            .add("simulated", &L::simulated, "It is the simulator of the supervisor")
-            .mayBeMissing();
-    return fields;
+    return Fields<L>()
+        .add("address", &L::address, "Whence its packets came")
+        .add("model", &L::model, "As VLP-16; empty: an unknown one")
+        .addMaybe("key", &L::key, "As the setting decode.model has it; empty: an unknown one")
+        .add("port", &L::port, "UDP port at which they came")
+        .addMaybe("rate_hz", &L::rate_hz, "Data packets a second", "Hz")
+        .addMaybe("positions", &L::positions, "It sends position packets, too")
+        .addMaybe("simulated", &L::simulated, "It is the simulator of the supervisor");
 }
 
-const Fields<Findings> &fieldsOf(Of<Findings>) {
+Fields<Findings> fieldsOf(Of<Findings>) {
     using F = Findings;
-    static const auto fields =
-        Fields<F>()
-            .add("serial", &F::serial, "The serial lines of this computer")
-            .add("lidars", &F::lidars, "Whose packets came")
-            .add("problems", &F::problems, "What could not be looked for, and why")
-            .mayBeMissing()
-            .add("restarted", &F::restarted, "Processes that were stopped for it and started again")
-            .mayBeMissing();
-    return fields;
+    return Fields<F>()
+        .add("serial", &F::serial, "The serial lines of this computer")
+        .add("lidars", &F::lidars, "Whose packets came")
+        .addMaybe("problems", &F::problems, "What could not be looked for, and why")
+        .addMaybe("restarted", &F::restarted, "Processes that were stopped for it and started again");
 }
 
-const Fields<SettingChange> &fieldsOf(Of<SettingChange>) {
+Fields<SettingChange> fieldsOf(Of<SettingChange>) {
     using C = SettingChange;
-    static const auto fields =
-        Fields<C>()
-            .add("daemon", &C::daemon, "Whose settings file")
-            .add("path", &C::path, "Of the setting, as controllers.1.url")
-            .add("now", &C::now, "Its value in the file, as JSON; empty: the default holds")
-            .mayBeMissing()
-            .add("value", &C::value, "That it would have; empty: the default")
-            .mayBeMissing();
-    return fields;
+    return Fields<C>()
+        .add("daemon", &C::daemon, "Whose settings file")
+        .add("path", &C::path, "Of the setting, as controllers.1.url")
+        .addMaybe("now", &C::now, "Its value in the file, as JSON; empty: the default holds")
+        .addMaybe("value", &C::value, "That it would have; empty: the default");
 }
 
-const Fields<Proposal> &fieldsOf(Of<Proposal>) {
+Fields<Proposal> fieldsOf(Of<Proposal>) {
     using P = Proposal;
-    static const auto fields =
-        Fields<P>()
-            .add("settings", &P::settings,
-                 "By daemons: what changes in the settings of each, or in those of the sample")
-            .add("changes", &P::changes, "All that would differ in the settings files")
-            .mayBeMissing()
-            .add("notes", &P::notes, "What a person should know of it");
-    return fields;
+    return Fields<P>()
+        .add("settings", &P::settings,
+             "By daemons: what changes in the settings of each, or in those of the sample")
+        .addMaybe("changes", &P::changes, "All that would differ in the settings files")
+        .add("notes", &P::notes, "What a person should know of it");
 }
 
-const Fields<Applied> &fieldsOf(Of<Applied>) {
+Fields<Applied> fieldsOf(Of<Applied>) {
     using A = Applied;
-    static const auto fields =
-        Fields<A>()
-            .add("files", &A::files, "That were written")
-            .add("restarted", &A::restarted, "Processes that ran, or start with the supervisor")
-            .add("notes", &A::notes, "What a person should know of it")
-            .mayBeMissing();
-    return fields;
+    return Fields<A>()
+        .add("files", &A::files, "That were written")
+        .add("restarted", &A::restarted, "Processes that ran, or start with the supervisor")
+        .addMaybe("notes", &A::notes, "What a person should know of it");
 }
 
 } // namespace hermes

@@ -66,11 +66,11 @@ struct Applied {
     QStringList notes;     ///< what a person should know of it
 };
 
-const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>);
-const Fields<FoundLidar> &fieldsOf(Of<FoundLidar>);
-const Fields<Findings> &fieldsOf(Of<Findings>);
-const Fields<SettingChange> &fieldsOf(Of<SettingChange>);
-const Fields<Proposal> &fieldsOf(Of<Proposal>);
-const Fields<Applied> &fieldsOf(Of<Applied>);
+Fields<FoundSerial> fieldsOf(Of<FoundSerial>);
+Fields<FoundLidar> fieldsOf(Of<FoundLidar>);
+Fields<Findings> fieldsOf(Of<Findings>);
+Fields<SettingChange> fieldsOf(Of<SettingChange>);
+Fields<Proposal> fieldsOf(Of<Proposal>);
+Fields<Applied> fieldsOf(Of<Applied>);
 
 } // namespace hermes

@@ -18,6 +18,8 @@ struct TurnHeader {
     quint64 lostPackets = 0;
     QString frame;
     bool replayed = false;
+    std::optional<QString> clock; ///< that the stamp is of: gps, host, or the sensor's own
+    std::optional<double> clockError_s;
 };
 
 /// The topic `scan2d`: the points of one laser in one turn, COUNTER-CLOCKWISE, as the vector library wants
@@ -42,8 +44,8 @@ struct CloudMessage {
     std::vector<quint8> intensity;
 };
 
-const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>);
-const Fields<ScanMessage> &fieldsOf(Of<ScanMessage>);
-const Fields<CloudMessage> &fieldsOf(Of<CloudMessage>);
+Fields<TurnHeader> fieldsOf(Of<TurnHeader>);
+Fields<ScanMessage> fieldsOf(Of<ScanMessage>);
+Fields<CloudMessage> fieldsOf(Of<CloudMessage>);
 
 } // namespace hermes

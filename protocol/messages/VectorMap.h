@@ -27,8 +27,8 @@ struct GraphMessage {
     qint64 size = 0;
 };
 
-const Fields<GraphLoop> &fieldsOf(Of<GraphLoop>);
-const Fields<GraphMessage> &fieldsOf(Of<GraphMessage>);
+Fields<GraphLoop> fieldsOf(Of<GraphLoop>);
+Fields<GraphMessage> fieldsOf(Of<GraphMessage>);
 
 /// An edge of the vector map: free space on its left.
 struct MapEdgeMessage {
@@ -49,7 +49,7 @@ struct MapMessage {
     qint64 map = 0;
 };
 
-const Fields<MapEdgeMessage> &fieldsOf(Of<MapEdgeMessage>);
-const Fields<MapMessage> &fieldsOf(Of<MapMessage>);
+Fields<MapEdgeMessage> fieldsOf(Of<MapEdgeMessage>);
+Fields<MapMessage> fieldsOf(Of<MapMessage>);
 
 } // namespace hermes

@@ -36,7 +36,7 @@ std::int64_t StampClock::absolute(std::uint32_t stamp_us, std::int64_t receive_n
 }
 
 void StampClock::follow(std::int64_t utc_ns) {
-    following_ = true;
+    following_ = isSet_ = true;
     last_ns_ = utc_ns;
 }
 

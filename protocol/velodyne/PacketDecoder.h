@@ -19,11 +19,14 @@ public:
     void follow(std::int64_t utc_ns);
     /// It tells it no longer.
     void release() { following_ = false; }
+    /// A GPS has told the time since the last reset().
+    bool isSet() const { return isSet_; }
     void reset() { *this = StampClock(); }
 
 private:
     bool started_ = false;
     bool following_ = false;
+    bool isSet_ = false;
     std::int64_t last_ns_ = 0;   ///< stamp, or what the GPS told
     std::int64_t offset_ns_ = 0; ///< of the last stamp from its receive time
 };

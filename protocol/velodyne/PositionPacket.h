@@ -72,6 +72,8 @@ public:
     /// Takes the payload of a position packet. A wrong one changes nothing but the counts.
     PositionFault feed(const std::uint8_t *bytes, std::size_t size);
 
+    /// The sensor was started anew: what its last packet told is over.
+    void forget() { state_ = State(); }
     const State &state() const { return state_; }
     const Counts &counts() const { return counts_; }
 

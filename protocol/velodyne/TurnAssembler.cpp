@@ -22,7 +22,8 @@ void count(PacketCounts &counts, PacketFault fault) {
 
 } // namespace
 
-PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns) {
+PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns,
+                                const std::optional<HostClock::Time> &host) {
     PacketFault fault = DataPacket::check(bytes, size, options_.model);
     if (fault == PacketFault::None && !isOfModel(DataPacket(bytes), receive_ns))
         fault = PacketFault::Model;
@@ -34,11 +35,12 @@ PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std
     if (fault != PacketFault::None)
         return fault;
     const DataPacket packet(bytes);
-    const std::int64_t stamp_ns = clock_.absolute(packet.stamp_us(), receive_ns) + options_.stampOffset_ns;
+    const std::int64_t measured_ns = host ? host->stamp_ns : clock_.absolute(packet.stamp_us(), receive_ns);
+    const std::int64_t stamp_ns = measured_ns + options_.stampOffset_ns;
     if (!isInOrder(packet, stamp_ns, receive_ns))
         return PacketFault::None;
     for (int group = 0; group < packet.groups(); ++group)
-        addGroup(packet, group, stamp_ns);
+        addGroup(packet, group, stamp_ns, host);
     lastStamp_ns_ = stamp_ns;
     lastReceive_ns_ = receive_ns;
     nextStamp_ns_ = stamp_ns + packet.groups() * decoder_->model().blockPeriod_ns();
@@ -61,7 +63,8 @@ bool TurnAssembler::isOfModel(const DataPacket &packet, std::int64_t receive_ns)
     return true;
 }
 
-void TurnAssembler::addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns) {
+void TurnAssembler::addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns,
+                             const std::optional<HostClock::Time> &host) {
     const SensorModel &model = decoder_->model();
     const int azimuth = packet.azimuth(group * packet.returns());
     const bool wraps = turn_.firings > 0 && lastAzimuth_ - azimuth > azimuthSteps / 2;
@@ -71,8 +74,11 @@ void TurnAssembler::addGroup(const DataPacket &packet, int group, std::int64_t s
         endTurn(turn_.partial || !wraps);
         beginTurn(!wraps);
     }
-    if (turn_.firings == 0)
+    if (turn_.firings == 0) {
         turn_.begin_ns = stamp_ns + group * model.blockPeriod_ns();
+        turn_.clock = host ? StampSource::Host : clock_.isSet() ? StampSource::Gps : StampSource::Sensor;
+        turn_.clockBound_ns = host ? host->bound_ns : 0;
+    }
     if (turn_.firings / std::uint32_t(model.firingsPerBlock) % countEvery == 0) {
         turn_.beams += std::uint32_t(model.firingsPerBlock * model.lasers);
         turn_.beamsBack += std::uint32_t(packet.filledSlots(group * packet.returns()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "protocol/velodyne/HostClock.h"
 #include "protocol/velodyne/PacketDecoder.h"
 
 #include <cstdlib>
@@ -27,16 +28,25 @@ struct PacketCounts {
     std::uint64_t wrong() const { return wrongSize + wrongFlag + wrongValue + otherModel; }
 };
 
+/// Whose clock the times of a turn are of.
+enum class StampSource {
+    Sensor, ///< its own, of which nobody tells how it lies
+    Gps,    ///< its own, which a GPS sets
+    Host,   ///< the receiver's
+};
+
 /// The points of one turn of the head in the order of firing: clockwise seen from above.
 struct Turn {
-    std::uint64_t number = 0;      ///< counts from 0
-    bool partial = false;          ///< the first, the last, or cut by a long gap
-    std::int64_t begin_ns = 0;     ///< when its first firing began, since the Unix epoch
-    std::int64_t end_ns = 0;       ///< when its last firing ended
-    std::uint32_t firings = 0;     ///< with or without return, decoded or not
-    std::uint32_t beams = 0;       ///< of all lasers, decoded or not, in each eighth block
-    std::uint32_t beamsBack = 0;   ///< of them: those with a return
-    std::uint32_t lostPackets = 0; ///< estimated, within this turn
+    std::uint64_t number = 0;  ///< counts from 0
+    bool partial = false;      ///< the first, the last, or cut by a long gap
+    std::int64_t begin_ns = 0; ///< when its first firing began, since the Unix epoch
+    std::int64_t end_ns = 0;   ///< when its last firing ended
+    StampSource clock = StampSource::Sensor;
+    std::int64_t clockBound_ns = 0; ///< how far the times may be off, of the receiver's clock
+    std::uint32_t firings = 0;      ///< with or without return, decoded or not
+    std::uint32_t beams = 0;        ///< of all lasers, decoded or not, in each eighth block
+    std::uint32_t beamsBack = 0;    ///< of them: those with a return
+    std::uint32_t lostPackets = 0;  ///< estimated, within this turn
     const SensorModel *model = nullptr;
     int laser = PacketDecoder::allLasers; ///< the one decoded, or allLasers
     std::vector<Point> points;
@@ -65,7 +75,9 @@ public:
     }
 
     /// Takes the payload of a data packet and the time at which it came in, nanoseconds since the Unix epoch.
-    PacketFault feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns);
+    /// host: when it was measured by the receiver's clock, if that counts.
+    PacketFault feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns,
+                     const std::optional<HostClock::Time> &host = {});
     /// A GPS tells the time, or nothing more: the hour of the stamps that follow.
     void follow(std::optional<std::int64_t> utc_ns);
     /// Delivers what has been collected of the current turn, as a partial one.
@@ -87,7 +99,8 @@ public:
 
 private:
     bool isOfModel(const DataPacket &packet, std::int64_t receive_ns);
-    void addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns);
+    void addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns,
+                  const std::optional<HostClock::Time> &host);
     bool isInOrder(const DataPacket &packet, std::int64_t stamp_ns, std::int64_t receive_ns);
     void noteGap(std::int64_t gap_ns, std::int64_t period_ns);
     void beginTurn(bool partial);

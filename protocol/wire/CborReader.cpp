@@ -100,9 +100,8 @@ private:
         const qint64 rest = size_ - in_.currentOffset();
         if (in_.currentStringChunkSize() <= rest)
             return false;
-        return !refuse(QStringLiteral("%1 bytes of text expected, there are %2")
-                           .arg(in_.currentStringChunkSize())
-                           .arg(rest));
+        return !refuse(
+            QString("%1 bytes of text expected, there are %2").arg(in_.currentStringChunkSize()).arg(rest));
     }
 
     bool whole(quint64 value) {
@@ -143,7 +142,7 @@ private:
         for (;;) {
             const qsizetype size = in_.currentStringChunkSize();
             if (size > size_ - room_.size())
-                return refuse(QStringLiteral("a typed array of %1 bytes, more than there are").arg(size));
+                return refuse(QString("a typed array of %1 bytes, more than there are").arg(size));
             const int at = room_.size();
             if (size > 0)
                 room_.resize(at + int(size));
@@ -157,7 +156,7 @@ private:
         const std::size_t each = PackedNumbers::sizeOf(array->kind);
         if (bytes % each != 0)
             return refuse(
-                QStringLiteral("a typed array of %1 bytes, expected a multiple of %2").arg(bytes).arg(each));
+                QString("a typed array of %1 bytes, expected a multiple of %2").arg(bytes).arg(each));
         char *const first = room_.data() + begin;
         if (array->isSwapped)
             for (std::size_t i = 0; i < bytes; i += each)

@@ -9,14 +9,13 @@ namespace hermes {
 
 /// The fields of the struct T, one add() after another, each followed by what is to be said of it:
 ///
-///     const Fields<Twist2D> &fieldsOf(Of<Twist2D>) {
-///         static const auto fields = Fields<Twist2D>()
+///     Fields<Twist2D> fieldsOf(Of<Twist2D>) {
+///         return Fields<Twist2D>()
 ///             .add("vx", &Twist2D::vx, "Forward", "m/s")
 ///             .add("omega", &Twist2D::omega, "Counter-clockwise", "rad/s");
-///         return fields;
 ///     }
 ///
-/// A std::optional may be absent on the wire; orNull() says so by null instead.
+/// A std::optional may be absent on the wire.
 template <typename T>
 class Fields : public FieldTable {
 public:
@@ -43,6 +42,17 @@ public:
         return *this;
     }
 
+    /// One that is null on the wire, not absent, where it is empty.
+    template <typename Member>
+    Fields &addOrNull(const char *name, Member member, const char *description, const char *unit = "") {
+        return add(name, member, description, unit).orNull();
+    }
+    /// One that a reader does without, and leaves as it is; a writer always writes it.
+    template <typename Member>
+    Fields &addMaybe(const char *name, Member member, const char *description, const char *unit = "") {
+        return add(name, member, description, unit).mayBeMissing();
+    }
+
     /// The elements of an array, each under a name of its own.
     template <typename M, std::size_t N, typename Owner>
     Fields &addEach(const std::array<const char *, N> &names, std::array<M, N> Owner::*member,
@@ -66,7 +76,7 @@ public:
     /// The fields of Part, a member, beside the others.
     template <typename Part, typename Owner>
     Fields &include(Part Owner::*member) {
-        for (FieldTable::Entry entry : fieldsOf(Of<Part>()).entries_) {
+        for (FieldTable::Entry entry : fieldsOf<Part>().entries_) {
             entry.write = [member, inner = entry.write](WireWriter &out, const void *message) {
                 inner(out, &(static_cast<const T *>(message)->*member));
             };
@@ -93,7 +103,7 @@ public:
         return *this;
     }
     Fields &choices(const QStringList &allowed) { return with("enum", QJsonArray::fromStringList(allowed)); }
-    /// A reader does without it, and leaves it as it is; a writer always writes it.
+    /// As addMaybe() and addOrNull() do.
     Fields &mayBeMissing() {
         entries_.back().mayBeMissing = true;
         return *this;

@@ -1,13 +1,14 @@
 #pragma once
 
 class QJsonObject;
+class QJsonValue;
 
 namespace hermes {
 
 template <typename T>
 class Fields;
 
-/// Names a type. Beside each struct T that travels stands `const Fields<T> &fieldsOf(Of<T>)`, its fields.
+/// Names a type. Beside each struct T that travels stands `Fields<T> fieldsOf(Of<T>)`, its fields.
 /// Whoever writes, reads or describes it includes Fields.h.
 template <typename T>
 struct Of {};
@@ -19,5 +20,9 @@ struct Type;
 /// The JSON Schema of T.
 template <typename T>
 QJsonObject schemaOf();
+
+/// A value of the type T as JSON.
+template <typename T>
+QJsonValue asJson(const T &value);
 
 } // namespace hermes

@@ -14,14 +14,21 @@
 
 namespace hermes {
 
+/// The table of a struct, made once.
+template <typename T>
+const Fields<T> &fieldsOf() {
+    static const Fields<T> made = fieldsOf(Of<T>());
+    return made;
+}
+
 /// Of structs with fields.
 template <typename T, typename>
 struct Type {
-    static void write(WireWriter &out, const T &value) { fieldsOf(Of<T>()).write(out, &value); }
+    static void write(WireWriter &out, const T &value) { fieldsOf<T>().write(out, &value); }
     static void read(WireView in, T &value, const Limits &, ReadReport &report) {
-        fieldsOf(Of<T>()).read(in, &value, report);
+        fieldsOf<T>().read(in, &value, report);
     }
-    static QJsonObject schema(const Limits &) { return fieldsOf(Of<T>()).schema(); }
+    static QJsonObject schema(const Limits &) { return fieldsOf<T>().schema(); }
 };
 
 /// Numbers, checked against their limits.

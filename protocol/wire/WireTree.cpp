@@ -142,7 +142,7 @@ bool TreeBuilder::isWhole(const char *text, unsigned length) {
 // Once each: arrays and objects, too.
 bool TreeBuilder::count() {
     if (++values_ > limits_.values)
-        complaint = QStringLiteral("more than %1 values").arg(limits_.values);
+        complaint = QString("more than %1 values").arg(limits_.values);
     return complaint.isEmpty();
 }
 
@@ -151,7 +151,7 @@ bool TreeBuilder::enter() {
         return false;
     keys_.emplace_back();
     if (int(keys_.size()) > limits_.depth)
-        complaint = QStringLiteral("nested deeper than %1 levels").arg(limits_.depth);
+        complaint = QString("nested deeper than %1 levels").arg(limits_.depth);
     return complaint.isEmpty();
 }
 
@@ -160,8 +160,7 @@ bool TreeBuilder::leave() {
     std::sort(names.begin(), names.end());
     const auto twice = std::adjacent_find(names.begin(), names.end());
     if (twice != names.end())
-        complaint =
-            QStringLiteral("the key \"%1\" occurs twice in one object").arg(QString::fromStdString(*twice));
+        complaint = QString("the key \"%1\" occurs twice in one object").arg(QString::fromStdString(*twice));
     keys_.pop_back();
     return complaint.isEmpty();
 }

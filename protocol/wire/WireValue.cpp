@@ -285,11 +285,11 @@ QString WireView::described() const {
     case Kind::Number:
         return QString::number(number(), 'g', 10);
     case Kind::Text:
-        return QStringLiteral("text \"%1\"").arg(text().left(40));
+        return QString("text \"%1\"").arg(text().left(40));
     case Kind::Array:
-        return QStringLiteral("an array of %1").arg(size());
+        return QString("an array of %1").arg(size());
     case Kind::Object:
-        return QStringLiteral("an object of %1").arg(size());
+        return QString("an object of %1").arg(size());
     }
     return {};
 }

@@ -128,7 +128,7 @@ private Q_SLOTS:
             QCOMPARE(refused["code"].toInt(), -32005);
             VERIFY_CONTAINS(refused["message"].toString(), "is replayed by tcp://127.0.0.1");
         }
-        VERIFY_CONTAINS(healthOf("topics"), "state (by tcp://127.0.0.1");
+        VERIFY_CONTAINS(healthOf("topics"), "warn: replayed, not live: state (by tcp://127.0.0.1");
         replay(QJsonArray{1, QJsonObject{{"a", QJsonValue()}}});
         QCOMPARE(params(viewer)["data"].toArray().size(), 2); // and nothing of what was live meanwhile
         player->ask("topics.replay", QJsonObject{{"topic", "state"}, {"live", true}});
@@ -188,7 +188,7 @@ private:
     QString healthOf(const QString &item) {
         for (const HealthItem &one : daemon->status().health)
             if (one.name == item)
-                return one.message;
+                return one.level + ": " + one.message;
         return {};
     }
 };

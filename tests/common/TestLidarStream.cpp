@@ -103,4 +103,59 @@ private Q_SLOTS:
         QCOMPARE(stream.otherSensors(), std::uint64_t(1));
         QCOMPARE(stream.sensors().sensors().size(), std::size_t(2));
     }
+
+    /// Its hour begins anywhere: it is read by the receiver's clock until a GPS has set its own, and again
+    /// when it was started anew.
+    void whoseClockCounts() {
+        constexpr std::int64_t second_ns = 1000000000, ahead_ns = 1234 * second_ns;
+        Sensor sensor;
+        LidarStream stream({{}, velodyne::Model::Blank, velodyne::dataPort, velodyne::ClockChoice::Auto});
+        std::vector<std::pair<velodyne::StampSource, std::int64_t>>
+            begun; // of turns: whose clock, how far off
+        std::int64_t sent_ns = 0;
+        TurnAssembler turns({}, [&](const velodyne::Turn &turn) {
+            begun.emplace_back(turn.clock, std::abs(turn.begin_ns - sent_ns));
+        });
+        int number = 0;
+        const auto turnOnce = [&](std::int64_t late_ns) {
+            for (int i = 0; i < 200; ++i, ++number) { // over a turn
+                const auto packet = sensor.packet(number);
+                sent_ns = sensor.stamp(number) + late_ns;
+                stream.take(sensorDatagram(packet, sent_ns + velodyne::hdl32e.packetPeriod_ns()), {&turns});
+            }
+        };
+        const auto tellGps = [&](velodyne::Pps pps) {
+            velodyne::PositionPacket position;
+            position.stamp_us = std::uint32_t(sensor.stamp(number) / 1000 % velodyne::stampPeriod_us);
+            position.pps = pps;
+            position.nmea = "$GPRMC,221320,A,4124.8963,N,08151.6838,W,000.0,000.0,141123,000.0,W*";
+            std::uint8_t sum = 0;
+            for (const char c : position.nmea)
+                sum ^= c == '$' || c == '*' ? 0 : std::uint8_t(c);
+            position.nmea += QString("%1").arg(sum, 2, 16, QChar('0')).toUpper().toStdString();
+            stream.take(sensorDatagram(encodePosition(position), sent_ns), {&turns});
+        };
+        turnOnce(ahead_ns);
+        tellGps(velodyne::Pps::Absent);
+        turnOnce(ahead_ns);
+        QVERIFY(begun.size() > 1);
+        for (const auto &[clock, off_ns] : begun) {
+            QVERIFY(clock == velodyne::StampSource::Host);
+            QVERIFY(off_ns < second_ns / 5);
+        }
+        begun.clear();
+        tellGps(velodyne::Pps::Locked);
+        turnOnce(ahead_ns);
+        tellGps(velodyne::Pps::Absent); // its clock goes on
+        turnOnce(ahead_ns);
+        QVERIFY(begun.size() > 2);
+        begun.erase(begun.begin()); // what was under way
+        for (const auto &[clock, off_ns] : begun)
+            QVERIFY(off_ns > ahead_ns - second_ns);
+        QVERIFY(begun[0].first == velodyne::StampSource::Gps);
+        sensor.start_ns += 5000 * second_ns;
+        turnOnce(ahead_ns - 4000 * second_ns);
+        QVERIFY(begun.back().first == velodyne::StampSource::Host);
+        QVERIFY(begun.back().second < second_ns / 5);
+    }
 };

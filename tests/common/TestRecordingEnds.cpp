@@ -247,6 +247,28 @@ private Q_SLOTS:
         QCOMPARE(next.level("recording"), "ok");
     }
 
+    void aClockThatWasSetDoesNotChangeALength_data() {
+        const Rows<double, double> row("renewed_s",
+                                       "length_s"); // the files end after a second of the wall clock
+        row("as the files say", 0.3, 1);
+        row("the clock was set back", 600, 600);
+    }
+
+    void aClockThatWasSetDoesNotChangeALength() {
+        FETCH(double, renewed_s, double, length_s);
+        QTemporaryDir root, other;
+        Logger killed(root.path());
+        const QString folder = folderOf(killed.call("record.start", {{"name", "a"}}));
+        const QString cut = copyUnfinished(folder, other.path());
+        QJsonObject sidecar = sidecarOf(cut);
+        sidecar["end_mono"] = sidecar["start_mono"].toDouble() + renewed_s;
+        QVERIFY(Sidecar::write(cut + "/logger.json", sidecar, false));
+        Logger next(other.path());
+        QTRY_COMPARE(sidecarOf(cut).value("ended").toString(), "cut off");
+        const double told_s = next.call("record.list")->toArray().at(0)["duration_s"].toDouble();
+        QVERIFY2(std::abs(told_s - length_s) < 1e-3, qPrintable(QString::number(told_s)));
+    }
+
     void foreignSidecarsAreToldAndLeftAlone_data() {
         const Rows<QByteArray> row("content");
         row("empty", QByteArray());

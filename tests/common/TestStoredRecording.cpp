@@ -55,6 +55,15 @@ private Q_SLOTS:
         const Rows<QJsonObject, double> row("sidecar", "length");
         row("the clock was set meanwhile", with("end", 5000), 2.5);
         row("cut off, without end_mono", with("end_mono", QJsonValue()), 2.5);
+        row(
+            "of an older version, whose clock was set back",
+            [] {
+                QJsonObject content = with("end", 1);
+                content.remove("start_mono");
+                content.remove("end_mono");
+                return content;
+            }(),
+            0.0);
         row("ends before it begins", with("end_mono", 1), 0.0);
         row("of no use", with("end_mono", 1e300), 1e7);
     }

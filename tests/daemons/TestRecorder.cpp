@@ -210,23 +210,6 @@ private Q_SLOTS:
         QCOMPARE(int(recorder.state().losses.value("unwritten")), 0);
     }
 
-    void toolsReadTheFiles() {
-        if (QStandardPaths::findExecutable("capinfos").isEmpty())
-            QSKIP("capinfos (package tshark) is not installed");
-        QTemporaryDir folder;
-        const Sensor sensor;
-        Recorder recorder;
-        QVERIFY(recorder.begin(planIn(folder)).ok());
-        push(recorder, sensor, 0, 500);
-        recorder.end();
-        QProcess capinfos;
-        capinfos.start("capinfos", {"-T", "-M", "-c", "-r", recorder.state().path});
-        QVERIFY(capinfos.waitForFinished());
-        QCOMPARE(capinfos.exitCode(), 0);
-        QCOMPARE(capinfos.readAllStandardError(), QByteArray());
-        QCOMPARE(capinfos.readAllStandardOutput().trimmed().split('\t').last(), QByteArray("500"));
-    }
-
     void repairReadsOnWhereTheSidecarEnds_data() {
         const Rows<int, int> row(
             "known", "cut"); // known: packets when the sidecar was written; cut: bytes missing at the end

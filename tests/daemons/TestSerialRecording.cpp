@@ -36,6 +36,44 @@ private Q_SLOTS:
         QCOMPARE(call("record.list").toArray().size(), 1);
     }
 
+    /// As after a kill, or a cut of the power: the same session goes on behind what was received before.
+    void goesOnInTheSameSession() {
+        launch({QJsonObject{{"name", "dev"}, {"url", deviceUrl()}, {"view", "none"}}});
+        QTRY_VERIFY(isOpen("dev"));
+        const QJsonObject session{{"name", "run"}, {"session", "id"}};
+        QString folder;
+        int all = 0;
+        for (const char *text : {"one", "two and more"}) {
+            folder = call("record.start", session).toObject().value("folder").toString();
+            call("mark", {{"text", text}});
+            device_->write(text);
+            all += int(strlen(text));
+            QTRY_COMPARE(call("record.status").toObject().value("bytes").toInt(), all);
+            call("record.stop");
+            // As if another run of the kernel had recorded it, by a monotonic clock of its own.
+            auto sidecar = Sidecar::read(folder + "/seriallogger.json");
+            QVERIFY(sidecar.ok());
+            QCOMPARE(sidecar->value("counts").toObject().value("marks").toInt(), text[0] == 'o' ? 1 : 2);
+            sidecar->insert("boot", "another");
+            for (const char *mono : {"start_mono", "end_mono"})
+                sidecar->insert(mono, sidecar->value(mono).toDouble() + 1000);
+            QVERIFY(Sidecar::write(folder + "/seriallogger.json", *sidecar, true).ok());
+        }
+        QCOMPARE(contentOf(folder + "/seriallogger-dev.raw"), QByteArray("onetwo and more"));
+        const auto sidecar = Sidecar::read(folder + "/seriallogger.json");
+        QCOMPARE(sidecar->value("losses").toObject().value("interruptions").toInt(), 1);
+        QCOMPARE(sidecar->value("files").toArray().size(), 1);
+        const double length = sidecar->value("end_mono").toDouble() - sidecar->value("start_mono").toDouble();
+        QVERIFY2(std::abs(length - (sidecar->value("end").toDouble() - sidecar->value("start").toDouble())) <
+                     0.1,
+                 saying(length));
+        const QByteArray index = contentOf(folder + "/seriallogger-dev.index");
+        const double last = double(qFromLittleEndian<qint64>(index.constData() + index.size() - 8)) * 1e-9;
+        const double after = last - (sidecar->value("start_mono").toDouble() -
+                                     1000); // as it was written before the last change
+        QVERIFY2(after > 0 && after < length, saying(after));
+    }
+
     void recordsDatagramsAndStreams() {
         QTcpServer server;
         QVERIFY(server.listen(QHostAddress::LocalHost));

@@ -7,6 +7,7 @@
 #include "vectorlib/io/CarmenLog.h"
 
 #include <sstream>
+#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::recorder;
@@ -77,6 +78,38 @@ private Q_SLOTS:
         QCOMPARE(contentOf(paths->at(1)).split('\n')[0], QByteArray("stamp,t_s,seq,data"));
         QVERIFY(contentOf(paths->at(1)).contains("\"[1,2]\""));
         QCOMPARE(exported("csv")->size(), 6);
+    }
+
+    void textsAreNoFormulas() {
+        SessionFolder folder;
+        for (const char *text : {"=1+1", "@x", "+a,b", "-2", "a=b"})
+            folder.add(1, "a/b", compactJson(QJsonObject{{"number", -2}, {"text", text}}),
+                       R"({"type":"object","properties":{"number":{},"text":{}}})");
+        folder.finish();
+        auto session = SessionReader::open(folder.path());
+        const auto paths = exportSession(*session, "csv", {}, folder.filePath("export"));
+        QStringList cells;
+        for (const QByteArray &row : contentOf(paths->first()).trimmed().split('\n').mid(1))
+            cells.append(row.split(',').mid(3).join(','));
+        QCOMPARE(cells, QStringList({"-2,'=1+1", "-2,'@x", "-2,\"'+a,b\"", "-2,'-2", "-2,a=b"}));
+    }
+
+    // More topics than a process may have open files.
+    void manyTopicsNeedFewOpenFiles() {
+        struct rlimit usual {};
+        QCOMPARE(::getrlimit(RLIMIT_NOFILE, &usual), 0);
+        SessionFolder folder;
+        for (int i = 0; i < 200; ++i)
+            folder.add(1, QString("a/%1").arg(i), QByteArray("{}"));
+        folder.finish();
+        auto session = SessionReader::open(folder.path());
+        const struct rlimit few { 100, usual.rlim_max };
+        QCOMPARE(::setrlimit(RLIMIT_NOFILE, &few), 0);
+        const auto paths = exportSession(*session, "csv", {}, folder.filePath("export"));
+        QCOMPARE(::setrlimit(RLIMIT_NOFILE, &usual), 0);
+        QVERIFY2(paths.ok(), paths ? "" : qPrintable(paths.error().message));
+        QCOMPARE(paths->size(), 200);
+        QCOMPARE(QDir(folder.filePath("export")).entryList(QDir::Files | QDir::Hidden).size(), 200);
     }
 
     void posesAreATrajectory() {

@@ -187,6 +187,27 @@ private Q_SLOTS:
         QVERIFY2(explain(folder).contains("found no messages"), qPrintable(explain(folder)));
     }
 
+    void readingThatIsToEndOpensNoMoreFiles() {
+        SessionFolder folder;
+        folder.add(0, "recorder/marks", SessionMark{0, "begin"});
+        folder.add(1, "recorder/marks", SessionMark{1, "more"});
+        folder.finish();
+        put(folder.filePath("recorder-0002.mcap"), "hello");
+        std::atomic<bool> stop{false};
+        auto session = SessionReader::open(folder.path(), &stop);
+        int messages = 0;
+        session->read({}, [&](const SessionMessage &) {
+            stop = true;
+            ++messages;
+        });
+        QCOMPARE(messages, 1);
+        QCOMPARE(session->problems(), QStringList());
+        stop = false;
+        session->read({}, [&](const SessionMessage &) { ++messages; });
+        QCOMPARE(messages, 3);
+        QCOMPARE(session->problems().size(), 1); // of the second file
+    }
+
     void messagesThatAreNoneAreLeftOut() {
         SessionFolder folder;
         for (const QByteArray text :

@@ -1,6 +1,7 @@
 // Loggers that record and replay as one.
+#include "daemons/recorder/McapRecorder.h"
+#include "daemons/recorder/SessionCommands.h"
 #include "daemons/recorder/SessionPlayer.h"
-#include "daemons/recorder/SessionRecorder.h"
 #include "tests/daemons/FakeLogger.h"
 
 using namespace hermes;
@@ -41,8 +42,7 @@ private Q_SLOTS:
         const auto stopped = stop();
         QVERIFY(stopped.ok());
         QCOMPARE(stopped->problems, QStringList());
-        QCOMPARE(stopped->sessions.size(), std::size_t(1));
-        QCOMPARE(stopped->sessions[0].members(), QStringList({"a", "b", "c"}));
+        QCOMPARE(stopped->parts.size(), std::size_t(3));
         QVERIFY(!robot_->isRecording());
         // What one misses is told, also when it ended before.
         QVERIFY(start("run2").ok());
@@ -57,6 +57,38 @@ private Q_SLOTS:
         QCOMPARE(ended->problems, QStringList({"a: lost: lines 3", "b: failed"}));
     }
 
+    void topicsWithoutRoomAreLost() {
+        QTemporaryDir folder;
+        McapRecorder recorder;
+        QVERIFY(recorder.begin({folder.path(), "recorder"}).ok());
+        const int large = recorder.addTopic({"a/large", QByteArray(17 << 20, ' '), {}});
+        const int small = recorder.addTopic({"a/small", "{}", {}});
+        for (const int topic : {large, small, large, small})
+            recorder.write({topic, 1, 1, Moment::now(), "1"});
+        recorder.end();
+        const RecordingState state = recorder.state();
+        QVERIFY(!state.error);
+        QCOMPARE(state.counts["messages"], 2.0);
+        QCOMPARE(state.losses, (NamedCounts{{"a/large", 2}}));
+    }
+
+    void aFileCutInItsHeaderIsCompleted() {
+        QTemporaryDir folder;
+        const RecordingPlan plan{folder.path(), "recorder"};
+        for (const char *name : {"recorder-0001.mcap", "recorder-0002.mcap"}) {
+            QFile file(folder.filePath(name));
+            QVERIFY(file.open(QIODevice::WriteOnly));
+            if (QString(name).contains('2'))
+                file.write("\x89MCAP0\r\n\x01");
+        }
+        QJsonObject sidecar;
+        QVERIFY(McapRecorder().repair(plan, sidecar).ok());
+        QCOMPARE(sidecar["files"].toArray().size(), 2);
+        QCOMPARE(sidecar["counts"].toObject()["messages"].toInt(-1), 0);
+        for (const QJsonValue &file : sidecar["files"].toArray())
+            QCOMPARE(QFileInfo(folder.filePath(file["name"].toString())).size(), file["bytes"].toInt());
+    }
+
     void whatIsInTheWayIsTold() {
         record("run1");
         QString told = start("run1").error().message;
@@ -66,9 +98,9 @@ private Q_SLOTS:
         VERIFY_STARTS(told, "nothing was begun; a records \"run2\" already");
         SessionMembers unsure = members();
         unsure.silent = QStringList("d: it does not say what it is");
-        SessionRecorder recorder(unsure);
         QVERIFY(stop().ok());
-        const auto refused = await<Result<SessionReplies>>([&](auto done) { recorder.start("run3", done); });
+        const auto refused =
+            await<Result<SessionReplies>>([&](auto done) { startSession(unsure, "run3", "id", this, done); });
         QCOMPARE(refused.error().message, QString("nothing was begun; d: it does not say what it is"));
         c_->writer.refuse = true; // only when it is asked to
         told = start("run3").error().message;
@@ -108,18 +140,17 @@ private Q_SLOTS:
         QVERIFY(QDir(robot_->root.path()).mkpath("odd"));
         put(robot_->root.path() + "/odd/c.json", "{}");
         robot_->clients[0]->close(); // a took part, but does not answer
-        SessionRecorder recorder(members());
-        const auto found = await<SessionList>([&](auto done) { recorder.list(done); });
+        const auto found = await<SessionList>([&](auto done) { listSessions(members(), this, done); });
         QCOMPARE(found.sessions.size(), std::size_t(2));
         const RecordedSession &last = found.sessions[0], &first = found.sessions[1];
         QVERIFY(last.goesOn() && last.name == "run2" && last.end == 0);
         QCOMPARE(first.name, QString("run1"));
         QVERIFY(!first.goesOn() && first.end >= first.start && first.start > 1e9);
         QCOMPARE(first.members(), QStringList({"b", "c"}));
-        QCOMPARE(first.bytes(), 40.0);
-        QCOMPARE(countsText(first.parts[0].entry["counts"]), QString("lines 4"));
-        QCOMPARE(first.faults(), QStringList("b lost: lines 1"));
-        QCOMPARE(first.absent(), QStringList("a: it took part, but does not answer or was not asked"));
+        QCOMPARE(first.summary().bytes, 40.0);
+        QCOMPARE(first.parts[0].summary().counts, NamedCounts({{"lines", 4}, {"marks", 0}}));
+        QCOMPARE(first.problems(),
+                 QStringList({"b: lost: lines 1", "a: it took part, but does not answer or was not asked"}));
         QCOMPARE(found.problems.size(), 2);
         QVERIFY(found.problems[0].startsWith("a: record.list: not connected"));
         QVERIFY(found.problems[1].startsWith("c: odd: "));
@@ -139,7 +170,8 @@ private Q_SLOTS:
     void allAreReleasedTogether() {
         RecordedSession session = record("run1");
         QCOMPARE(session.parts.size(), std::size_t(3));
-        session.start -= 2; // as if another had begun before
+        for (RecordedPart &part : session.parts)
+            part.offset_s += 2; // as if another had begun before
         a_->openDelay_ms = 200;
         a_->positionsToEnd = 1; // the other goes on
         robot_->asked.clear();
@@ -177,7 +209,7 @@ private Q_SLOTS:
             b_->openDelay_ms = slowness * 300;
         }
         if (how == "changed")
-            QTimer::singleShot(300, [this] { b_->source = "live"; });
+            b_->told = {{"state", "live"}};
         robot_->asked.clear();
         const Result<void> result = play(session, options);
         QVERIFY2(!result && result.error().message.startsWith(told),
@@ -242,11 +274,9 @@ private Q_SLOTS:
         };
         QTRY_VERIFY2(areIn({"b: goes at 4", "b: waits", "b: sought to 0.5"}),
                      qPrintable(robot_->asked.join(", ")));
-        bool isPlaced = false; // they have told where they are since
-        connect(&player, &SessionPlayer::progress, [&] { isPlaced = true; });
-        QTRY_VERIFY(isPlaced);
+        QVERIFY(tellTwice(player));
         a_->source = b_->source = "ended"; // it waits there
-        QTest::qWait(500);
+        QVERIFY(tellTwice(player));
         QVERIFY(player.isPlaying() && player.isPaused());
         player.setPaused(false);
         QTRY_VERIFY(!player.isPlaying());
@@ -281,7 +311,7 @@ private Q_SLOTS:
         QTRY_COMPARE(robot_->asked.count("b: sought to 0.5"), 2);
         QTRY_VERIFY(robot_->asked.contains("b: is released"));
         b_->told = {};
-        QTest::qWait(300);
+        QVERIFY(tellTwice(player));
         QCOMPARE(robot_->asked.count("b: opened, waits"), 1); // once
         b_->source = "live";                                  // somebody else's
         player.seek(0.75);
@@ -348,23 +378,22 @@ private:
     }
 
     Result<SessionReplies> start(const QString &name) {
-        SessionRecorder recorder(members());
-        const auto begun = await<Result<SessionReplies>>([&](auto done) { recorder.start(name, done); });
+        const auto begun = await<Result<SessionReplies>>([&](auto done) {
+            startSession(members(), name, QUuid::createUuid().toString(QUuid::WithoutBraces), this, done);
+        });
         if (begun)
             session_ = (*begun->front().result)["session"].toString();
         return begun;
     }
 
-    Result<SessionRecorder::Stopped> stop() {
-        SessionRecorder recorder(members());
-        return await<Result<SessionRecorder::Stopped>>([&](auto done) { recorder.stop(session_, done); });
+    Result<EndedSession> stop() {
+        return await<Result<EndedSession>>([&](auto done) { stopSession(members(), session_, this, done); });
     }
 
     RecordedSession record(const QString &name) {
         if (!start(name) || !stop())
             qFatal("nothing is recorded");
-        SessionRecorder recorder(members());
-        return await<SessionList>([&](auto done) { recorder.list(done); }).sessions.at(0);
+        return await<SessionList>([&](auto done) { listSessions(members(), this, done); }).sessions.at(0);
     }
 
     Result<void> play(const RecordedSession &session, const SessionPlayer::Options &options = {}) {
@@ -373,6 +402,12 @@ private:
             QObject::connect(&player, &SessionPlayer::ended, done);
             player.play(session, options);
         });
+    }
+
+    /// Where they are, of which the second time they were asked since.
+    static bool tellTwice(const SessionPlayer &player) {
+        QSignalSpy told(&player, &SessionPlayer::progress);
+        return told.wait() && (told.count() > 1 || told.wait());
     }
 
     std::unique_ptr<FakeLoggers> robot_;

@@ -75,6 +75,8 @@ class Advice(ThermometerCase):
         self.assertNotIn("own=1", text)
         self.assertIn("without a port", self.fails("list", "--host", "127.0.0.1:7490", status=2))
         self.assertIn("option --role is missing", self.fails("keys", "issue", "ben", status=2))
+        self.assertIn('"vx=0.1" is no daemon; usage: hermesctl drive D [vx=]', self.fails("drive", "vx=0.1", "--for", "1", status=2))
+        self.assertIn("no daemon listens", self.fails("get", "127.0.0.1:1?protocol=json"))
         self.assertIn("drives no robot", self.fails("drive", self.daemon.address, "vx=0.1", "--for", "1"))
 
     def test_a_topic_that_is_silent(self):

@@ -38,17 +38,20 @@ public:
         channels_.clear();
         writer_ = makeWriter();
     }
-    void finish(const QJsonObject &losses = {}) {
+    /// more: of the sidecar.
+    void finish(const QJsonObject &losses = {}, const QJsonObject &more = {}) {
         nextFile();
-        const QJsonObject sidecar{{"format", hermes::Sidecar::format},
-                                  {"logger", "recorder"},
-                                  {"session", "7f3a"},
-                                  {"start", start},
-                                  {"end", start + last_s_},
-                                  {"ended", "stopped"},
-                                  {"complete", true},
-                                  {"bytes", 1000},
-                                  {"losses", losses}};
+        QJsonObject sidecar{{"format", hermes::Sidecar::format},
+                            {"logger", "recorder"},
+                            {"session", "7f3a"},
+                            {"start", start},
+                            {"end", start + last_s_},
+                            {"ended", "stopped"},
+                            {"complete", true},
+                            {"bytes", 1000},
+                            {"losses", losses}};
+        for (auto member = more.begin(); member != more.end(); ++member)
+            sidecar[member.key()] = *member;
         put(folder_.filePath("recorder.json"), QJsonDocument(sidecar).toJson());
     }
 

@@ -171,7 +171,7 @@ class Mcap:
         copies = {SCHEMA: {}, CHANNEL: {}}
         groups, told, indexed, statistics = {}, {}, set(), None
         for at, end, kind, content in records(self.data, summary, footer_at):
-            require((kind == SUMMARY_OFFSET) == (at >= offsets), f"byte {at}: the summary is not in order")
+            require((kind == SUMMARY_OFFSET) == (offsets != 0 and at >= offsets), f"byte {at}: the summary is not in order")
             if kind == SUMMARY_OFFSET:
                 group, start, size = struct.unpack("<BQQ", content)
                 told[group] = (start, start + size)
@@ -185,7 +185,7 @@ class Mcap:
                 statistics = Fields(content)
             elif kind == CHUNK_INDEX:
                 indexed.add(self._check_chunk_index(content))
-        require(told == groups, "the offsets of the summary are wrong")
+        require(told == (groups if offsets else {}), "the offsets of the summary are wrong")
         require(copies[SCHEMA] == self.schemas and copies[CHANNEL] == self.channels, "the summary has other schemas or channels")
         require(indexed == set(self.chunks), "the summary has other chunks")
         self._check_statistics(statistics)

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from support import BINARIES, HERMESCTL, WORLD, DaemonError, Process, free_port, text_of, wait_for
+from support import BINARIES, HERMESCTL, WORLD, Process, free_port, text_of, wait_for
 
 
 class FirstWords(unittest.TestCase):
@@ -71,17 +71,6 @@ class FirstWords(unittest.TestCase):
         loaded = simulator.call("sim.load", world=relative)
         self.assertEqual(loaded["path"], WORLD)
         self.assertEqual(simulator.call("sim.state")["world"], WORLD)
-        with self.assertRaises(DaemonError) as failed:
-            simulator.call("sim.load", world="no/such.json")
-        self.assertIn(f'{os.getcwd()}/no/such.json: cannot be read: No such file or directory ("no/such.json" was looked for in '
-                      f"{os.getcwd()}, where this program runs)", str(failed.exception))
-
-    def test_degrees_for_radians(self):
-        _, simulator = self.simulator(world=WORLD)
-        simulator.call("sim.place", x=0, y=0, theta=6.2)
-        self.assertNotIn("turns", self.log("simulator"))
-        simulator.call("sim.place", x=0, y=0, theta=90)
-        wait_for("the line of the log", lambda: "theta: 90 rad is 14.3 turns; did you mean 1.571 rad (90 degrees)?" in self.log("simulator"))
 
 
 if __name__ == "__main__":

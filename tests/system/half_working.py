@@ -11,15 +11,11 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, DaemonError, Process, free_port, release, simulated_hall, wait_for
+from support import BINARIES, DaemonError, Process, fastest_wheel, free_port, release, simulated_hall, wait_for
 
 LIMIT_S = 0.6
 SPEED = 0.5  # m/s
 FAULTS = {"mute": {"kind": "loss", "share": 1}, "corrupt": {"kind": "corrupt", "share": 1}, "slow": {"kind": "slow", "delay_s": 0.1}}
-
-
-def fastest_wheel(simulator):
-    return max(abs(speed) for speed in simulator.call("sim.state")["motors"]["wheels_rps"])
 
 
 class Drive:

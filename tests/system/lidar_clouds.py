@@ -11,32 +11,11 @@ import sys
 import tempfile
 import threading
 
-from support import BINARIES, Daemon, Process, free_port, refusal, wait_for
+from support import BINARIES, Daemon, Listener, Process, free_port, refusal, wait_for
 import velodyne_reference as reference
 from lidar_decoders import write_capture
 
 PACKETS = 1200
-
-
-class Reader(threading.Thread):
-    """Keeps turn, sequence number and losses of every message of a topic, and the last message."""
-
-    def __init__(self, port, topic):
-        super().__init__(daemon=True)
-        self.seen, self.last = [], None
-        self.stream = Daemon(port=port, timeout=60).subscribe(topic, queue=1000)
-        self.start()
-
-    def run(self):
-        try:
-            for message in self.stream:
-                self.last = message["data"]
-                self.seen.append((message["data"]["turn"], message["seq"], message["dropped"]))
-        except (OSError, ValueError):
-            pass  # the daemon has ended
-
-    def wait(self, count):
-        wait_for(f"{count} messages", lambda: len(self.seen) >= count)
 
 
 def dropped_messages(logger):
@@ -52,7 +31,7 @@ def check_slow_reader(logger, port, capture):
     unread = slow.subscribe("cloud", queue=1000)
     first = threading.Thread(target=lambda: next(unread))  # makes the subscription
     first.start()
-    clouds, scans = Reader(port, "cloud"), Reader(port, "scan2d")
+    clouds, scans = Listener(port, "cloud"), Listener(port, "scan2d")
     logger.call("source.open", pcap=capture, speed=1, loop=True)
     first.join()
     wait_for("a loss of the one who does not read", lambda: dropped_messages(logger) > before)
@@ -60,10 +39,10 @@ def check_slow_reader(logger, port, capture):
     scans.wait(30)
     passed_over = 0
     for reader in (clouds, scans):
-        turns, sequence, dropped = zip(*reader.seen)
-        assert set(dropped) == {0}, f"{max(dropped)} messages were lost by one who reads"
-        assert list(sequence) == list(range(sequence[0], sequence[0] + len(sequence)))
-        passed_over += turns[-1] - turns[0] + 1 - len(turns)
+        messages = list(reader.messages)
+        assert not any(message["dropped"] for message in messages), "messages were lost by one who reads"
+        assert all(b["seq"] == a["seq"] + 1 for a, b in zip(messages, messages[1:]))
+        passed_over += messages[-1]["data"]["turn"] - messages[0]["data"]["turn"] + 1 - len(messages)
     wait_for("word of that loss", lambda: next(unread)["dropped"] > 0)
     slow.close()
     status = logger.call("source.status")
@@ -79,11 +58,11 @@ def check_losses(status):
 
 def check_clouds(logger, port, capture, name):
     model = {"hdl32e": reference.HDL32E, "vlp16": reference.VLP16}[name]
-    clouds = Reader(port, "cloud")
+    clouds = Listener(port, "cloud")
     opened = logger.call("source.open", pcap=capture, speed=1, loop=True)
     assert opened["state"] == "replay" and not opened["paused"], opened
     clouds.wait(10)
-    cloud = clouds.last
+    cloud = clouds.messages[-1]["data"]
     count = len(cloud["x"])
     assert 0 < count <= 2000 and all(len(cloud[name]) == count for name in ("y", "z", "laser", "intensity")), count
     status = logger.call("source.status")
@@ -94,8 +73,8 @@ def check_clouds(logger, port, capture, name):
         assert far < 0.1 or abs(math.asin(z / far) - math.radians(model.elevations[laser])) < 0.002 / far, (x, y, z, laser)
     # Settings apply at once.
     logger.call("settings.set", values={"cloud": {"turn_step": 3}})
-    wait_for("every third turn only",
-             lambda: len(clouds.seen) > 3 and all(b[0] - a[0] == 3 for a, b in zip(clouds.seen[-3:], clouds.seen[-2:])))
+    turns = lambda: [message["data"]["turn"] for message in clouds.messages[-3:]]  # noqa: E731
+    wait_for("every third turn only", lambda: turns() == list(range(turns()[0], turns()[0] + 7, 3)))
     logger.call("settings.set", values={"cloud": {"turn_step": 1}})
     check_losses(logger.call("source.status"))
 
@@ -201,7 +180,7 @@ def check_sensors(logger, capture):
 
 def check_overload(logger, port, capture):
     """Turns come faster than messages can be made of them, as on a slow machine: the logger still answers, and tells the loss."""
-    clouds = Reader(port, "cloud")
+    clouds = Listener(port, "cloud")
     logger.call("source.open", pcap=capture, speed=1000, loop=True)
     wait_for("turns that were passed over", lambda: logger.call("source.status")["clouds_dropped"] > 100)
     clouds.wait(20)
@@ -211,7 +190,7 @@ def check_overload(logger, port, capture):
 def start_logger(folder, **settings):
     return Process(BINARIES, "velodynelogger", free_port(0), folder,
                    {"source.port": free_port(0, socket.SOCK_DGRAM), "source.address": "127.0.0.1", "record.folder": folder,
-                    **settings})
+                    "decode.clock": "gps", **settings})  # an independent decoder knows no other
 
 
 def check_without_offsets(folder, capture):

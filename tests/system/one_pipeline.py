@@ -38,7 +38,7 @@ def offline(path, folder):
 
 def live(path, folder, count):
     """The same of the daemons."""
-    with Process(BINARIES, "velodynelogger", free_port(0), folder, {"source.port": free_port(0, socket.SOCK_DGRAM)}) as logger, \
+    with Process(BINARIES, "velodynelogger", free_port(0), folder, {"source.port": free_port(0, socket.SOCK_DGRAM), "decode.clock": "gps"}) as logger, \
             Process(BINARIES, "scanmatcher", free_port(0), folder,
                     {"source.address": f"127.0.0.1:{logger.port}", "source.queue": 10000}) as matcher:
         to_logger, control = logger.connect(), matcher.connect()

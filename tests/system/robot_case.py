@@ -7,7 +7,7 @@ import time
 import unittest
 
 from robot import NAMES, Robot
-from support import BINARIES, BUILD, WORLD, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, BUILD, WORLD, Daemon, DaemonError, Process, fastest_wheel, free_port, wait_for
 
 INTERPOSED = {"LD_PRELOAD": os.path.join(BUILD, "tests", "system", "interposed.so"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
 
@@ -78,7 +78,7 @@ class RobotCase(unittest.TestCase):
                 self.assertIsNotNone(self.robot.items(other), f"{other} does not answer")
 
     def stands(self):
-        return max(map(abs, self.simulator.call("sim.state")["motors"]["wheels_rps"])) < 0.02
+        return fastest_wheel(self.simulator) < 0.02
 
     def drive(self, until, limit_s=10):
         """A client that goes on driving whatever it is told; the last refusal."""

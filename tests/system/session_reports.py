@@ -3,65 +3,29 @@
 import json
 import math
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
-import threading
 import unittest
 
-from recorder import Robot
-from support import BINARIES, Daemon, DaemonError, wait_for
+from recorded_robot import RecordedRobot
+from support import BINARIES, release, wait_for
 
 
-class Driver(threading.Thread):
-    """A client that has the control and drives in a circle at 10 Hz, until it is told to be silent or is refused."""
-
-    def __init__(self, port, name):
-        super().__init__(daemon=True)
-        self.motors = Daemon(port=port)
-        self.motors.call("control.acquire", client=name, timeout_s=2)
-        self.silent = threading.Event()
-        self.start()
-
-    def run(self):
-        try:
-            while not self.silent.wait(0.1):
-                self.motors.call("motor.drive", vx=0.4, omega=0.3)
-        except (DaemonError, OSError):
-            pass
-
-
-class Reports(unittest.TestCase):
+class Reports(RecordedRobot):
     def setUp(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        self.robot = Robot(folder)
-        self.addCleanup(self.robot.stop)
-        self.call = lambda method, **params: self.robot.recorder.call(method, **params)
+        super().setUp()
         self.motors = self.robot.daemons["motorcontrol"]
-
-    def drive(self):
-        driver = Driver(self.robot.ports["motorcontrol"], "anna")
-        state = lambda: self.motors.call("motor.state")  # what was measured last stays while a controller is silent
-        wait_for("a drive", lambda: not (now := state())["halted"] and abs(now["twist"]["vx"]) > 0.35)
-        return driver
 
     def stopped_by(self, name, stop):
         """What the recorder explains of a drive that this ends."""
         self.call("session.start", name=name)
-        driver = self.drive()
+        driver = self.drive(vx=0.4, omega=0.3)
         stop(driver)
         wait_for("the halt", lambda: self.motors.call("motor.state")["halted"])
-        driver.silent.set()
-        driver.join()
-        counts = self.counts()
-        wait_for("what comes after it", lambda: self.counts() > counts + 100)
+        driver.end()
+        self.wait_for_messages(100)  # what comes after it
         self.call("session.stop")
         return self.call("session.explain", name=name)["text"]
-
-    def counts(self):
-        return next(part["counts"] for part in self.call("session.state")["parts"] if part["daemon"] == "recorder")["messages"]
 
     def test_causes_are_named(self):
         simulator = self.robot.daemons["simulator"]
@@ -88,25 +52,18 @@ class Reports(unittest.TestCase):
             if name == "take-over":
                 self.motors.call("control.release")
             if name == "estop":
-                wait_for("the release", self.is_released)
+                release(self.motors)
             if name == "controller":
                 simulator.call("sim.fault", device="controller2", kind="none")
                 wait_for("the controller", lambda: self.motors.call("motor.state")["ready"])
         self.assertIn("motor.estop", self.call("session.info", name="estop")["stops"][-1])
 
-    def is_released(self):
-        try:
-            self.motors.call("motor.reset_estop", confirm=True)
-        except DaemonError:
-            return False
-        return True
-
     def test_map_of_a_session_is_the_live_one(self):
         self.call("session.start", name="drive")
-        driver = self.drive()
+        driver = self.drive(vx=0.4, omega=0.3)
         begin = self.robot.daemons["scanmatcher"].call("matcher.state")["scans"]
         wait_for("scans", lambda: self.robot.daemons["scanmatcher"].call("matcher.state")["scans"] > begin + 60)
-        driver.silent.set()
+        driver.end()
         self.call("session.stop")
         folder = os.path.join(self.robot.records, "drive")
         info = self.call("session.info", name="drive")

@@ -9,7 +9,7 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, WORLD, Process, free_port, release, wait_for
+from support import BINARIES, WORLD, Process, fastest_wheel, free_port, release, wait_for
 from tls import issued, keys
 
 CARRIERS, ENDS, STOPS = ("tcp", "unix", "tls"), ("kill", "freeze"), (None, "motor.stop", "motor.estop")
@@ -44,10 +44,6 @@ if end == "kill":
     os.kill(os.getpid(), 9)
 time.sleep(60)
 """
-
-
-def fastest_wheel(simulator):
-    return max(abs(speed) for speed in simulator.call("sim.state")["motors"]["wheels_rps"])
 
 
 def turned_for(simulator, since):

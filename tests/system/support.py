@@ -4,6 +4,7 @@ import os
 import re
 import socket
 import sys
+import threading
 import time
 import tty
 
@@ -30,6 +31,27 @@ class Process(processes.Process):
 
     def __exit__(self, *_):
         self.stop()
+
+
+class Listener(threading.Thread):
+    """All messages of a topic from now on, and when each came."""
+
+    def __init__(self, port, topic):
+        super().__init__(daemon=True)
+        self.messages, self.times = [], []
+        self.stream = Daemon(port=port, timeout=None).subscribe(topic, queue=1000)
+        self.start()
+
+    def run(self):
+        try:
+            for message in self.stream:
+                self.times.append(time.monotonic())
+                self.messages.append(message)
+        except (OSError, ValueError):
+            pass  # the daemon has ended
+
+    def wait(self, count, limit_s=60):
+        wait_for(f"{count} messages", lambda: len(self.messages) >= count, limit_s)
 
 
 def text_of(path):
@@ -89,6 +111,10 @@ def simulated_hall(folder, size=9, pose=(0, 0, 0), **settings):
         [-size, -9, size, -9], [size, -9, size, 9], [size, 9, -size, 9], [-size, 9, -size, -9]]})
     settings = {"motors.link": os.path.join(folder, "motors"), "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM), **settings}
     return Process(BINARIES, "simulator", free_port(0), folder, settings), settings["motors.link"]
+
+
+def fastest_wheel(simulator):
+    return max(abs(speed) for speed in simulator.call("sim.state")["motors"]["wheels_rps"])
 
 
 class SerialPort:

@@ -12,6 +12,7 @@
 #include "vectorlib/experiments/Scene.h"
 #include "vectorlib/experiments/VectorizationExperiment.h"
 #include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/Svg.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "gui/desktop/drive/DriveControl.h"
 
 #include "common/Time.h"
-#include "gui/desktop/drive/StopReason.h"
+#include "gui/desktop/drive/OwnName.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
@@ -77,10 +77,9 @@ void DriveControl::follow() {
     if (found == motors_)
         return;
     halt();
-    if (motors_) {
+    if (motors_)
         motors_->disconnect(this);
-        motors_->unsubscribe(settings_);
-    }
+    settings_.reset();
     motors_ = found;
     if (found && found != driven_) { // the limit is another robot's
         most_ = usualMost;
@@ -325,17 +324,12 @@ void DriveControl::end() {
     if (isDriving_ && motors_) {
         // Calls, which are repeated where frames are lost.
         motors_->client().call(
-            "motor.stop", named("motor.stop"), [](const auto &) {}, Client::defaultTimeout,
+            "motor.stop", ownNameFor(motors_, "motor.stop"), [](const auto &) {}, Client::defaultTimeout,
             Client::Repeats::AtOnce);
         giveBack();
     }
     isDriving_ = isHolding_ = false;
     Q_EMIT changed();
-}
-
-// With the name of this program, where the method takes one.
-QJsonObject DriveControl::named(const QString &method) const {
-    return motors_->takes(method, "client") ? QJsonObject{{"client", ownName()}} : QJsonObject();
 }
 
 void DriveControl::stop() {
@@ -356,91 +350,11 @@ void DriveControl::release() {
     stop_.release();
     if (!motors_ || stop_.phase() != StopPhase::None)
         return; // whose lines ask for it
-    motors_->call("motor.reset_estop", named("motor.reset_estop"), this,
+    motors_->call("motor.reset_estop", ownNameFor(motors_, "motor.reset_estop"), this,
                   [this](const Result<QJsonValue> &result) {
                       tell(result ? QString() : result.error().message);
                       poll();
                   });
-}
-
-void DriveControl::poll() {
-    if (!motors_ || !motors_->isConnected() || isPolling_)
-        return;
-    isPolling_ = true;
-    motors_->call("motor.state", {}, this,
-                  [this, losses = losses_, asked = motors_](const Result<QJsonValue> &state) {
-                      if (!asked || asked != motors_)
-                          return;
-                      isPolling_ = false;
-                      if (losses != losses_)
-                          poll();
-                      else if (state)
-                          onState(*state);
-                  });
-}
-
-void DriveControl::onOdometry(const TopicUpdate &update) {
-    if (update.replayed)
-        return;
-    ReadReport report;
-    const auto odometry = readMessage<OdometryMessage>(update.data, report);
-    if (!odometry)
-        return tell(tr("Odometry: %1").arg(report.text()));
-    measured_ = odometry->twist;
-    measuredAge_.heard(odometry_.source());
-    if (odometry_.source() == motors_) // no other clock is asked for
-        clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
-    Q_EMIT changed();
-}
-
-void DriveControl::onState(const QJsonValue &state) {
-    ReadReport report;
-    auto hold = readMessage<MotionHold>(WireValue(state), report);
-    if (!hold)
-        return tell(tr("State of the motors: %1").arg(report.text()));
-    stateAge_.heard(motors_);
-    const bool wasStopped = isStopped(), wasLatched = !hold_.latched.isEmpty();
-    hold_ = std::move(*hold);
-    if (!isHolding_ && hold_.control.holder == ownName() && lost_.isValid() &&
-        !lost_.hasExpired(qint64(1000 * lease_s)))
-        hold_.control.held = false; // the state is older than the release
-    target_ = readMessage<Twist2D>(WireValue(state["target"]), report).value_or(Twist2D());
-    if (!isDriving_ && hold_.control.holder != ownName())
-        isHolding_ = false; // it ran out
-    if (isStopped() && !wasStopped) {
-        isDriving_ = isHolding_ = false;
-        commanded_ = {};
-        inputs_.needRest();
-    }
-    if ((wasLatched && hold_.latched.isEmpty()) || (!hold_.control.held && problem_ == heldProblem_))
-        tell({}); // what was refused because of it
-    Q_EMIT changed();
-}
-
-QString DriveControl::stopReason() const {
-    QStringList reasons;
-    const bool isOurs = fleet_.robot() && stop_.isPressedFor(*fleet_.robot());
-    for (const QString &reason : hold_.latched)
-        reasons.append(readableStop(reason, isOurs));
-    return reasons.join("; ");
-}
-
-bool DriveControl::isStanding() const {
-    constexpr double slowest = 0.02; // m/s or rad/s
-    const bool isMoving = measuredAge_.isFresh() && std::max(std::hypot(measured_.vx, measured_.vy),
-                                                             std::abs(measured_.omega)) > slowest;
-    return stop_.phase() == StopPhase::Confirmed && !isMoving;
-}
-
-QString DriveControl::holder() const {
-    if (!hold_.control.held)
-        return {};
-    const QString name = hold_.control.holder.value_or(QString());
-    return isHolding_ && name == ownName() ? tr("you") : name;
-}
-
-QString DriveControl::wanted() const {
-    return isHolding_ ? hold_.control.wanted.value_or(QString()) : QString();
 }
 
 void DriveControl::tell(const QString &problem) {

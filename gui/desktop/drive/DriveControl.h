@@ -9,7 +9,6 @@
 #include "protocol/messages/Motors.h"
 
 #include <QElapsedTimer>
-#include <QHash>
 
 namespace hermes::desktop {
 
@@ -76,6 +75,7 @@ public:
     bool isStanding() const;
     /// Who holds the control: "" nobody, "you", or the name of another client.
     QString holder() const;
+    bool isHeldByOther() const;
     /// Who asks for the control that this program has; empty: nobody.
     QString wanted() const;
     /// The velocity that is commanded, by whoever drives, and the one that odometry measures.
@@ -115,7 +115,6 @@ private:
     void end();
     void acquire(bool takeOver);
     void ask();
-    QJsonObject named(const QString &method) const;
     void giveBack();
     void lose();
     void send();
@@ -130,7 +129,7 @@ private:
     Fleet &fleet_;
     TopicFeed odometry_;
     QPointer<DaemonLink> motors_, driven_; ///< the second is away, as may be
-    int settings_ = 0;                     // subscription
+    Subscription settings_;                ///< the topic
     StopControl stop_;
     StopPhase shownPhase_ = StopPhase::None;
     Sessions sessions_;

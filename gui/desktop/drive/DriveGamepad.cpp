@@ -66,10 +66,6 @@ Result<void> DriveGamepad::endCalibration() {
     return {};
 }
 
-void DriveGamepad::cancelCalibration() {
-    enter(Step::None);
-}
-
 void DriveGamepad::useDefaults() {
     enter(Step::None);
     keep({});
@@ -98,9 +94,7 @@ void DriveGamepad::load() {
 void DriveGamepad::keep(const GamepadCalibration &calibration) {
     calibration_ = calibration;
     if (!kind_.isEmpty())
-        kept_.setValue(keyOf(kind_),
-                       QString::fromUtf8(QJsonDocument(QJsonArray::fromVariantList(calibration.toList()))
-                                             .toJson(QJsonDocument::Compact)));
+        kept_.setValue(keyOf(kind_), compactText(QJsonArray::fromVariantList(calibration.toList())));
     Q_EMIT changed();
 }
 

@@ -27,7 +27,7 @@ public:
     void beginCalibration();
     /// With what was measured since. Error: the calibration of before holds.
     Result<void> endCalibration();
-    void cancelCalibration();
+    void cancelCalibration() { enter(Step::None); }
     /// Forgets the calibration.
     void useDefaults();
 

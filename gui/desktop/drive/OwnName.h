@@ -1,5 +1,7 @@
 #pragma once
 
+#include "gui/desktop/model/DaemonLink.h"
+
 #include <QHostInfo>
 #include <QString>
 
@@ -12,4 +14,9 @@ inline QString ownName() {
            QHostInfo::localHostName().left(40);
 }
 
+/// The parameters of a method with that name, where the daemon is known to take it: it would refuse the rest,
+/// and with it a stop.
+inline QJsonObject ownNameFor(const DaemonLink *daemon, const QString &method) {
+    return daemon && daemon->takes(method, "client") ? QJsonObject{{"client", ownName()}} : QJsonObject();
+}
 } // namespace hermes::desktop

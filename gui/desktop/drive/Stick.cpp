@@ -17,7 +17,6 @@ constexpr double fullTurn = vectorlib::pi / 3; // of the ring is the whole rate 
 Stick::Stick(QWidget *parent)
     : QWidget(parent) {
     setMinimumSize(96, 96);
-    setToolTip(tr("Drag the knob to drive, the ring to turn. The arrow keys or WASD, Q and E do the same."));
 }
 
 void Stick::paintEvent(QPaintEvent *) {
@@ -80,10 +79,6 @@ void Stick::mouseMoveEvent(QMouseEvent *event) {
 void Stick::mouseReleaseEvent(QMouseEvent *event) {
     if (event->button() == Qt::LeftButton)
         letGo();
-}
-
-void Stick::hideEvent(QHideEvent *) {
-    letGo();
 }
 
 void Stick::changeEvent(QEvent *event) {

@@ -23,7 +23,7 @@ protected:
     void mousePressEvent(QMouseEvent *event) override;
     void mouseMoveEvent(QMouseEvent *event) override;
     void mouseReleaseEvent(QMouseEvent *event) override;
-    void hideEvent(QHideEvent *event) override;
+    void hideEvent(QHideEvent *) override { letGo(); }
     void changeEvent(QEvent *event) override;
 
 private:

@@ -23,18 +23,11 @@ StopBanner::StopBanner(DriveControl &drive, const Sounds &sounds, QWidget *paren
 QString StopBanner::wordOf(const DriveControl &drive) {
     if (!drive.isStopped())
         return tr("STOP");
-    switch (drive.stopping().phase()) {
-    case StopPhase::Pressed:
-        return tr("STOP pressed");
-    case StopPhase::Sent:
-        return tr("STOP sent");
-    case StopPhase::Taken:
-        return tr("STOP taken");
-    case StopPhase::Confirmed:
-        return tr("STOPPED");
-    default:
-        return tr("STOP holds"); // that it stands is not known as yet
-    }
+    const QMap<StopPhase, QString> words{{StopPhase::Pressed, tr("STOP pressed")},
+                                         {StopPhase::Sent, tr("STOP sent")},
+                                         {StopPhase::Taken, tr("STOP taken")},
+                                         {StopPhase::Confirmed, tr("STOPPED")}};
+    return words.value(drive.stopping().phase(), tr("STOP holds")); // that it stands is not known as yet
 }
 
 QString StopBanner::styleOf(const DriveControl &drive) {

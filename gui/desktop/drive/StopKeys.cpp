@@ -7,7 +7,6 @@
 #include <QDialog>
 #include <QKeyEvent>
 #include <QMouseEvent>
-#include <QWindow>
 
 namespace hermes::desktop {
 

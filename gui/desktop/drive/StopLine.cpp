@@ -6,7 +6,6 @@
 #include "protocol/messages/Motors.h"
 #include "protocol/wire/Fields.h"
 
-#include <QJsonArray>
 #include <algorithm>
 #include <memory>
 
@@ -41,9 +40,6 @@ StopLine::StopLine(DaemonLink *daemon, const QString &name, QObject *parent)
     second_.connectTo(asOwner(address_));
     connect(&timer_, &QTimer::timeout, this, &StopLine::tick);
     timer_.start(period);
-    const auto noteLoss = [this] { mayHaveForgotten_ = true; };
-    connect(&second_, &Client::disconnected, this, noteLoss);
-    connect(&daemon->client(), &Client::disconnected, this, noteLoss);
     connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
     readWatchdogs();
 }
@@ -53,7 +49,6 @@ void StopLine::follow(DaemonLink *daemon) {
         return;
     daemon_ = daemon;
     connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
-    connect(&daemon->client(), &Client::disconnected, this, [this] { mayHaveForgotten_ = true; });
     readWatchdogs();
 }
 
@@ -74,10 +69,6 @@ std::vector<Client *> StopLine::openClients() {
     if (second_.isConnected())
         open.push_back(&second_);
     return open;
-}
-
-double StopLine::unconfirmed_s() const {
-    return phase_ == StopPhase::None ? 0 : seconds(unconfirmed_);
 }
 
 QString StopLine::reason() const {
@@ -107,7 +98,7 @@ void StopLine::press() {
         took_s_ = -1;
         reason_.clear();
     }
-    isWatched_ = isReleasing_ = mayHaveForgotten_ = false;
+    isWatched_ = isReleasing_ = false;
     lastPress_.start();
     renewed_.start();
     renewAfter_ms_ = firstRenewal_ms;
@@ -148,7 +139,7 @@ void StopLine::release() {
                 guard->release();
         });
     };
-    QJsonObject wanted = params("motor.reset_estop");
+    QJsonObject wanted = ownNameFor(daemon_, "motor.reset_estop");
     if (daemon_ && daemon_->takes("motor.reset_estop", "confirm"))
         wanted.insert("confirm", true); // by whoever sits here; the second connection has never driven
     for (Client *const client : clients)
@@ -214,11 +205,6 @@ void StopLine::tick() {
     Q_EMIT changed(); // its age
 }
 
-// Only what the daemon is known to take: it would refuse the rest, and with it the stop.
-QJsonObject StopLine::params(const QString &method) const {
-    return daemon_ && daemon_->takes(method, "client") ? QJsonObject{{"client", ownName()}} : QJsonObject();
-}
-
 void StopLine::send(Client &client) {
     if (phase_ == StopPhase::Pressed)
         enter(StopPhase::Sent);
@@ -226,7 +212,7 @@ void StopLine::send(Client &client) {
         if (guard && guard->press_ == press)
             guard->onAnswer(answer);
     };
-    client.call("motor.estop", params("motor.estop"), answered, Client::defaultTimeout,
+    client.call("motor.estop", ownNameFor(daemon_, "motor.estop"), answered, Client::defaultTimeout,
                 Client::Repeats::AtOnce);
 }
 

@@ -31,7 +31,10 @@ public:
     void setName(const QString &name) { name_ = name; }
     StopPhase phase() const { return phase_; }
     /// Since it was pressed, or since the robot was known to stand last; seconds.
-    double unconfirmed_s() const;
+    double unconfirmed_s() const {
+        return phase_ == StopPhase::None || !unconfirmed_.isValid() ? 0
+                                                                    : 1e-3 * double(unconfirmed_.elapsed());
+    }
     /// From the press to the confirmation; seconds.
     double took_s() const { return took_s_; }
     /// Why it is not confirmed, as far as that is known.
@@ -54,7 +57,6 @@ Q_SIGNALS:
 private:
     void tick();
     void send(Client &client);
-    QJsonObject params(const QString &method) const;
     void onAnswer(const Result<QJsonValue> &answer);
     void look();
     void onState(const Result<QJsonValue> &state);
@@ -75,8 +77,7 @@ private:
     int tries_ = 0;
     qint64 renewAfter_ms_ = 0;
     bool isWatched_ = false, isReleasing_ = false;
-    bool mayHaveForgotten_ = false; ///< a connection has ended since it was pressed
-    quint64 press_ = 0;             ///< counts them: what answers to an earlier one is no answer
+    quint64 press_ = 0; ///< counts them: what answers to an earlier one is no answer
     double took_s_ = 0, commandTimeout_s_ = 0, controllerTimeout_s_ = 0; ///< 0: not known
     QString reason_;
 };

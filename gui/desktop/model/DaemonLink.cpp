@@ -28,6 +28,13 @@ HealthItem worstItem(const DaemonStatus &status) {
     return worst;
 }
 
+Client::Callback whileThere(QObject *context, const Client::Callback &done) {
+    return [done, guard = QPointer<QObject>(context)](const Result<QJsonValue> &result) {
+        if (guard)
+            done(result);
+    };
+}
+
 } // namespace
 
 DaemonLink::DaemonLink(const QString &address, QObject *parent)
@@ -50,7 +57,7 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
             Q_EMIT changed();
     });
     client_.connectTo(asOwner(address));
-    subscribe("status", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) { onStatus(update.data); });
+    begin("status", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) { onStatus(update.data); });
 }
 
 QString DaemonLink::name() const {
@@ -147,23 +154,25 @@ bool DaemonLink::isUnderstood() const {
 
 void DaemonLink::call(const QString &method, const QJsonObject &params, QObject *context,
                       const Client::Callback &done, Client::Repeats repeats) {
-    const auto guarded = [done, guard = QPointer<QObject>(context)](const auto &result) {
-        if (guard)
-            done(result);
-    };
-    client_.call(method, params, guarded, Client::defaultTimeout, repeats);
+    client_.call(method, params, whileThere(context, done), Client::defaultTimeout, repeats);
 }
 
 void DaemonLink::callForMuch(const QString &method, const QJsonObject &params, QObject *context,
                              const Client::Callback &done) {
-    client_.callForMuch(method, params, [done, guard = QPointer<QObject>(context)](const auto &result) {
-        if (guard)
-            done(result);
-    });
+    client_.callForMuch(method, params, whileThere(context, done));
 }
 
-int DaemonLink::subscribe(const QString &topic, const QJsonObject &options,
-                          const Client::TopicCallback &callback) {
+Subscription DaemonLink::subscribe(const QString &topic, const QJsonObject &options,
+                                   const Client::TopicCallback &callback) {
+    const int handle = begin(topic, options, callback);
+    return {nullptr, [link = QPointer<DaemonLink>(this), handle](const void *) {
+                if (link)
+                    link->unsubscribe(handle);
+            }};
+}
+
+int DaemonLink::begin(const QString &topic, const QJsonObject &options,
+                      const Client::TopicCallback &callback) {
     if (options.contains("queue"))
         return client_.subscribe(topic, options, callback);
     const double rate_hz = options["max_rate_hz"].toDouble(usualRate_hz);

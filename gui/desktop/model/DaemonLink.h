@@ -9,11 +9,15 @@
 #include <QObject>
 #include <QSet>
 #include <QTimer>
+#include <memory>
 
 namespace hermes::desktop {
 
 /// How a daemon is, at one glance. Each has one colour, one icon and one word (Theme.h).
 enum class Condition { Ready, Busy, Warning, Fault, Unreachable };
+
+/// A topic is subscribed to for as long as somebody has this.
+using Subscription = std::shared_ptr<void>;
 
 /// One daemon as the operator's program knows it: the connection, and what the daemon says of itself. It
 /// keeps connecting, reads the description again when its hash changes, and asks for the status again and
@@ -84,8 +88,8 @@ public:
                      const Client::Callback &done);
     /// As Client::subscribe. Without "queue" in the options only the newest message counts, and no more of
     /// them come than "max_rate_hz" allows, or 100 a second, whatever the daemon sends.
-    int subscribe(const QString &topic, const QJsonObject &options, const Client::TopicCallback &callback);
-    void unsubscribe(int handle);
+    [[nodiscard]] Subscription subscribe(const QString &topic, const QJsonObject &options,
+                                         const Client::TopicCallback &callback);
 
 Q_SIGNALS:
     /// Connection, state, health or latency.
@@ -96,6 +100,8 @@ Q_SIGNALS:
     void ready();
 
 private:
+    int begin(const QString &topic, const QJsonObject &options, const Client::TopicCallback &callback);
+    void unsubscribe(int handle);
     void onConnected();
     void introduce();
     void onDescription(const QJsonValue &description);

@@ -46,14 +46,6 @@ void EventTable::refresh() {
     endResetModel();
 }
 
-int EventTable::rowCount(const QModelIndex &parent) const {
-    return parent.isValid() ? 0 : int(rows_.size());
-}
-
-int EventTable::columnCount(const QModelIndex &) const {
-    return ColumnCount;
-}
-
 QString EventTable::textOf(const Event &event, int column) const {
     switch (column) {
     case TimeColumn: {

@@ -37,12 +37,13 @@ bool isAccountedFor(const ProcessStatus *process) {
 
 } // namespace
 
-EventWatch::EventWatch(Fleet &fleet, LogFeed &log, Events &events, QObject *parent)
+EventWatch::EventWatch(Fleet &fleet, LogFeed &log, const DriveControl &drive, Events &events, QObject *parent)
     : QObject(parent)
     , fleet_(fleet)
     , events_(events) {
     connect(&log, &LogFeed::recorded, this, &EventWatch::onRecord);
     connect(&fleet, &Fleet::changed, this, &EventWatch::watchAll);
+    connect(&drive, &DriveControl::changed, this, [this, &drive] { lookAtControl(drive); });
     watchAll();
 }
 
@@ -120,6 +121,16 @@ void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, LogFeed:
         events_.happened(level, nameOf(*daemon), text);
     else // what came while the link was away was seen by nobody
         events_.happenedBefore(level, nameOf(*daemon), text, record.stamp, when == LogFeed::When::Before);
+}
+
+void EventWatch::lookAtControl(const DriveControl &drive) {
+    const QString holder = drive.holder();
+    const bool isSame = std::exchange(robot_, fleet_.robot()) == fleet_.robot();
+    if (std::exchange(holder_, holder) == holder && isSame)
+        return;
+    if (robot_ && drive.isHeldByOther() && holder != ownName())
+        events_.happened(Event::Level::Info, fleet_.titleOf(*robot_),
+                         tr("%1 has taken the control").arg(shortLine(holder, 80)));
 }
 
 QString EventWatch::nameOf(const DaemonLink &daemon) const {

@@ -16,10 +16,7 @@ constexpr std::size_t lookBack = 50; // for an event that is alike
 void Events::happened(Event::Level level, const QString &from, const QString &text, bool isSeen) {
     if (Event *const before = alike(level, from, text))
         return comeAgain(*before, isSeen);
-    Event &event = add(level, from, text, stampNow());
-    event.isAcknowledged = isSeen || level == Event::Level::Info;
-    event.over = monotonicNow();
-    tell(event);
+    happenedBefore(level, from, text, stampNow(), isSeen);
 }
 
 void Events::happenedBefore(Event::Level level, const QString &from, const QString &text, double stamp,

@@ -91,6 +91,8 @@ Robot *Fleet::robotWith(const QString &id) {
 }
 
 DaemonLink *Fleet::daemonAt(const QString &address) const {
+    if (address.isEmpty())
+        return nullptr; // of which QString::section() would fail
     const auto entry = entries_.find({address.section(':', 0, -2), address.section(':', -1).toUShort()});
     return entry == entries_.end() ? nullptr : entry->second.link.get();
 }

@@ -22,8 +22,10 @@ void LogFeed::follow(DaemonLink *daemon) {
     followed_.insert(daemon, {});
     connect(daemon, &QObject::destroyed, this, [this, daemon] { followed_.remove(daemon); });
     connect(daemon, &DaemonLink::ready, this, [this, daemon] { readLast(daemon); });
-    daemon->subscribe("log", {{"queue", lastRecords}},
-                      [this, daemon](const TopicUpdate &update) { take(daemon, update.data, When::Now); });
+    followed_[daemon].log =
+        daemon->subscribe("log", {{"queue", lastRecords}}, [this, daemon](const TopicUpdate &update) {
+            take(daemon, update.data, When::Now);
+        });
     readLast(daemon);
 }
 

@@ -35,6 +35,7 @@ private:
     struct Followed {
         double latest = -1;  ///< stamp of the latest record; -1: none
         QSet<double> stamps; ///< of those that came since it was connected
+        Subscription log;
     };
 
     Fleet &fleet_;

@@ -35,10 +35,6 @@ DaemonLink *MacroStep::target(const Fleet &fleet) const {
     return found.size() == 1 ? found.front() : nullptr; // of two nobody knows which was meant
 }
 
-QString MacroStep::title() const {
-    return daemon + ", " + method;
-}
-
 QString MacroStep::problem() const {
     const int bytes = compact(QJsonDocument(params)).size();
     if (bytes > maxParams)

@@ -21,7 +21,7 @@ struct MacroStep {
     /// Null: there is none of that name at that robot, or more than one.
     DaemonLink *target(const Fleet &fleet) const;
     /// "motorcontrol, motor.stop"
-    QString title() const;
+    QString title() const { return daemon + ", " + method; }
     /// Why it cannot be kept; empty: it can.
     QString problem() const;
 };

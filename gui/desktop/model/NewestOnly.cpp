@@ -18,10 +18,6 @@ void NewestOnly::take(const TopicUpdate &update) {
         pass();
 }
 
-void NewestOnly::close() {
-    isClosed_ = true;
-}
-
 void NewestOnly::pass() {
     if (!newest_ || isClosed_)
         return;

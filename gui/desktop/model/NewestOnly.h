@@ -16,7 +16,7 @@ public:
 
     void take(const TopicUpdate &update);
     /// Nothing passes any more.
-    void close();
+    void close() { isClosed_ = true; }
 
 private:
     void pass();

@@ -16,15 +16,6 @@ Robot::Robot(const QString &id, QObject *parent)
     : QObject(parent)
     , id_(id) {}
 
-Robot::~Robot() {
-    for (const auto &[link, supervisor] : supervisors_)
-        link->unsubscribe(supervisor.handle);
-}
-
-QString Robot::name() const {
-    return !givenName_.isEmpty() ? givenName_ : !toldName_.isEmpty() ? toldName_ : id_;
-}
-
 QString Robot::address() const {
     QStringList places;
     for (const auto &[link, supervisor] : supervisors_)
@@ -54,31 +45,12 @@ bool Robot::has(const DaemonLink *daemon) const {
     return found != daemons_.end() && found->second == daemon;
 }
 
-DaemonLink *Robot::withMethod(const QString &method) const {
-    const std::vector<DaemonLink *> all = allWithMethod(method);
-    return all.empty() ? nullptr : all.front();
-}
-
 std::vector<DaemonLink *> Robot::allWithMethod(const QString &method) const {
     std::vector<DaemonLink *> found;
     for (const auto &[place, daemon] : daemons_)
         if (daemon->isConnected() && daemon->hasMethod(method))
             found.push_back(daemon);
     return found;
-}
-
-DaemonLink *Robot::withTopic(const QString &topic) const {
-    for (const auto &[place, daemon] : daemons_)
-        if (daemon->isConnected() && daemon->hasTopic(topic))
-            return daemon;
-    return nullptr;
-}
-
-DaemonLink *Robot::withName(const QString &name) const {
-    for (const auto &[place, daemon] : daemons_)
-        if (daemon->isKnown() && daemon->name() == name)
-            return daemon;
-    return nullptr;
 }
 
 Robot::Found Robot::find(const DaemonLink &daemon) const {
@@ -89,10 +61,6 @@ Robot::Found Robot::find(const DaemonLink &daemon) const {
                     if (process.entry.port == daemon.port())
                         return {link, &process};
     return {};
-}
-
-const ProcessStatus *Robot::process(const DaemonLink &daemon) const {
-    return find(daemon).second;
 }
 
 DaemonLink *Robot::supervisorOf(const DaemonLink &daemon) const {
@@ -130,18 +98,15 @@ void Robot::release(DaemonLink *daemon) {
     daemons_.erase({daemon->port(), daemon->host()});
     daemon->disconnect(this);
     daemon->client().disconnect(this);
-    if (const auto supervisor = supervisors_.find(daemon); supervisor != supervisors_.end()) {
-        daemon->unsubscribe(supervisor->second.handle);
-        supervisors_.erase(supervisor);
+    if (supervisors_.erase(daemon) > 0)
         findNamed();
-    }
 }
 
 /// A supervisor.
 void Robot::watch(DaemonLink *daemon) {
     if (!daemon->hasMethod("process.list") || supervisors_.count(daemon) > 0)
         return;
-    supervisors_[daemon].handle =
+    supervisors_[daemon].subscription =
         daemon->subscribe("processes", {{"max_rate_hz", 10}},
                           [this, daemon](const TopicUpdate &update) { takeProcesses(daemon, update.data); });
 }

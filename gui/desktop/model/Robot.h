@@ -3,7 +3,6 @@
 #include "gui/desktop/model/DaemonLink.h"
 #include "protocol/messages/Daemons.h"
 
-#include <QPointer>
 #include <map>
 #include <set>
 #include <vector>
@@ -19,27 +18,36 @@ public:
     static constexpr int longestName = 30;
 
     explicit Robot(const QString &id, QObject *parent = nullptr);
-    ~Robot() override;
 
     /// What tells it from all others: its id, or the host.
     const QString &id() const { return id_; }
     /// Where its supervisors are, else its daemons.
     QString address() const;
     /// What the operator calls it, else it itself, else its id.
-    QString name() const;
+    QString name() const {
+        return !givenName_.isEmpty() ? givenName_ : !toldName_.isEmpty() ? toldName_ : id_;
+    }
     void setGivenName(const QString &name);
 
     /// All daemons of it that are to be shown, in the order of their ports.
     std::vector<DaemonLink *> daemons() const;
     bool has(const DaemonLink *daemon) const;
     /// The first connected daemon that has the method or the topic; null: none.
-    DaemonLink *withMethod(const QString &method) const;
+    DaemonLink *withMethod(const QString &method) const {
+        return first(
+            [&](const DaemonLink &daemon) { return daemon.isConnected() && daemon.hasMethod(method); });
+    }
     /// All connected daemons that have the method.
     std::vector<DaemonLink *> allWithMethod(const QString &method) const;
-    DaemonLink *withTopic(const QString &topic) const;
-    DaemonLink *withName(const QString &name) const;
+    DaemonLink *withTopic(const QString &topic) const {
+        return first(
+            [&](const DaemonLink &daemon) { return daemon.isConnected() && daemon.hasTopic(topic); });
+    }
+    DaemonLink *withName(const QString &name) const {
+        return first([&](const DaemonLink &daemon) { return daemon.isKnown() && daemon.name() == name; });
+    }
     /// What a supervisor of its host tells of a daemon; null: nothing.
-    const ProcessStatus *process(const DaemonLink &daemon) const;
+    const ProcessStatus *process(const DaemonLink &daemon) const { return find(daemon).second; }
     /// That supervisor; null: there is none, or none that can be spoken to.
     DaemonLink *supervisorOf(const DaemonLink &daemon) const;
     /// What of the supervisors' lists cannot be shown, and what else is not as it should be; empty: nothing.
@@ -62,12 +70,19 @@ Q_SIGNALS:
 
 private:
     struct Supervisor {
-        int handle = 0;
+        Subscription subscription;
         std::vector<ProcessStatus> processes;
         QString problem;
     };
     using Found = std::pair<DaemonLink *, const ProcessStatus *>;
 
+    template <typename IsWanted>
+    DaemonLink *first(IsWanted isWanted) const {
+        for (const auto &[place, daemon] : daemons_)
+            if (isWanted(*daemon))
+                return daemon;
+        return nullptr;
+    }
     void watch(DaemonLink *daemon);
     void takeProcesses(DaemonLink *supervisor, WireView data);
     void nameDaemons();

@@ -16,27 +16,20 @@ TopicFeed::TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &opti
     follow(fleet.robot());
 }
 
-TopicFeed::~TopicFeed() {
-    if (source_)
-        source_->unsubscribe(handle_);
-}
-
 void TopicFeed::setEnabled(bool isEnabled) {
     isEnabled_ = isEnabled;
     update();
 }
 
 void TopicFeed::renew() {
-    if (renewal_.isActive())
-        return;
-    renewal_.start();
+    if (!renewal_.isActive())
+        renewal_.start();
 }
 
 void TopicFeed::subscribeAnew() {
-    if (!source_)
-        return;
-    source_->unsubscribe(handle_);
-    handle_ = source_->subscribe(topic_, options_, callback_);
+    subscription_.reset();
+    if (source_)
+        subscription_ = source_->subscribe(topic_, options_, callback_);
 }
 
 void TopicFeed::follow(Robot *robot) {
@@ -57,11 +50,8 @@ void TopicFeed::update() {
                                                      : nullptr;
     if (found == source_)
         return;
-    if (source_)
-        source_->unsubscribe(handle_);
     source_ = found;
-    if (found)
-        handle_ = found->subscribe(topic_, options_, callback_);
+    subscribeAnew();
     Q_EMIT sourceChanged();
 }
 

@@ -14,7 +14,6 @@ public:
     /// options: as topics.subscribe takes them.
     TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &options,
               const Client::TopicCallback &callback, QObject *parent);
-    ~TopicFeed() override;
 
     /// The daemon that the messages come from; null: nobody has the topic.
     DaemonLink *source() const { return source_; }
@@ -39,7 +38,7 @@ private:
     const Client::TopicCallback callback_;
     QPointer<Robot> robot_;
     QPointer<DaemonLink> source_;
-    int handle_ = 0;
+    Subscription subscription_;
     QTimer renewal_;
     bool isEnabled_ = true;
 };

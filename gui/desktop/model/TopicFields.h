@@ -6,7 +6,6 @@
 #include <QString>
 #include <QStringList>
 #include <tuple>
-#include <vector>
 
 namespace hermes::desktop {
 

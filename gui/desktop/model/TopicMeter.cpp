@@ -9,14 +9,9 @@ namespace hermes::desktop {
 
 TopicMeter::TopicMeter(DaemonLink *daemon, const QString &topic, double maxRate_hz, Client::TopicCallback see)
     : daemon_(daemon)
-    , handle_(daemon->subscribe(topic, {{"max_rate_hz", maxRate_hz}},
-                                [this](const TopicUpdate &update) { take(update); }))
+    , subscription_(daemon->subscribe(topic, {{"max_rate_hz", maxRate_hz}},
+                                      [this](const TopicUpdate &update) { take(update); }))
     , see_(std::move(see)) {}
-
-TopicMeter::~TopicMeter() {
-    if (daemon_)
-        daemon_->unsubscribe(handle_);
-}
 
 void TopicMeter::take(const TopicUpdate &update) {
     constexpr double least_s = 0.9; // that a rate is measured over

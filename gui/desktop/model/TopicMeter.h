@@ -14,13 +14,10 @@ public:
 
     /// `see` gets the messages.
     TopicMeter(DaemonLink *daemon, const QString &topic, double maxRate_hz, Client::TopicCallback see);
-    ~TopicMeter();
     TopicMeter(const TopicMeter &) = delete;
     TopicMeter &operator=(const TopicMeter &) = delete;
 
     const Freshness &freshness() const { return freshness_; }
-    /// Per second; negative: not known as yet.
-    double measured_hz() const { return measured_hz_; }
     /// "50 Hz, 0.2 s", or "no data for 3 s"; empty: nothing has come.
     QString text() const;
 
@@ -28,11 +25,11 @@ private:
     void take(const TopicUpdate &update);
 
     QPointer<DaemonLink> daemon_;
-    int handle_;
+    Subscription subscription_;
     const Client::TopicCallback see_;
     Freshness freshness_;
-    double measured_hz_ = -1;
-    double since_ = 0; ///< on this computer's clock that never jumps: when the count began
+    double measured_hz_ = -1; ///< not known as yet
+    double since_ = 0;        ///< on this computer's clock that never jumps: when the count began
     quint64 first_ = 0;
 };
 

@@ -12,12 +12,6 @@ TopicSampler::TopicSampler(Fleet &fleet, QObject *parent)
     connect(&fleet, &Fleet::changed, this, &TopicSampler::followAll);
 }
 
-TopicSampler::~TopicSampler() {
-    for (const auto &[topic, source] : sources_)
-        if (source.daemon)
-            source.daemon->unsubscribe(source.handle);
-}
-
 void TopicSampler::add(const FieldId &field) {
     fields_.emplace(field, Samples());
     sources_[{field.address, field.topic}];
@@ -30,53 +24,32 @@ void TopicSampler::remove(const FieldId &field) {
     for (const auto &[other, samples] : fields_)
         if (TopicId(other.address, other.topic) == topic)
             return;
-    const auto source = sources_.find(topic);
-    if (source == sources_.end())
-        return;
-    if (source->second.daemon)
-        source->second.daemon->unsubscribe(source->second.handle);
-    sources_.erase(source);
+    sources_.erase(topic);
 }
 
 // The subscription to a daemon that is away for a moment renews itself.
 void TopicSampler::followAll() {
     for (auto &[topic, source] : sources_) {
-        for (const auto &robot : fleet_.robots())
-            for (DaemonLink *daemon : source.daemon ? std::vector<DaemonLink *>() : robot->daemons())
-                if (daemon->address() == topic.first && daemon->hasTopic(topic.second)) {
-                    source.daemon = daemon;
-                    source.handle = daemon->subscribe(
-                        topic.second, {{"max_rate_hz", maxRate_hz}},
-                        [this, id = topic](const TopicUpdate &update) { take(id, update); });
-                }
+        DaemonLink *const daemon = source.daemon ? nullptr : fleet_.daemonAt(topic.first);
+        if (!daemon || !daemon->hasTopic(topic.second))
+            continue;
+        source.daemon = daemon;
+        source.subscription =
+            daemon->subscribe(topic.second, {{"max_rate_hz", maxRate_hz}},
+                              [this, id = topic](const TopicUpdate &update) { take(id, update); });
     }
 }
 
-const TopicSampler::Source *TopicSampler::source(const FieldId &field) const {
+const TopicSampler::Source &TopicSampler::source(const FieldId &field) const {
+    static const Source none;
     const auto found = sources_.find({field.address, field.topic});
-    return found == sources_.end() ? nullptr : &found->second;
+    return found == sources_.end() ? none : found->second;
 }
 
 const Samples &TopicSampler::samples(const FieldId &field) const {
     static const Samples none;
     const auto found = fields_.find(field);
     return found == fields_.end() ? none : found->second;
-}
-
-const Freshness &TopicSampler::freshness(const FieldId &field) const {
-    static const Freshness none;
-    const Source *const found = source(field);
-    return found ? found->freshness : none;
-}
-
-QString TopicSampler::clock(const FieldId &field) const {
-    const Source *const found = source(field);
-    return found ? found->clock : QString();
-}
-
-bool TopicSampler::isRecorded(const FieldId &field) const {
-    const Source *const found = source(field);
-    return found && found->isRecorded;
 }
 
 double TopicSampler::now(const QString &clock) const {

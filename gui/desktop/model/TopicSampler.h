@@ -30,18 +30,17 @@ public:
     static constexpr double recorded_s = 60;
 
     explicit TopicSampler(Fleet &fleet, QObject *parent = nullptr);
-    ~TopicSampler() override;
 
     void add(const FieldId &field);
     void remove(const FieldId &field);
     const Samples &samples(const FieldId &field) const;
     const std::map<FieldId, Samples> &all() const { return fields_; }
     /// How old the newest message of its topic is.
-    const Freshness &freshness(const FieldId &field) const;
+    const Freshness &freshness(const FieldId &field) const { return source(field).freshness; }
     /// Which topics have the same clock: those of one host, apart the ones of now and of a recording. Empty:
     /// nothing has come.
-    QString clock(const FieldId &field) const;
-    bool isRecorded(const FieldId &field) const;
+    QString clock(const FieldId &field) const { return source(field).clock; }
+    bool isRecorded(const FieldId &field) const { return source(field).isRecorded; }
     /// What time it is on a clock. That of now goes on by itself, that of a recording stands with it.
     double now(const QString &clock) const;
     /// Values beyond `largest`, and messages without a number at a chosen field.
@@ -50,7 +49,7 @@ public:
 private:
     struct Source {
         QPointer<DaemonLink> daemon;
-        int handle = 0;
+        Subscription subscription;
         Freshness freshness;
         QString clock;      ///< empty: nothing has come
         double newest = 0;  ///< stamp
@@ -62,7 +61,7 @@ private:
     void followAll();
     void take(const TopicId &topic, const TopicUpdate &update);
     void keep(Samples &samples, const QPointF &sample);
-    const Source *source(const FieldId &field) const;
+    const Source &source(const FieldId &field) const;
 
     Fleet &fleet_;
     std::map<FieldId, Samples> fields_;

@@ -2,11 +2,11 @@
 
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/model/MethodSchema.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
-#include <QHBoxLayout>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
@@ -29,11 +29,7 @@ ButtonsEditor::ButtonsEditor(const Fleet &fleet, Buttons &buttons, QWidget *pare
     : QWidget(parent)
     , fleet_(fleet)
     , buttons_(buttons) {
-    auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(makeList(), 2);
-    layout->addWidget(makeSteps(), 3);
-    layout->addWidget(makeStep(), 4);
+    filled(this, inRow({{makeList(), 2}, {makeSteps(), 3}, {makeStep(), 4}}));
     connect(&buttons, &Buttons::changed, this, [this] {
         if (!isChanging_)
             showAll();
@@ -41,75 +37,55 @@ ButtonsEditor::ButtonsEditor(const Fleet &fleet, Buttons &buttons, QWidget *pare
     showAll();
 }
 
-QToolButton *ButtonsEditor::addTool(QBoxLayout &line, const char *name, const QString &toolTip) {
-    auto *const tool = new QToolButton;
-    tool->setObjectName(name);
-    tool->setToolTip(toolTip);
-    tool->setAccessibleName(toolTip);
-    line.addWidget(tool);
-    return tool;
+/// Up, down, and remove.
+std::array<QToolButton *, 3> ButtonsEditor::makeTools(const QString &name, const QString &up,
+                                                      const QString &down, const QString &remove) {
+    const std::array<QToolButton *, 3> tools{named(new QToolButton, name + "Up", up),
+                                             named(new QToolButton, name + "Down", down),
+                                             named(new QToolButton, name + "Remove", remove)};
+    for (QToolButton *const tool : tools)
+        tool->setAccessibleName(tool->toolTip());
+    tools[0]->setArrowType(Qt::UpArrow);
+    tools[1]->setArrowType(Qt::DownArrow);
+    tools[2]->setIcon(theme::icon("remove"));
+    return tools;
 }
 
 QWidget *ButtonsEditor::makeList() {
-    auto *const column = new QWidget;
-    auto *const layout = new QVBoxLayout(column);
-    layout->setContentsMargins(0, 0, 0, 0);
-    auto *const back = new QPushButton(tr("Back to the commands"));
-    back->setObjectName("closeButtons");
-    back->setToolTip(tr("Commands are added there"));
-    layout->addWidget(back);
-    layout->addWidget(list_ = new QListWidget, 1);
-    list_->setObjectName("buttonList");
+    auto *const back =
+        named(new QPushButton(tr("Back to the commands")), "closeButtons", tr("Commands are added there"));
+    list_ = named(new QListWidget, "buttonList");
     list_->setAccessibleName(tr("Buttons"));
-    auto *const line = new QHBoxLayout;
-    listTools_ = {addTool(*line, "buttonUp", tr("Moves the button to the left")),
-                  addTool(*line, "buttonDown", tr("Moves the button to the right")),
-                  addTool(*line, "buttonRemove", tr("Removes the button"))};
-    listTools_[0]->setArrowType(Qt::UpArrow);
-    listTools_[1]->setArrowType(Qt::DownArrow);
-    listTools_[2]->setIcon(theme::icon("remove"));
-    line->addStretch();
-    layout->addLayout(line);
+    listTools_ = makeTools("button", tr("Moves the button to the left"), tr("Moves the button to the right"),
+                           tr("Removes the button"));
+    const auto [up, down, remove] = listTools_;
     connect(back, &QPushButton::clicked, this, &ButtonsEditor::closed);
     connect(list_, &QListWidget::currentRowChanged, this, &ButtonsEditor::showSteps);
-    for (int i : {0, 1})
-        connect(listTools_[std::size_t(i)], &QToolButton::clicked, this, [this, i] {
-            const int place = button();
-            buttons_.move(place, i == 0 ? -1 : 1);
-            choose(place + (i == 0 ? -1 : 1));
-        });
-    connect(listTools_[2], &QToolButton::clicked, this, [this] { buttons_.remove(button()); });
-    return column;
+    const auto move = [this](int by) {
+        const int place = button();
+        buttons_.move(place, by);
+        choose(place + by);
+    };
+    connect(up, &QToolButton::clicked, this, [move] { move(-1); });
+    connect(down, &QToolButton::clicked, this, [move] { move(1); });
+    connect(remove, &QToolButton::clicked, this, [this] { buttons_.remove(button()); });
+    return filled(new QWidget, inColumn({back, {list_, 1}, inRow({up, down, remove, Part::room()})}));
 }
 
 QWidget *ButtonsEditor::makeSteps() {
-    auto *const column = new QWidget;
-    auto *const layout = new QVBoxLayout(column);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(name_ = new QLineEdit);
-    layout->addWidget(steps_ = new QListWidget, 1);
-    name_->setObjectName("buttonName");
+    name_ = named(new QLineEdit, "buttonName");
     name_->setMaxLength(Macro::longestName);
     name_->setPlaceholderText(tr("Name of the button"));
     name_->setAccessibleName(tr("Name of the button"));
-    steps_->setObjectName("buttonSteps");
+    steps_ = named(new QListWidget, "buttonSteps");
     steps_->setAccessibleName(tr("Its commands, in their order"));
-    auto *const line = new QHBoxLayout;
-    stepTools_ = {addTool(*line, "stepUp", tr("Runs the command earlier")),
-                  addTool(*line, "stepDown", tr("Runs the command later")),
-                  addTool(*line, "stepRemove", tr("Removes the command"))};
-    stepTools_[0]->setArrowType(Qt::UpArrow);
-    stepTools_[1]->setArrowType(Qt::DownArrow);
-    stepTools_[2]->setIcon(theme::icon("remove"));
-    line->addStretch();
-    line->addWidget(new PlainLabel(tr("then wait")));
-    line->addWidget(pause_ = new QLineEdit);
-    line->addWidget(new PlainLabel(tr("s")));
-    pause_->setObjectName("stepPause");
+    stepTools_ = makeTools("step", tr("Runs the command earlier"), tr("Runs the command later"),
+                           tr("Removes the command"));
+    const auto [up, down, remove] = stepTools_;
+    pause_ = named(new QLineEdit, "stepPause",
+                   tr("Seconds between the answer to this command and the next one, at most 3600"));
     pause_->setFixedWidth(fontMetrics().horizontalAdvance("3600.00") + 16);
-    pause_->setToolTip(tr("Seconds between the answer to this command and the next one, at most 3600"));
     pause_->setAccessibleName(tr("Pause after the command in seconds"));
-    layout->addLayout(line);
     connect(name_, &QLineEdit::textEdited, this, [this](const QString &name) {
         if (name.trimmed().isEmpty() || button() < 0)
             return;
@@ -123,37 +99,26 @@ QWidget *ButtonsEditor::makeSteps() {
         changeStep([&](MacroStep &step) { step.pause_s = qBound(0.0, pause_s, MacroStep::longestPause_s); });
     });
     connect(pause_, &QLineEdit::editingFinished, this, &ButtonsEditor::showTexts);
-    connect(stepTools_[0], &QToolButton::clicked, this, [this] { moveStep(-1); });
-    connect(stepTools_[1], &QToolButton::clicked, this, [this] { moveStep(1); });
-    connect(stepTools_[2], &QToolButton::clicked, this, &ButtonsEditor::removeStep);
-    return column;
+    connect(up, &QToolButton::clicked, this, [this] { moveStep(-1); });
+    connect(down, &QToolButton::clicked, this, [this] { moveStep(1); });
+    connect(remove, &QToolButton::clicked, this, &ButtonsEditor::removeStep);
+    QLayout *const line = inRow(
+        {up, down, remove, Part::room(), new PlainLabel(tr("then wait")), pause_, new PlainLabel(tr("s"))});
+    return filled(new QWidget, inColumn({name_, {steps_, 1}, line}));
 }
 
 QWidget *ButtonsEditor::makeStep() {
-    auto *const page = new QWidget;
-    auto *const layout = new QVBoxLayout(page);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(about_ = new PlainLabel);
-    layout->addWidget(form_ = new SchemaForm, 1);
-    about_->setObjectName("aboutStep");
-    about_->setWordWrap(true);
-    about_->setMinimumWidth(1);
-    auto *const scroll = new QScrollArea;
-    scroll->setWidget(page);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
+    about_ = named(new PlainLabel, "aboutStep");
+    about_->letWrap();
+    form_ = new SchemaForm;
+    QScrollArea *const scroll = scrolled(filled(new QWidget, inColumn({about_, {form_, 1}})));
     scroll->setFocusPolicy(Qt::NoFocus);
-    auto *const column = new QWidget;
-    auto *const rows = new QVBoxLayout(column);
-    rows->setContentsMargins(0, 0, 0, 0);
-    rows->addWidget(scroll, 1);
-    rows->addWidget(notKept_ = new MessageLabel); // where no row moves with it
-    notKept_->setObjectName("stepNotKept");
+    notKept_ = named(new MessageLabel, "stepNotKept");
     connect(form_, &SchemaForm::edited, this, [this] {
         if (form_->isValid()) // what is wrong is not kept
             changeStep([this](MacroStep &step) { takeParameters(step); });
     });
-    return column;
+    return filled(new QWidget, inColumn({{scroll, 1}, notKept_})); // where no row moves with it
 }
 
 int ButtonsEditor::button() const {

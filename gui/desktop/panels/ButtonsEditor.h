@@ -3,8 +3,8 @@
 #include "gui/desktop/model/Macro.h"
 
 #include <QWidget>
+#include <array>
 
-class QBoxLayout;
 class QLineEdit;
 class QListWidget;
 class QToolButton;
@@ -34,7 +34,8 @@ private:
     QWidget *makeList();
     QWidget *makeSteps();
     QWidget *makeStep();
-    QToolButton *addTool(QBoxLayout &line, const char *name, const QString &toolTip);
+    std::array<QToolButton *, 3> makeTools(const QString &name, const QString &up, const QString &down,
+                                           const QString &remove);
     void showAll();
     void showSteps();
     void showStep();
@@ -59,7 +60,7 @@ private:
     PlainLabel *about_;
     MessageLabel *notKept_;
     SchemaForm *form_;
-    std::vector<QToolButton *> listTools_, stepTools_; // up, down, remove
+    std::array<QToolButton *, 3> listTools_, stepTools_;
 };
 
 } // namespace hermes::desktop

@@ -24,7 +24,6 @@ protected:
 private:
     void onSight(bool isInSight);
     QLayout *makeTop();
-    void tell();
 
     CloudModel model_;
     CloudView *view_;

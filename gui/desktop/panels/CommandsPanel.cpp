@@ -3,11 +3,11 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/model/MethodSchema.h"
 #include "gui/desktop/panels/ButtonsEditor.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
 #include <QElapsedTimer>
-#include <QHBoxLayout>
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QLineEdit>
@@ -18,7 +18,6 @@
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -58,19 +57,17 @@ CommandsPanel::CommandsPanel(Fleet &fleet, Buttons &buttons, QWidget *parent)
     , buttons_(buttons)
     , pages_(new QStackedWidget)
     , editor_(new ButtonsEditor(fleet, buttons)) {
-    auto *const splitter = new QSplitter;
-    splitter->addWidget(makeMethods());
-    splitter->addWidget(makeCall());
-    splitter->addWidget(answer_ = new QPlainTextEdit);
-    splitter->setStretchFactor(1, 2);
-    splitter->setStretchFactor(2, 2);
-    splitter->setSizes({220, 560, 460});
-    answer_->setObjectName("answer");
+    answer_ = named(new QPlainTextEdit, "answer");
     answer_->setReadOnly(true);
     answer_->setFont(theme::fixedFont());
     answer_->setPlaceholderText(tr("The answer appears here."));
-    auto *const layout = new QVBoxLayout(this);
-    layout->addWidget(pages_);
+    auto *const splitter = new QSplitter;
+    for (QWidget *const column : {makeMethods(), makeCall(), static_cast<QWidget *>(answer_)})
+        splitter->addWidget(column);
+    splitter->setStretchFactor(1, 2);
+    splitter->setStretchFactor(2, 2);
+    splitter->setSizes({220, 560, 460});
+    setLayout(inColumn({pages_}));
     pages_->addWidget(splitter);
     pages_->addWidget(editor_);
     connect(editor_, &ButtonsEditor::closed, this, [this] { pages_->setCurrentIndex(0); });
@@ -83,89 +80,64 @@ CommandsPanel::CommandsPanel(Fleet &fleet, Buttons &buttons, QWidget *parent)
 }
 
 QWidget *CommandsPanel::makeMethods() {
-    auto *const column = new QWidget;
-    auto *const layout = new QVBoxLayout(column);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(title_ = new PlainLabel);
-    layout->addWidget(filter_ = new QLineEdit);
-    layout->addWidget(methods_ = new QListWidget, 1);
-    title_->setObjectName("title");
+    title_ = named(new PlainLabel, "title");
     title_->setWordWrap(true);
-    filter_->setObjectName("filter");
+    filter_ = named(new QLineEdit, "filter");
     filter_->setPlaceholderText(tr("Find a command"));
     filter_->setClearButtonEnabled(true);
-    methods_->setObjectName("methods");
+    methods_ = named(new QListWidget, "methods");
     methods_->setAccessibleName(tr("The commands of the daemon"));
     connect(filter_, &QLineEdit::textChanged, this, &CommandsPanel::listMethods);
     connect(methods_, &QListWidget::currentItemChanged, this, [this](const QListWidgetItem *item) {
         showMethod(item ? item->data(Qt::UserRole).toString() : QString());
     });
-    return column;
+    return filled(new QWidget, inColumn({title_, filter_, {methods_, 1}}));
 }
 
 QWidget *CommandsPanel::makeCall() {
-    auto *const column = new QWidget;
-    auto *const layout = new QVBoxLayout(column);
-    layout->setContentsMargins(0, 0, 0, 0);
-    auto *const method = new QWidget;
-    auto *const rows = new QVBoxLayout(method);
-    rows->setContentsMargins(0, 0, 0, 0);
-    rows->addWidget(summary_ = new PlainLabel);
-    rows->addWidget(form_ = new SchemaForm, 1);
-    auto *const scroll = new QScrollArea;
-    scroll->setWidget(method);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-    layout->addWidget(scroll, 1);
-    layout->addWidget(makeActions());
-    summary_->setWordWrap(true);
-    summary_->setMinimumWidth(1);
-    summary_->setObjectName("summary");
+    summary_ = named(new PlainLabel, "summary");
+    summary_->letWrap();
+    form_ = new SchemaForm;
+    QScrollArea *const method = scrolled(filled(new QWidget, inColumn({summary_, {form_, 1}})));
+    QLayout *const actions = makeActions();
     connect(form_, &SchemaForm::edited, this, &CommandsPanel::update);
     connect(&second_, &SecondPress::changed, this, &CommandsPanel::update);
-    return column;
+    return filled(new QWidget, inColumn({{method, 1}, actions}));
 }
 
-QWidget *CommandsPanel::makeActions() {
-    auto *const row = new QWidget;
-    auto *const layout = new QHBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ru&n")), 1);
-    layout->addWidget(addButton_ = new QPushButton(theme::icon("add"), tr("Add as a button")));
-    layout->addWidget(addStep_ = new QPushButton(tr("as a step")));
-    call_->setObjectName("call");
+QLayout *CommandsPanel::makeActions() {
+    call_ = named(new QPushButton(theme::icon("call"), tr("Ru&n")), "call");
     call_->setMinimumWidth(1); // what is replaced may be long
-    addButton_->setObjectName("addButton");
-    addButton_->setToolTip(tr("A button of your own that runs this command with these parameters"));
-    addStep_->setObjectName("addStep");
-    addStep_->setToolTip(tr("Adds this command to one of your buttons, after what that one does already"));
+    addButton_ = named(new QPushButton(theme::icon("add"), tr("Add as a button")), "addButton",
+                       tr("A button of your own that runs this command with these parameters"));
+    addStep_ = named(new QPushButton(tr("as a step")), "addStep",
+                     tr("Adds this command to one of your buttons, after what that one does already"));
     addStep_->setAccessibleName(tr("Add as a step of a button"));
     addStep_->setMenu(new QMenu(this));
     connect(call_, &QPushButton::clicked, this, &CommandsPanel::call);
     connect(addButton_, &QPushButton::clicked, this, &CommandsPanel::addButton);
     connect(addStep_->menu(), &QMenu::triggered, this,
             [this](const QAction *chosen) { addStep(chosen->data().toInt()); });
-    return row;
+    return inRow({{call_, 1}, addButton_, addStep_});
 }
 
-MacroStep CommandsPanel::typedStep() const {
-    return MacroStep::of(fleet_, *daemon_, method_, form_->values());
-}
-
-bool CommandsPanel::canKeep(const MacroStep &step) {
+/// As it is typed; nothing, and it says so: it cannot be kept.
+std::optional<MacroStep> CommandsPanel::typedStep() {
+    const MacroStep step = MacroStep::of(fleet_, *daemon_, method_, form_->values());
     const QString problem = step.problem();
-    if (!problem.isEmpty())
-        answer_->setPlainText(tr("Not added. %1").arg(problem));
-    return problem.isEmpty();
+    if (problem.isEmpty())
+        return step;
+    answer_->setPlainText(tr("Not added. %1").arg(problem));
+    return std::nullopt;
 }
 
 void CommandsPanel::addButton() {
     if (!daemon_ || method_.isEmpty())
         return; // it went meanwhile
-    const MacroStep step = typedStep();
-    if (!canKeep(step))
+    const auto step = typedStep();
+    if (!step)
         return;
-    buttons_.add({shortLine(method_, Macro::longestName - 3), {step}});
+    buttons_.add({shortLine(method_, Macro::longestName - 3), {*step}});
     editButtons();
     editor_->choose(int(buttons_.all().size()) - 1);
     editor_->nameIt();
@@ -174,16 +146,16 @@ void CommandsPanel::addButton() {
 void CommandsPanel::addStep(int place) {
     if (!daemon_ || method_.isEmpty() || place >= int(buttons_.all().size()))
         return; // a menu may be open for long
-    const MacroStep step = typedStep();
-    if (!canKeep(step))
+    const auto step = typedStep();
+    if (!step)
         return;
     Macro macro = buttons_.all().at(std::size_t(place));
-    macro.steps.push_back(step);
+    macro.steps.push_back(*step);
     buttons_.set(place, macro);
     answer_->setPlainText(tr("Added to %1 as step %2: %3")
                               .arg(macro.name)
                               .arg(macro.steps.size())
-                              .arg(shortLine(step.title())));
+                              .arg(shortLine(step->title())));
 }
 
 void CommandsPanel::editButtons() {
@@ -195,7 +167,7 @@ void CommandsPanel::offerSteps() {
     menu->clear();
     for (int i = 0; i < int(buttons_.all().size()); ++i) {
         const Macro &macro = buttons_.all()[std::size_t(i)];
-        QAction *const action = menu->addAction(QString(macro.name).replace('&', "&&"));
+        QAction *const action = menu->addAction(labelText(macro.name));
         action->setData(i);
         action->setEnabled(int(macro.steps.size()) < Macro::maxSteps);
     }

@@ -36,10 +36,8 @@ private:
     void update();
     QWidget *makeMethods();
     QWidget *makeCall();
-    QWidget *makeActions();
-    MacroStep typedStep() const;
-    /// Says so where it cannot.
-    bool canKeep(const MacroStep &step);
+    QLayout *makeActions();
+    std::optional<MacroStep> typedStep();
     void addButton();
     void addStep(int place);
     void offerSteps();

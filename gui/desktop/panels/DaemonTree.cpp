@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/DaemonTree.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
 #include <QContextMenuEvent>
@@ -44,10 +45,6 @@ QString usage(const ProcessStatus *process) {
 
 DaemonLink *daemonIn(const QTreeWidgetItem &row) {
     return qobject_cast<DaemonLink *>(row.data(NameColumn, Qt::UserRole).value<QObject *>());
-}
-
-QString escaped(QString text) {
-    return text.replace('&', "&&");
 }
 
 } // namespace
@@ -244,10 +241,9 @@ void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
     Robot *const robot = robotOf(item);
     if (!robot)
         return;
-    auto *const menu = new QMenu(this);
-    menu->setObjectName("rowMenu");
+    auto *const menu = named(new QMenu(this), "rowMenu");
     menu->setAttribute(Qt::WA_DeleteOnClose);
-    const QString title = escaped(fleet_.titleOf(*robot));
+    const QString title = labelText(fleet_.titleOf(*robot));
     const QPointer<Robot> still(robot);
     add(*menu, tr("Re&name %1").arg(title), "renameRobot", [this, menu, still] {
         connect(menu, &QObject::destroyed, this, [this, still] { // the focus is back then
@@ -264,9 +260,7 @@ void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
 
 void DaemonTree::add(QMenu &menu, const QString &text, const QString &name,
                      const std::function<void()> &work) {
-    QAction *const action = menu.addAction(text);
-    action->setObjectName(name);
-    connect(action, &QAction::triggered, this, work);
+    connect(named(menu.addAction(text), name), &QAction::triggered, this, work);
 }
 
 void DaemonTree::rename(QTreeWidgetItem *item) {

@@ -2,55 +2,34 @@
 
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/panels/DaemonTree.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
-#include <QHBoxLayout>
 #include <QLineEdit>
 #include <QPushButton>
-#include <QVBoxLayout>
 #include <algorithm>
 
 namespace hermes::desktop {
 DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
-    , address_(new QLineEdit)
-    , find_(new QPushButton(tr("F&ind")))
+    , address_(named(new QLineEdit, "address",
+                     tr("Of a robot, as 192.168.1.20, or of one daemon, as 192.168.1.20:7410")))
+    , find_(named(new QPushButton(tr("F&ind")), "find",
+                  tr("Looks for daemons that announce themselves on the network")))
     , search_(this)
-    , tree_(new DaemonTree(fleet))
+    , tree_(named(new DaemonTree(fleet), "tree"))
     , hint_(new PlainLabel(tr("No daemon found yet. Add one by its address, for example 192.168.1.20 or "
                               "127.0.0.1:7450, or start the simulator with ./demo.")))
     , message_(new MessageLabel)
-    , undo_(new QPushButton) {
-    tree_->setObjectName("tree");
+    , undo_(named(new QPushButton, "undoRemoval", tr("Adds the robot again that was removed last"))) {
     tree_->setAccessibleName(tr("Robots and their daemons"));
     hint_->setWordWrap(true);
-
-    address_->setObjectName("address");
     address_->setPlaceholderText(tr("Address"));
-    address_->setToolTip(tr("Of a robot, as 192.168.1.20, or of one daemon, as 192.168.1.20:7410"));
-    auto *const add = new QPushButton(theme::icon("add"), tr("A&dd"));
-    add->setObjectName("add");
-    auto *const adding = new QHBoxLayout;
-    adding->addWidget(address_);
-    adding->addWidget(add);
-    adding->addWidget(find_);
-
-    undo_->setObjectName("undoRemoval");
-    undo_->setToolTip(tr("Adds the robot again that was removed last"));
     undo_->hide();
-    find_->setObjectName("find");
-    find_->setToolTip(tr("Looks for daemons that announce themselves on the network"));
-
-    auto *const layout = new QVBoxLayout(this);
-    layout->addLayout(adding);
-    layout->addWidget(hint_);
-    layout->addWidget(tree_, 1);
-    auto *const told = new QHBoxLayout;
-    told->addWidget(message_, 1);
-    told->addWidget(undo_);
-    layout->addLayout(told);
-    layout->addWidget(makeButtons());
+    auto *const add = named(new QPushButton(theme::icon("add"), tr("A&dd")), "add");
+    setLayout(inColumn(
+        {inRow({address_, add, find_}), hint_, {tree_, 1}, inRow({{message_, 1}, undo_}), makeButtons()}));
 
     connect(add, &QPushButton::clicked, this, &DaemonsPanel::addAddress);
     connect(find_, &QPushButton::clicked, this, [this] {
@@ -73,21 +52,23 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     update();
 }
 
-QWidget *DaemonsPanel::makeButtons() {
-    auto *const row = new QWidget;
-    auto *const layout = new QHBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
-    const auto button = [&](const QString &icon, const QString &text, const QString &method) {
-        auto *const made = new QPushButton(theme::icon(icon), text);
-        made->setObjectName(method);
+QLayout *DaemonsPanel::makeButtons() {
+    const auto button = [this](const QString &icon, const QString &text, const QString &method) {
+        auto *const made = named(new QPushButton(theme::icon(icon), text), method);
         connect(made, &QPushButton::clicked, this, [this, method] { ask(method); });
-        layout->addWidget(made);
         return made;
     };
     start_ = button("start", tr("St&art"), "process.start");
     stop_ = button("stop", tr("St&op"), "process.stop");
     restart_ = button("restart", tr("R&estart"), "process.restart");
-    return row;
+    return inRow({start_, stop_, restart_});
+}
+
+DaemonsPanel::Supervised DaemonsPanel::chosen() const {
+    const DaemonLink *const daemon = fleet_.daemon();
+    const Robot *const robot = fleet_.robot();
+    const ProcessStatus *const process = daemon && robot ? robot->process(*daemon) : nullptr;
+    return {process, process ? robot->supervisorOf(*daemon) : nullptr};
 }
 
 void DaemonsPanel::update() {
@@ -98,11 +79,8 @@ void DaemonsPanel::update() {
 }
 
 void DaemonsPanel::updateButtons() {
-    const DaemonLink *const daemon = fleet_.daemon();
-    const Robot *const robot = fleet_.robot();
-    const ProcessStatus *const process = daemon && robot ? robot->process(*daemon) : nullptr;
+    const auto [process, supervisor] = chosen();
     const bool isRunning = process && process->pid > 0;
-    const DaemonLink *const supervisor = process ? robot->supervisorOf(*daemon) : nullptr;
     const QString why = supervisor ? supervisor->refusal("process.start")
                                    : tr("Only for daemons that the robot's supervisor runs");
     start_->setEnabled(why.isEmpty() && !isRunning);
@@ -139,7 +117,7 @@ void DaemonsPanel::remove(Robot *robot) {
         return message_->tell(removed.error().message, true);
     removed_ = *removed;
     message_->tell(tr("%1 was removed from this window.").arg(name));
-    undo_->setText(tr("Bring %1 back").arg(QString(name).replace('&', "&&")));
+    undo_->setText(tr("Bring %1 back").arg(labelText(name)));
     undo_->show();
 }
 
@@ -151,10 +129,7 @@ void DaemonsPanel::bringBack() {
 }
 
 void DaemonsPanel::ask(const QString &method) {
-    const Robot *const robot = fleet_.robot();
-    const DaemonLink *const daemon = fleet_.daemon();
-    const ProcessStatus *const process = robot && daemon ? robot->process(*daemon) : nullptr;
-    DaemonLink *const supervisor = process ? robot->supervisorOf(*daemon) : nullptr;
+    const auto [process, supervisor] = chosen();
     if (!supervisor)
         return;
     supervisor->call(method, {{"name", process->entry.name}}, this, [this](const Result<QJsonValue> &done) {

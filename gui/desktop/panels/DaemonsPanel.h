@@ -31,7 +31,10 @@ private:
     void bringBack();
     /// process.start, process.stop or process.restart of the chosen daemon.
     void ask(const QString &method);
-    QWidget *makeButtons();
+    QLayout *makeButtons();
+    /// The process of the chosen daemon and who runs it; null: not known, or not connected.
+    using Supervised = std::pair<const ProcessStatus *, DaemonLink *>;
+    Supervised chosen() const;
 
     Fleet &fleet_;
     QLineEdit *address_;

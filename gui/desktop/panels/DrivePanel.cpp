@@ -3,6 +3,7 @@
 #include "gui/desktop/drive/Stick.h"
 #include "gui/desktop/panels/GamepadRow.h"
 #include "gui/desktop/widgets/AgedLabel.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
@@ -10,7 +11,6 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSlider>
-#include <QVBoxLayout>
 #include <cmath>
 
 namespace hermes::desktop {
@@ -26,43 +26,26 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
     : QWidget(parent)
     , drive_(drive)
     , top_(new QBoxLayout(QBoxLayout::LeftToRight))
-    , stick_(new Stick)
-    , limit_(new QSlider(Qt::Horizontal))
-    , speed_(new QLineEdit)
-    , turn_(new PlainLabel)
-    , control_(new AgedLabel)
-    , problem_(new MessageLabel)
-    , takeOver_(new QPushButton(tr("Ta&ke over")))
-    , blind_(new QPushButton(tr("Drive all the same"))) {
-    stick_->setObjectName("stick");
-    control_->setObjectName("control");
-    control_->setWordWrap(true);
-    control_->setMinimumWidth(1);
-    problem_->setObjectName("problem");
-    takeOver_->setObjectName("takeOver");
-    takeOver_->setToolTip(tr("Takes the control from who has it; the robot stops first"));
-
-    auto *const control = new QHBoxLayout;
-    control->addWidget(control_, 1);
-    control->addWidget(takeOver_, 0, Qt::AlignTop);
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(9, 2, 9, 2);
-    layout->setSpacing(2);
+    , stick_(named(new Stick, "stick",
+                   tr("Drag the knob to drive, the ring to turn. The arrow keys or WASD, Q "
+                      "and E do the same.")))
+    , limit_(named(new QSlider(Qt::Horizontal), "limit"))
+    , speed_(named(new QLineEdit, "speedLimit"))
+    , turn_(named(new PlainLabel, "turnLimit"))
+    , control_(named(new AgedLabel, "control"))
+    , problem_(named(new MessageLabel, "problem"))
+    , takeOver_(named(new QPushButton(tr("Ta&ke over")), "takeOver",
+                      tr("Takes the control from who has it; the robot stops first")))
+    , blind_(named(new QPushButton(tr("Drive all the same")), "driveBlindly")) {
+    control_->letWrap();
     top_->addWidget(stick_, 1);
     top_->addLayout(makeLimit());
-    layout->addLayout(top_, 1);
-    layout->addWidget(new GamepadRow(gamepad));
-    layout->addWidget(makeNumbers());
-    auto *const told = new QWidget; // as high as what is told usually: nothing above moves
-    auto *const texts = new QVBoxLayout(told);
-    texts->setContentsMargins(0, 0, 0, 0);
-    texts->addLayout(control);
-    texts->addWidget(problem_);
-    texts->addWidget(blind_);
-    texts->addStretch();
+    // As high as what is told usually: nothing above moves.
+    QLayout *const control = inRow({{control_, 1}, {takeOver_, 0, Qt::AlignTop}});
+    QWidget *const told = filled(new QWidget, inColumn({control, problem_, blind_, Part::room()}));
     told->setMinimumHeight(takeOver_->sizeHint().height() + 4 * fontMetrics().lineSpacing());
-    layout->addWidget(told);
-    blind_->setObjectName("driveBlindly");
+    filled(this, inColumn({{top_, 1}, new GamepadRow(gamepad), makeNumbers(), told}), 2);
+    layout()->setContentsMargins(9, 2, 9, 2);
     for (QPushButton *const passing : {takeOver_, blind_})
         passing->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to driving: the button goes
     connect(blind_, &QPushButton::clicked, &drive, &DriveControl::driveBlindly);
@@ -75,39 +58,33 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
 }
 
 QWidget *DrivePanel::makeNumbers() {
-    auto *const table = new QWidget;
-    auto *const grid = new QGridLayout(table);
-    grid->setContentsMargins(0, 0, 0, 0);
+    auto *const grid = new QGridLayout;
     grid->setVerticalSpacing(0);
     const QStringList names{tr("ahead\nm/s"), tr("left\nm/s"), tr("turn\nrad/s")};
     grid->addWidget(new PlainLabel(tr("commanded")), 1, 0);
-    auto *const measured = new PlainLabel(tr("measured"));
-    measured->setObjectName("measuredName");
+    auto *const measured = named(new PlainLabel(tr("measured")), "measuredName");
     grid->addWidget(measured, 2, 0);
     for (int i = 0; i < 3; ++i) {
         grid->addWidget(new PlainLabel(names[i]), 0, i + 1, Qt::AlignRight);
-        grid->addWidget(commanded_[i] = new PlainLabel, 1, i + 1);
-        grid->addWidget(measured_[i] = new AgedLabel, 2, i + 1);
+        grid->addWidget(commanded_[i] = named(new PlainLabel, QString("commanded%1").arg(i)), 1, i + 1);
+        grid->addWidget(measured_[i] = named(new AgedLabel, QString("measured%1").arg(i)), 2, i + 1);
         measured_[i]->setSilenceLabel(measured);
         for (PlainLabel *const number : std::initializer_list<PlainLabel *>{commanded_[i], measured_[i]}) {
             number->setAlignment(Qt::AlignRight);
             number->setMinimumWidth(fontMetrics().horizontalAdvance("-0.00")); // nothing jumps at a minus
         }
-        measured_[i]->setObjectName(QString("measured%1").arg(i));
-        commanded_[i]->setObjectName(QString("commanded%1").arg(i));
     }
+    QWidget *const table = filled(new QWidget, grid);
+    grid->setVerticalSpacing(0);
     return table;
 }
 
 QLayout *DrivePanel::makeLimit() {
-    limit_->setObjectName("limit");
     limit_->setRange(leastPercent, 100);
     limit_->setAccessibleName(tr("Speed limit"));
-    speed_->setObjectName("speedLimit");
     speed_->setAccessibleName(tr("Speed limit in m/s"));
     speed_->setAlignment(Qt::AlignRight);
     speed_->setFixedWidth(fontMetrics().horizontalAdvance("00.000") + 16);
-    turn_->setObjectName("turnLimit");
     connect(limit_, &QSlider::valueChanged, this, [this](int percent) { setLimit(percent / 100.0); });
     connect(speed_, &QLineEdit::editingFinished, this, &DrivePanel::takeTypedLimit);
     connect(speed_, &QLineEdit::textEdited, this, [this] { refuseLimit({}); });
@@ -205,7 +182,7 @@ void DrivePanel::update() {
                        ? tr("Control: %1").arg(holder)
                        : tr("Control: %1; %2 asks for it").arg(holder, shortLine(drive_.wanted(), 40)),
                    drive_.isPossible() ? drive_.stateAge() : Freshness());
-    takeOver_->setVisible(!holder.isEmpty() && holder != tr("you"));
+    takeOver_->setVisible(drive_.isHeldByOther());
     if (drive_.problem() != problemThen_)
         wrongLimit_.clear();
     QString problem = wrongLimit_.isEmpty() ? drive_.problem() : wrongLimit_;

@@ -1,14 +1,13 @@
 #include "gui/desktop/panels/EventsPanel.h"
 
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QHBoxLayout>
 #include <QHeaderView>
 #include <QPushButton>
 #include <QTreeView>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 
@@ -16,21 +15,16 @@ EventsPanel::EventsPanel(Events &events, Sounds &sounds, QWidget *parent)
     : QWidget(parent)
     , events_(events)
     , table_(events, this)
-    , view_(new QTreeView) {
-    auto *const level = new QComboBox;
-    level->setObjectName("eventLevel");
+    , view_(named(new QTreeView, "events")) {
+    auto *const level = named(new QComboBox, "eventLevel");
     level->addItems({tr("all"), tr("warnings and errors"), tr("errors")});
-    auto *const sound = new QCheckBox(tr("Sounds"));
-    sound->setObjectName("sounds");
+    auto *const sound =
+        named(new QCheckBox(tr("Sounds")), "sounds",
+              tr("The desktop's bell at each new error, and each second while a STOP is not confirmed"));
     sound->setChecked(sounds.areOn());
-    sound->setToolTip(
-        tr("The desktop's bell at each new error, and each second while a STOP is not confirmed"));
-    auto *const chosen = new QPushButton(tr("Acknowledge"));
-    chosen->setObjectName("acknowledgeChosen");
-    chosen->setToolTip(tr("The chosen events"));
-    auto *const all = new QPushButton(tr("Acknowledge all"));
-    all->setObjectName("acknowledgeAll");
-    view_->setObjectName("events");
+    auto *const chosen =
+        named(new QPushButton(tr("Acknowledge")), "acknowledgeChosen", tr("The chosen events"));
+    auto *const all = named(new QPushButton(tr("Acknowledge all")), "acknowledgeAll");
     view_->setAccessibleName(tr("Events"));
     view_->setModel(&table_);
     view_->setRootIsDecorated(false);
@@ -40,18 +34,9 @@ EventsPanel::EventsPanel(Events &events, Sounds &sounds, QWidget *parent)
     view_->header()->setSectionResizeMode(EventTable::TextColumn, QHeaderView::Stretch);
     view_->header()->setStretchLastSection(false);
 
-    auto *const top = new QHBoxLayout;
     auto *const label = new PlainLabel(tr("Show"));
     label->setBuddy(level);
-    top->addWidget(label);
-    top->addWidget(level);
-    top->addWidget(sound);
-    top->addStretch();
-    top->addWidget(chosen);
-    top->addWidget(all);
-    auto *const layout = new QVBoxLayout(this);
-    layout->addLayout(top);
-    layout->addWidget(view_);
+    setLayout(inColumn({inRow({label, level, sound, Part::room(), chosen, all}), view_}));
 
     connect(level, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             [this](int least) { table_.show(Event::Level(least)); });

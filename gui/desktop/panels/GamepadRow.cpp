@@ -1,13 +1,12 @@
 #include "gui/desktop/panels/GamepadRow.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
-#include <QHBoxLayout>
 #include <QPainter>
 #include <QPushButton>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -56,29 +55,15 @@ GamepadRow::GamepadRow(DriveGamepad &gamepad, QWidget *parent)
     : QWidget(parent)
     , gamepad_(gamepad)
     , sticks_(new Sticks(gamepad))
-    , name_(new PlainLabel)
-    , calibrate_(new QPushButton)
-    , other_(new QPushButton)
-    , message_(new MessageLabel) {
-    name_->setObjectName("gamepad");
-    name_->setWordWrap(true);
-    name_->setMinimumWidth(1);
-    calibrate_->setObjectName("calibrate");
-    other_->setObjectName("calibrateOther");
-    message_->setObjectName("gamepadMessage");
+    , name_(named(new PlainLabel, "gamepad"))
+    , calibrate_(named(new QPushButton, "calibrate",
+                       tr("Measures where the sticks rest and how far they go; nothing drives meanwhile")))
+    , other_(named(new QPushButton, "calibrateOther"))
+    , message_(named(new MessageLabel, "gamepadMessage")) {
+    name_->letWrap();
     for (QPushButton *const button : {calibrate_, other_})
         button->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to driving
-    auto *const top = new QHBoxLayout;
-    top->addWidget(sticks_);
-    top->addWidget(name_, 1);
-    auto *const bottom = new QHBoxLayout;
-    bottom->addWidget(calibrate_);
-    bottom->addWidget(other_);
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addLayout(top);
-    layout->addLayout(bottom);
-    layout->addWidget(message_);
+    filled(this, inColumn({inRow({sticks_, {name_, 1}}), inRow({calibrate_, other_}), message_}));
     connect(calibrate_, &QPushButton::clicked, this, &GamepadRow::go);
     connect(other_, &QPushButton::clicked, this, [this] {
         message_->hide();
@@ -116,8 +101,6 @@ void GamepadRow::update() {
     name_->setText(hint());
     const bool isIdle = gamepad_.step() == Step::None;
     calibrate_->setText(isIdle ? tr("Calibrate") : tr("Done"));
-    calibrate_->setToolTip(
-        tr("Measures where the sticks rest and how far they go; nothing drives meanwhile"));
     calibrate_->setEnabled(gamepad_.step() != Step::Rest);
     other_->setText(isIdle ? tr("Defaults") : tr("Cancel"));
     other_->setToolTip(isIdle ? tr("Forgets the calibration of this gamepad")

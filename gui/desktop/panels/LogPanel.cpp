@@ -2,16 +2,15 @@
 
 #include "common/Time.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QComboBox>
 #include <QDateTime>
-#include <QHBoxLayout>
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QScrollBar>
 #include <QTextCursor>
-#include <QVBoxLayout>
 #include <algorithm>
 #include <utility>
 
@@ -33,16 +32,13 @@ QBrush colourOf(int level) {
 LogPanel::LogPanel(LogFeed &log, QWidget *parent)
     : QWidget(parent)
     , log_(log)
-    , level_(new QComboBox)
-    , filter_(new QLineEdit)
-    , view_(new QPlainTextEdit) {
-    level_->setObjectName("level");
+    , level_(named(new QComboBox, "level"))
+    , filter_(named(new QLineEdit, "filter"))
+    , view_(named(new QPlainTextEdit, "records")) {
     level_->addItems({tr("all"), tr("info and above"), tr("warnings and errors"), tr("errors")});
     level_->setCurrentIndex(1);
-    filter_->setObjectName("filter");
     filter_->setPlaceholderText(tr("Show only lines with this text"));
     filter_->setClearButtonEnabled(true);
-    view_->setObjectName("records");
     view_->setReadOnly(true);
     view_->setFont(theme::fixedFont());
     view_->setLineWrapMode(QPlainTextEdit::NoWrap);
@@ -50,15 +46,9 @@ LogPanel::LogPanel(LogFeed &log, QWidget *parent)
     view_->setUndoRedoEnabled(false);
     view_->setPlaceholderText(tr("What the daemons log appears here."));
 
-    auto *const top = new QHBoxLayout;
     auto *const label = new PlainLabel(tr("Sho&w"));
     label->setBuddy(level_);
-    top->addWidget(label);
-    top->addWidget(level_);
-    top->addWidget(filter_, 1);
-    auto *const layout = new QVBoxLayout(this);
-    layout->addLayout(top);
-    layout->addWidget(view_);
+    setLayout(inColumn({inRow({label, level_, {filter_, 1}}), view_}));
 
     connect(level_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &LogPanel::refill);
     connect(filter_, &QLineEdit::textChanged, this, &LogPanel::refill);

@@ -1,5 +1,6 @@
 #include "gui/desktop/panels/MapMenu.h"
 
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
 #include <QActionGroup>
@@ -8,7 +9,6 @@
 #include <QHeaderView>
 #include <QJsonArray>
 #include <QLineEdit>
-#include <QMessageBox>
 #include <QPushButton>
 #include <QTreeWidget>
 #include <QVBoxLayout>
@@ -27,8 +27,7 @@ QDialog *makeDialog(QWidget *parent, const QString &title) {
 
 QPushButton *addButtons(QDialog *dialog, const QString &accept) {
     auto *const buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
-    QPushButton *const button = buttons->addButton(accept, QDialogButtonBox::AcceptRole);
-    button->setObjectName("accept");
+    QPushButton *const button = named(buttons->addButton(accept, QDialogButtonBox::AcceptRole), "accept");
     buttons->button(QDialogButtonBox::Cancel)->setAutoDefault(false);
     QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
     QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
@@ -58,31 +57,30 @@ MapMenu::MapMenu(QWidget *parent)
     : QMenu(tr("Map"), parent) {
     setObjectName("map");
     setToolTipsVisible(true);
-    add(tr("&New map"), "newMap", "map.clear", &MapMenu::startNew);
-    add(tr("&Open..."), "openMap", "map.load", &MapMenu::open);
-    save_ = add(tr("&Save"), "saveMap", "map.save", &MapMenu::save);
-    add(tr("Save &as..."), "saveMapAs", "map.save", &MapMenu::saveAs);
-    add(tr("&Export on the robot..."), "exportMap", "map.export", &MapMenu::exportAs);
-    undo_ = add(tr("&Undo"), "undoMap", "map.undo", &MapMenu::bringBack);
-    redo_ = add(tr("&Redo"), "redoMap", "map.undo", &MapMenu::bringForth);
-    confirm_ = add(tr("&Confirm the place..."), "confirmPlace", "pose.set", &MapMenu::confirm);
+    add(tr("&New map"), "newMap", "map.clear", [this] { startNew(); });
+    add(tr("&Open..."), "openMap", "map.load", [this] { open(); });
+    save_ = add(tr("&Save"), "saveMap", "map.save", [this] { save(); });
+    add(tr("Save &as..."), "saveMapAs", "map.save", [this] { saveAs(); });
+    add(tr("&Export on the robot..."), "exportMap", "map.export", [this] { exportAs(); });
+    undo_ = add(tr("&Undo"), "undoMap", "map.undo", [this] { undo(false); });
+    redo_ = add(tr("&Redo"), "redoMap", "map.undo", [this] { undo(true); });
+    confirm_ = add(tr("&Confirm the place..."), "confirmPlace", "pose.set", [this] { confirm(); });
     addSeparator();
-    mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", nullptr);
-    localization_ =
-        add(tr("&Localization: the map stays as it is"), "localization", "matcher.start", nullptr);
+    mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", [this] { setMode("mapping"); });
+    localization_ = add(tr("&Localization: the map stays as it is"), "localization", "matcher.start",
+                        [this] { setMode("localization"); });
     auto *const modes = new QActionGroup(this);
     for (QAction *const mode : {mapping_, localization_}) {
         mode->setCheckable(true);
         modes->addAction(mode);
-        connect(mode, &QAction::triggered, this, [this, mode] { setMode(mode->objectName()); });
     }
     connect(this, &QMenu::aboutToShow, this, &MapMenu::readMode);
     update();
 }
 
-QAction *MapMenu::add(const QString &text, const char *name, const char *method, void (MapMenu::*work)()) {
-    QAction *const action = work ? addAction(text, this, work) : addAction(text);
-    action->setObjectName(name);
+QAction *MapMenu::add(const QString &text, const char *name, const char *method,
+                      const std::function<void()> &work) {
+    QAction *const action = named(addAction(text, this, work), name);
     actions_.emplace_back(action, method);
     return action;
 }
@@ -124,13 +122,7 @@ void MapMenu::call(const QString &method, const QJsonObject &params, const Then 
 }
 
 void MapMenu::ask(const QString &question, const QString &yes, const std::function<void()> &work) {
-    auto *const box =
-        new QMessageBox(QMessageBox::Question, tr("Map"), question, QMessageBox::Cancel, parentWidget());
-    QPushButton *const accept = box->addButton(yes, QMessageBox::AcceptRole);
-    accept->setObjectName("accept");
-    box->setDefaultButton(QMessageBox::Cancel);
-    connect(accept, &QPushButton::clicked, this, [work] { work(); });
-    question_.show(box);
+    question_.ask(parentWidget(), tr("Map"), question, yes, work);
 }
 
 void MapMenu::startNew() {
@@ -150,8 +142,7 @@ void MapMenu::open() {
     call("map.list", {}, [this](const QJsonValue &list) {
         Q_EMIT told({}, false);
         QDialog *const dialog = makeDialog(parentWidget(), tr("Open a map of the robot"));
-        auto *const maps = new QTreeWidget;
-        maps->setObjectName("maps");
+        auto *const maps = named(new QTreeWidget, "maps");
         maps->setHeaderLabels({tr("Map"), tr("Written"), tr("KiB")});
         maps->setRootIsDecorated(false);
         int count = 0;
@@ -200,9 +191,8 @@ void MapMenu::load(const QString &path) {
 void MapMenu::askName(const QString &title, const QString &name,
                       const std::function<void(const QString &)> &use) {
     QDialog *const dialog = makeDialog(parentWidget(), title);
-    auto *const field = new QLineEdit(name);
-    field->setObjectName("mapName");
-    field->setToolTip(tr("Below the folder of maps on the robot (setting map.folder)"));
+    auto *const field = named(new QLineEdit(name), "mapName",
+                              tr("Below the folder of maps on the robot (setting map.folder)"));
     dialog->layout()->addWidget(field);
     QPushButton *const accept = addButtons(dialog, tr("Write"));
     connect(field, &QLineEdit::textChanged, accept,
@@ -263,14 +253,6 @@ void MapMenu::exportAs() {
                                        true);
                 write("map.export", {{"path", name}, {"format", format}});
             });
-}
-
-void MapMenu::bringBack() {
-    undo(false);
-}
-
-void MapMenu::bringForth() {
-    undo(true);
 }
 
 void MapMenu::undo(bool again) {

@@ -33,7 +33,8 @@ Q_SIGNALS:
 private:
     using Then = std::function<void(const QJsonValue &)>;
 
-    QAction *add(const QString &text, const char *name, const char *method, void (MapMenu::*work)());
+    QAction *add(const QString &text, const char *name, const char *method,
+                 const std::function<void()> &work);
     void call(const QString &method, const QJsonObject &params, const Then &then);
     void startNew();
     void open();
@@ -41,8 +42,6 @@ private:
     void save();
     void saveAs();
     void exportAs();
-    void bringBack();
-    void bringForth();
     void confirm();
     void undo(bool again);
     void setMode(const QString &mode);

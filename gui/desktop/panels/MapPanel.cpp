@@ -2,12 +2,12 @@
 
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/panels/MapMenu.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QMenu>
 #include <QToolBar>
 #include <QToolButton>
-#include <QVBoxLayout>
 #include <QtMath>
 
 namespace hermes::desktop {
@@ -15,7 +15,7 @@ namespace hermes::desktop {
 MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , model_(fleet)
-    , view_(new MapView(model_))
+    , view_(named(new MapView(model_), "map"))
     , map_(new MapMenu(this))
     , message_(new MessageLabel) {
     auto *const bar = new QToolBar;
@@ -26,14 +26,8 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     addLayers(*bar);
     for (auto *const button : bar->findChildren<QToolButton *>())
         button->setFocusPolicy(Qt::TabFocus); // within reach of the keyboard
-    view_->setObjectName("map");
     message_->setMargin(4);
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(0);
-    layout->addWidget(bar);
-    layout->addWidget(view_, 1);
-    layout->addWidget(message_);
+    filled(this, inColumn({bar, {view_, 1}, message_}), 0);
     setFocusProxy(view_);
 
     connect(&fleet, &Fleet::changed, this, &MapPanel::updateTools);
@@ -60,14 +54,7 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
 void MapPanel::addMap(QToolBar &bar) {
     map_->addAction(theme::icon("export"), tr("Export the &view..."), this, &MapPanel::askFile)
         ->setObjectName("export");
-    auto *const button = new QToolButton;
-    button->setObjectName("mapMenu");
-    button->setText(tr("Map"));
-    button->setIcon(theme::icon("save"));
-    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-    button->setMenu(map_);
-    button->setPopupMode(QToolButton::InstantPopup);
-    bar.addWidget(button);
+    bar.addWidget(named(menuButton(tr("Map"), theme::icon("save"), map_), "mapMenu"));
     connect(map_, &MapMenu::told, this, [this](const QString &text, bool isError) {
         if (text.isEmpty())
             message_->hide();
@@ -105,9 +92,7 @@ void MapPanel::addTools(QToolBar &bar) {
     // "Follow\tF" is "Follow" on its button, and has its key beside it in a menu.
     const auto add = [&](const char *icon, const QString &text, const QString &toolTip, bool isCheckable) {
         QAction *const action = bar.addAction(theme::icon(QString(icon)), text);
-        action->setIconText(text.section('\t', 0, 0));
-        action->setObjectName(icon);
-        action->setToolTip(toolTip);
+        named(action, icon, toolTip)->setIconText(text.section('\t', 0, 0));
         action->setCheckable(isCheckable);
         return action;
     };
@@ -129,11 +114,9 @@ void MapPanel::addTools(QToolBar &bar) {
 }
 
 void MapPanel::addLayers(QToolBar &bar) {
-    auto *const menu = layers_ = new QMenu(tr("Layers"), this);
-    menu->setObjectName("layers");
+    auto *const menu = layers_ = named(new QMenu(tr("Layers"), this), "layers");
     const auto add = [&](const char *key, const QString &name, bool MapLayers::*layer) {
-        QAction *const action = menu->addAction(name);
-        action->setObjectName(key); // by which layouts keep it
+        QAction *const action = named(menu->addAction(name), key); // by which layouts keep it
         action->setCheckable(true);
         action->setChecked(view_->layers().*layer);
         connect(action, &QAction::toggled, this, [this, layer](bool isOn) {
@@ -157,13 +140,7 @@ void MapPanel::addLayers(QToolBar &bar) {
     add("trustLayer", tr("Trust (how well the drive is known)"), &MapLayers::trust);
     menu->addSeparator();
     menu->addAction(tr("Clear paths"), &model_, &MapModel::clearPaths);
-    auto *const button = new QToolButton;
-    button->setText(tr("Layers"));
-    button->setIcon(theme::icon("layers"));
-    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-    button->setMenu(menu);
-    button->setPopupMode(QToolButton::InstantPopup);
-    bar.addWidget(button);
+    bar.addWidget(menuButton(tr("Layers"), theme::icon("layers"), menu));
 }
 
 QVariantMap MapPanel::layers() const {

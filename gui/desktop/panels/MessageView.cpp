@@ -1,11 +1,11 @@
 #include "gui/desktop/panels/MessageView.h"
 
 #include "gui/desktop/model/TopicFields.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/Seen.h"
 
 #include <QHeaderView>
-#include <QVBoxLayout>
 #include <cmath>
 
 namespace hermes::desktop {
@@ -53,21 +53,16 @@ QTreeWidgetItem *rowAt(QTreeWidgetItem &item, int index) {
 
 MessageView::MessageView(QWidget *parent)
     : QWidget(parent)
-    , head_(new PlainLabel)
-    , tree_(new QTreeWidget) {
-    head_->setObjectName("messageHead");
+    , head_(named(new PlainLabel, "messageHead"))
+    , tree_(named(new QTreeWidget, "newestMessage",
+                  tr("The newest message of the topic that is chosen on the left"))) {
     head_->setMinimumWidth(1);
-    tree_->setObjectName("newestMessage");
     tree_->setAccessibleName(tr("The newest message"));
-    tree_->setToolTip(tr("The newest message of the topic that is chosen on the left"));
     tree_->setUniformRowHeights(true);
     tree_->setHeaderLabels({tr("Name"), tr("Value"), tr("Unit")});
     tree_->header()->resizeSection(0, 180);
     tree_->header()->resizeSection(1, 200);
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(head_);
-    layout->addWidget(tree_, 1);
+    filled(this, inColumn({head_, {tree_, 1}}));
     connect(&timer_, &QTimer::timeout, this, &MessageView::refresh);
     timer_.start(std::chrono::milliseconds(100));
     follow(nullptr, {});

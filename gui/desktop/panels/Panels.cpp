@@ -17,38 +17,26 @@
 namespace hermes::desktop {
 namespace {
 
-QWidget *makeDrivePanel(const PanelContext &context) {
-    return new DrivePanel(context.drive, context.gamepad);
-}
-
-QWidget *makeCommandsPanel(const PanelContext &context) {
-    return new CommandsPanel(context.fleet, context.buttons);
-}
-
-QWidget *makeLogPanel(const PanelContext &context) {
-    return new LogPanel(context.log);
-}
-
-QWidget *makeEventsPanel(const PanelContext &context) {
-    return new EventsPanel(context.events, context.sounds);
-}
-
-QWidget *makeRecordPanel(const PanelContext &context) {
-    return new RecordPanel(context.fleet, context.drive.sessions());
-}
+using Context = const PanelContext &;
 
 std::vector<PanelKind> &known() {
     // A new panel is one line here.
     static std::vector<PanelKind> all = {
         {Qt::LeftDockWidgetArea, "Daemons", "daemons", makePanel<DaemonsPanel>},
         {Qt::BottomDockWidgetArea, "Settings", "settings", makePanel<SettingsPanel>},
-        {Qt::BottomDockWidgetArea, "Commands", "commands", makeCommandsPanel, "settings"},
-        {Qt::BottomDockWidgetArea, "Log", "log", makeLogPanel, "settings"},
+        {Qt::BottomDockWidgetArea, "Commands", "commands",
+         [](Context with) -> QWidget * { return new CommandsPanel(with.fleet, with.buttons); }, "settings"},
+        {Qt::BottomDockWidgetArea, "Log", "log",
+         [](Context with) -> QWidget * { return new LogPanel(with.log); }, "settings"},
         {Qt::BottomDockWidgetArea, "Plots", "plots", makePanel<PlotsPanel>, "settings"},
-        {Qt::RightDockWidgetArea, "Drive", "drive", makeDrivePanel},
-        {Qt::LeftDockWidgetArea, "Recordings", "recordings", makeRecordPanel, "daemons"},
+        {Qt::RightDockWidgetArea, "Drive", "drive",
+         [](Context with) -> QWidget * { return new DrivePanel(with.drive, with.gamepad); }},
+        {Qt::LeftDockWidgetArea, "Recordings", "recordings",
+         [](Context with) -> QWidget * { return new RecordPanel(with.fleet, with.drive.sessions()); },
+         "daemons"},
         {Qt::BottomDockWidgetArea, "Setup", "setup", makePanel<SetupPanel>, "settings"},
-        {Qt::BottomDockWidgetArea, "Events", "events", makeEventsPanel, "settings"},
+        {Qt::BottomDockWidgetArea, "Events", "events",
+         [](Context with) -> QWidget * { return new EventsPanel(with.events, with.sounds); }, "settings"},
         {Qt::BottomDockWidgetArea, "Cloud", "cloud", makePanel<CloudPanel>, "settings"},
     };
     return all;

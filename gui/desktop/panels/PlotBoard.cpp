@@ -1,31 +1,19 @@
 #include "gui/desktop/panels/PlotBoard.h"
 
-#include "gui/desktop/panels/PlotMenu.h"
 #include "gui/desktop/view/PlotPane.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
-#include <QVBoxLayout>
+#include <QMenu>
 
 namespace hermes::desktop {
-namespace {
-
-std::pair<Robot *, DaemonLink *> daemonOf(const Fleet &fleet, const FieldId &field) {
-    for (const auto &robot : fleet.robots())
-        for (DaemonLink *daemon : robot->daemons())
-            if (daemon->address() == field.address)
-                return {robot.get(), daemon};
-    return {};
-}
-
-} // namespace
 
 PlotBoard::PlotBoard(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
     , sampler_(fleet)
-    , layout_(new QVBoxLayout(this)) {
-    layout_->setContentsMargins(0, 0, 0, 0);
-    layout_->setSpacing(1);
+    , layout_(inColumn({})) {
+    filled(this, layout_, 1);
     newPane();
     connect(&time_, &TimeWindow::changed, this, [this] {
         if (!time_.isHeld())
@@ -56,8 +44,32 @@ PlotBoard::Pane &PlotBoard::newPane() {
     });
     connect(widget, &PlotPane::liveWanted, this, &PlotBoard::goLive);
     connect(widget, &PlotPane::menuWanted, this,
-            [this, widget](const QPoint &global) { openPlotMenu(*this, *widget, global); });
+            [this, widget](const QPoint &place) { openMenu(*widget, place); });
     return panes_.back();
+}
+
+/// Of one chart: its curves, their axes, and the charts.
+void PlotBoard::openMenu(const PlotPane &pane, const QPoint &place) {
+    auto *const menu = new QMenu(this);
+    menu->setAttribute(Qt::WA_DeleteOnClose);
+    menu->addAction(tr("Live"), this, &PlotBoard::goLive);
+    auto *const axes = menu->addMenu(tr("Axis on the right"));
+    auto *const remove = menu->addMenu(tr("Remove a curve"));
+    for (const PlotLine &line : pane.scene().lines) {
+        QAction *const right = axes->addAction(labelText(line.name));
+        right->setCheckable(true);
+        right->setChecked(line.isRight);
+        connect(right, &QAction::toggled, this,
+                [this, field = line.field](bool isRight) { setRight(field, isRight); });
+        remove->addAction(labelText(line.name), this, [this, field = line.field] { this->remove(field); });
+    }
+    axes->setEnabled(!axes->isEmpty());
+    remove->setEnabled(!remove->isEmpty());
+    menu->addSeparator();
+    menu->addAction(tr("Add a pane"), this, &PlotBoard::addPane)->setEnabled(canAddPane());
+    menu->addAction(panes_.size() == 1 ? tr("Remove all curves") : tr("Remove this pane"), this,
+                    &PlotBoard::removePane);
+    menu->popup(place);
 }
 
 bool PlotBoard::add(const FieldId &field) {
@@ -114,11 +126,11 @@ void PlotBoard::removePane() {
         sampler_.remove(curve.field);
     panes_[chosen_].curves.clear();
     if (panes_.size() > 1) {
-        panes_[chosen_].widget->deleteLater(); // its menu may be what asks
-        panes_[chosen_].widget->hide();
-        panes_[chosen_].widget->scene().lines.clear();
+        auto *const widget = panes_[chosen_].widget;
         panes_.erase(panes_.begin() + std::ptrdiff_t(chosen_));
         chosen_ = std::min(chosen_, panes_.size() - 1);
+        widget->scene().lines.clear();
+        discard(widget); // its menu may be what asks; the focus goes to another pane, which is chosen then
     }
     showCurves();
     Q_EMIT changed();
@@ -150,15 +162,15 @@ double PlotBoard::nowOf(const FieldId &field) {
 }
 
 void PlotBoard::findUnit(Curve &curve) const {
-    const DaemonLink *const daemon = curve.unit ? nullptr : daemonOf(fleet_, curve.field).second;
+    const DaemonLink *const daemon = curve.unit ? nullptr : fleet_.daemonAt(curve.field.address);
     if (daemon && daemon->hasTopic(curve.field.topic))
         curve.unit = unitAt(topicDescription(daemon->description(), curve.field.topic)["schema"].toObject(),
                             curve.field.path);
 }
 
 QString PlotBoard::ownerOf(const FieldId &field) const {
-    const DaemonLink *const daemon = daemonOf(fleet_, field).second;
-    return daemon ? fleet_.titleOf(*daemon) : field.address;
+    const DaemonLink *const daemon = fleet_.daemonAt(field.address);
+    return fleet_.robotOf(daemon) ? fleet_.titleOf(*daemon) : field.address;
 }
 
 // With the daemon where the same is plotted of two, and a word where recorded and live curves meet.

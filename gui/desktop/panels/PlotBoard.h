@@ -6,7 +6,7 @@
 #include <QPen>
 #include <QWidget>
 
-class QVBoxLayout;
+class QBoxLayout;
 
 namespace hermes::desktop {
 
@@ -67,6 +67,7 @@ private:
     };
 
     void clear();
+    void openMenu(const PlotPane &pane, const QPoint &place);
     Pane &newPane();
     void insert(Pane &pane, const FieldId &field, std::optional<bool> isRight);
     int freePen() const;
@@ -81,7 +82,7 @@ private:
     Fleet &fleet_;
     TopicSampler sampler_;
     TimeWindow time_;
-    QVBoxLayout *layout_;
+    QBoxLayout *layout_;
     std::vector<Pane> panes_;
     std::size_t chosen_ = 0;
     std::map<QString, double> heldNow_; ///< by clock, while the picture stands

@@ -40,7 +40,7 @@ void PlotSets::refill() {
     deletion_->clear();
     const QStringList names = sets_.keys();
     for (const QString &name : names) {
-        const QString text = QString(name).replace('&', "&&");
+        const QString text = labelText(name);
         addAction(text, this, [this, name] { Q_EMIT chosen(sets_[name].toObject()); });
         deletion_->addAction(text, this, [this, name] { drop(name); });
     }

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/PlotSuggestions.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QGridLayout>
@@ -8,7 +9,6 @@
 #include <QPushButton>
 #include <QStyleOptionButton>
 #include <QStylePainter>
-#include <QVBoxLayout>
 #include <map>
 
 namespace hermes::desktop {
@@ -57,10 +57,7 @@ PlotSuggestions::PlotSuggestions(Fleet &fleet, QWidget *parent)
     setObjectName("suggestions");
     auto *const text = new PlainLabel(tr("Nothing is plotted. Tick a number on the left, or begin with:"));
     text->setWordWrap(true);
-    auto *const layout = new QVBoxLayout(this);
-    layout->addWidget(text);
-    layout->addLayout(grid_);
-    layout->addStretch(1);
+    setLayout(inColumn({text, grid_, Part::room()}));
     connect(&fleet, &Fleet::changed, this, &PlotSuggestions::refresh);
     connect(&fleet, &Fleet::robotChosen, this, &PlotSuggestions::refresh);
     refresh();
@@ -121,11 +118,10 @@ void PlotSuggestions::refresh() {
         delete item;
     }
     for (std::size_t i = 0; i < suggestions.size(); ++i) {
-        auto *const button = new NarrowButton(
-            theme::icon("plot"), shortLine(suggestions[i].text, longestSuggestion).replace('&', "&&"));
-        button->setObjectName("suggestion");
+        const QString text = labelText(shortLine(suggestions[i].text, longestSuggestion));
+        auto *const button = named(new NarrowButton(theme::icon("plot"), text), "suggestion",
+                                   toolTipOf(tr("Plots %1").arg(suggestions[i].text)));
         button->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // a long text widens no panel
-        button->setToolTip(toolTipOf(tr("Plots %1").arg(suggestions[i].text)));
         connect(button, &QPushButton::clicked, this,
                 [this, fields = suggestions[i].fields] { Q_EMIT wanted(fields); });
         grid_->addWidget(button, int(i) / 2, int(i) % 2);

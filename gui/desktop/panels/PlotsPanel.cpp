@@ -6,11 +6,11 @@
 #include "gui/desktop/panels/PlotSuggestions.h"
 #include "gui/desktop/panels/TopicTree.h"
 #include "gui/desktop/view/PlotPane.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
 #include "gui/desktop/widgets/Seen.h"
 
-#include <QHBoxLayout>
 #include <QMenu>
 #include <QPushButton>
 #include <QSplitter>
@@ -50,76 +50,43 @@ PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
 }
 
 void PlotsPanel::layOut() {
-    auto *const left = new QWidget;
-    auto *const column = new QVBoxLayout(left);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(tree_, 1);
-    column->addWidget(message_);
     pages_->addWidget(new ScrolledPanel(suggestions_));
     pages_->addWidget(new ScrolledPanel(board_)); // many charts do not make the window higher
     pages_->addWidget(newest_);
-    auto *const right = new QWidget;
-    auto *const rows = new QVBoxLayout(right);
-    rows->setContentsMargins(0, 0, 0, 0);
-    rows->setSpacing(2);
-    rows->addWidget(makeButtons());
-    rows->addWidget(pages_, 1);
     auto *const splitter = new QSplitter;
-    splitter->addWidget(left);
-    splitter->addWidget(right);
+    splitter->addWidget(filled(new QWidget, inColumn({{tree_, 1}, message_})));
+    splitter->addWidget(filled(new QWidget, inColumn({makeButtons(), {pages_, 1}}), 2));
     splitter->setStretchFactor(1, 3);
     splitter->setSizes({350, 650});
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(4, 4, 4, 4);
-    layout->addWidget(splitter);
+    filled(this, inColumn({splitter}));
+    layout()->setContentsMargins(4, 4, 4, 4);
 }
 
-QWidget *PlotsPanel::makeButtons() {
-    auto *const row = new QWidget;
-    auto *const layout = new QHBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(3);
-    pause_ = new QPushButton(theme::icon("pause"), tr("Pa&use"));
-    pause_->setObjectName("pause");
+QLayout *PlotsPanel::makeButtons() {
+    pause_ = named(new QPushButton(theme::icon("pause"), tr("Pa&use")), "pause",
+                   tr("The picture stands still; sampling goes on"));
     pause_->setCheckable(true);
-    pause_->setToolTip(tr("The picture stands still; sampling goes on"));
     connect(pause_, &QPushButton::clicked, this, [this](bool isOn) { board_->time().setHeld(isOn); });
-    auto *const live = new QPushButton(theme::icon("follow"), tr("Live"));
-    live->setObjectName("live");
-    live->setToolTip(tr("Shows what comes, with all values in sight (also a double click on a chart)"));
+    auto *const live =
+        named(new QPushButton(theme::icon("follow"), tr("Live")), "live",
+              tr("Shows what comes, with all values in sight (also a double click on a chart)"));
     connect(live, &QPushButton::clicked, board_, &PlotBoard::goLive);
-    layout->addWidget(pause_);
-    layout->addWidget(live);
-    span_ = addMenuButton(*row, "", {}, makeSpans());
-    span_->setObjectName("span");
+    span_ = named(menuButton({}, {}, makeSpans()), "span",
+                  tr("The time that is shown, in seconds or minutes (also the wheel over a chart)"));
     span_->setAccessibleName(tr("Time that is shown"));
-    span_->setToolTip(tr("The time that is shown, in seconds or minutes (also the wheel over a chart)"));
-    addMenuButton(*row, "layers", tr("Panes"), makePanes())
-        ->setToolTip(tr("Charts one below the other; new curves go to the chosen one"));
-    addMenuButton(*row, "save", tr("Sets"), sets_)->setToolTip(tr("Plots that are kept by name"));
-    addMenuButton(*row, "export", tr("Export"), makeExports())
-        ->setToolTip(tr("Writes the curves to a file on this computer"));
-    showMessage_ = new QPushButton(tr("Message"));
-    showMessage_->setObjectName("showMessage");
+    QToolButton *const panes = menuButton(tr("Panes"), theme::icon("layers"), makePanes());
+    panes->setToolTip(tr("Charts one below the other; new curves go to the chosen one"));
+    QToolButton *const sets = menuButton(tr("Sets"), theme::icon("save"), sets_);
+    sets->setToolTip(tr("Plots that are kept by name"));
+    QToolButton *const exports = menuButton(tr("Export"), theme::icon("export"), makeExports());
+    exports->setToolTip(tr("Writes the curves to a file on this computer"));
+    showMessage_ = named(new QPushButton(tr("Message")), "showMessage",
+                         tr("The newest message of the topic that is chosen on the left"));
     showMessage_->setCheckable(true);
-    showMessage_->setToolTip(tr("The newest message of the topic that is chosen on the left"));
     connect(showMessage_, &QPushButton::toggled, this, &PlotsPanel::showPage);
-    layout->addWidget(showMessage_);
-    layout->addStretch(1);
+    QLayout *const row = inRow({pause_, live, span_, panes, sets, exports, showMessage_, Part::room()});
+    row->setSpacing(3);
     return row;
-}
-
-QToolButton *PlotsPanel::addMenuButton(QWidget &row, const char *icon, const QString &text, QMenu *menu) {
-    auto *const button = new QToolButton;
-    button->setText(text);
-    if (*icon)
-        button->setIcon(theme::icon(icon));
-    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-    button->setPopupMode(QToolButton::InstantPopup);
-    button->setFocusPolicy(Qt::StrongFocus);
-    button->setMenu(menu);
-    row.layout()->addWidget(button);
-    return button;
 }
 
 QMenu *PlotsPanel::makeSpans() {
@@ -131,10 +98,10 @@ QMenu *PlotsPanel::makeSpans() {
 
 QMenu *PlotsPanel::makePanes() {
     auto *const menu = new QMenu(this);
-    QAction *const add = menu->addAction(theme::icon("add"), tr("Add a pane"), board_, &PlotBoard::addPane);
-    add->setObjectName("addPane");
-    QAction *const remove = menu->addAction(theme::icon("remove"), {}, board_, &PlotBoard::removePane);
-    remove->setObjectName("removePane");
+    QAction *const add =
+        named(menu->addAction(theme::icon("add"), tr("Add a pane"), board_, &PlotBoard::addPane), "addPane");
+    QAction *const remove =
+        named(menu->addAction(theme::icon("remove"), {}, board_, &PlotBoard::removePane), "removePane");
     connect(menu, &QMenu::aboutToShow, this, [this, add, remove] {
         add->setEnabled(board_->canAddPane());
         remove->setText(board_->panes().size() > 1 ? tr("Remove the chosen pane") : tr("Remove all curves"));

@@ -38,8 +38,7 @@ public:
 
 private:
     void layOut();
-    QWidget *makeButtons();
-    QToolButton *addMenuButton(QWidget &row, const char *icon, const QString &text, QMenu *menu);
+    QLayout *makeButtons();
     QMenu *makeSpans();
     QMenu *makePanes();
     QMenu *makeExports();

@@ -3,18 +3,17 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/panels/ReplayBar.h"
 #include "gui/desktop/panels/SessionTable.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/Quantities.h"
 #include "protocol/wire/Fields.h"
 
 #include <QAction>
 #include <QFontDatabase>
-#include <QHBoxLayout>
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QPlainTextEdit>
 #include <QPushButton>
-#include <QVBoxLayout>
 
 #include <algorithm>
 
@@ -45,51 +44,28 @@ RecordPanel::RecordPanel(Fleet &fleet, Sessions &sessions, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
     , sessions_(sessions)
-    , name_(new QLineEdit)
-    , mark_(new QLineEdit)
-    , record_(new QPushButton)
-    , addMark_(new QPushButton(tr("Mark")))
-    , replay_(new QPushButton(theme::icon("start"), tr("Repla&y")))
-    , live_(new QPushButton(tr("&Live")))
-    , explain_(new QPushButton(tr("Explain")))
-    , startRecorder_(new QPushButton(tr("Start the recorder")))
-    , takeMark_(new QAction(tr("Mark this moment of the recording"), this))
-    , amount_(new PlainLabel)
-    , wrong_(new PlainLabel)
+    , name_(named(new QLineEdit, "name", tr("Name of the session; without one it is date and time")))
+    , mark_(named(new QLineEdit, "markText", tr("Without a text the mark gets a number")))
+    , record_(named(new QPushButton, "record"))
+    , addMark_(named(new QPushButton(tr("Mark")), "mark"))
+    , replay_(named(new QPushButton(theme::icon("start"), tr("Repla&y")), "replay",
+                    tr("Plays the chosen session through the same topics (double click)")))
+    , live_(named(new QPushButton(tr("&Live")), "live", tr("Ends the replay")))
+    , explain_(named(new QPushButton(tr("Explain")), "explain",
+                     tr("Who drove in the chosen session, why it stopped, what was wrong")))
+    , startRecorder_(named(new QPushButton(tr("Start the recorder")), "startRecorder"))
+    , takeMark_(named(new QAction(tr("Mark this moment of the recording"), this), "takeMark"))
+    , amount_(named(new PlainLabel, "amount"))
+    , wrong_(named(new PlainLabel, "wrong"))
     , message_(new MessageLabel)
     , table_(new SessionTable) {
-    nameAll();
+    addActions();
     layOut();
     connectAll();
     update();
 }
 
-void RecordPanel::nameAll() {
-    const std::pair<QWidget *, const char *> named[]{
-        {name_, "name"},       {mark_, "markText"},
-        {record_, "record"},   {addMark_, "mark"},
-        {replay_, "replay"},   {live_, "live"},
-        {amount_, "amount"},   {wrong_, "wrong"},
-        {explain_, "explain"}, {startRecorder_, "startRecorder"}};
-    for (const auto &[widget, name] : named)
-        widget->setObjectName(name);
-    name_->setPlaceholderText(tr("Date and time"));
-    name_->setToolTip(tr("Name of the session; without one it is date and time"));
-    replay_->setToolTip(tr("Plays the chosen session through the same topics (double click)"));
-    live_->setToolTip(tr("Ends the replay"));
-    explain_->setToolTip(tr("Who drove in the chosen session, why it stopped, what was wrong"));
-    amount_->setWordWrap(true);
-    amount_->setMinimumSize(1, 2 * fontMetrics().lineSpacing()); // else the list moves under the mouse
-    amount_->setAlignment(Qt::AlignTop);
-    wrong_->setWordWrap(true);
-    wrong_->setMinimumWidth(1);
-    QPalette fault;
-    fault.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    wrong_->setPalette(fault);
-    mark_->setPlaceholderText(tr("What to remember of this moment"));
-    mark_->setToolTip(tr("Without a text the mark gets a number"));
-    mark_->setMaxLength(1000);
-    takeMark_->setObjectName("takeMark");
+void RecordPanel::addActions() {
     takeMark_->setShortcut(Qt::CTRL + Qt::Key_M);
     takeMark_->setShortcutContext(Qt::ApplicationShortcut); // floating panels, too
     addMark_->setToolTip(tr("Puts a mark into the recording (%1)").arg(takeMark_->shortcut().toString()));
@@ -102,32 +78,30 @@ void RecordPanel::nameAll() {
 }
 
 void RecordPanel::addHand(const QString &text, const char *name, const std::function<void()> &work) {
-    auto *const action = new QAction(text, table_);
-    action->setObjectName(name);
+    auto *const action = named(new QAction(text, table_), name);
     connect(action, &QAction::triggered, this, work);
     table_->addAction(action);
 }
 
 void RecordPanel::layOut() {
-    auto *const top = new QHBoxLayout;
-    top->addWidget(name_, 1);
-    top->addWidget(record_);
-    auto *const middle = new QHBoxLayout;
-    middle->addWidget(mark_, 1);
-    middle->addWidget(addMark_);
-    auto *const bottom = new QHBoxLayout;
-    for (QPushButton *const button : {replay_, live_, explain_})
-        bottom->addWidget(button);
-    auto *const layout = new QVBoxLayout(this);
-    layout->addLayout(top);
-    layout->addLayout(middle);
-    layout->addWidget(amount_);
-    layout->addWidget(startRecorder_);
-    layout->addWidget(table_, 1); // gives its room to what is told below it: no button moves
-    layout->addWidget(wrong_);
-    layout->addWidget(message_);
-    layout->addWidget(new ReplayBar(sessions_));
-    layout->addLayout(bottom);
+    name_->setPlaceholderText(tr("Date and time"));
+    amount_->setWordWrap(true);
+    amount_->setMinimumSize(1, 2 * fontMetrics().lineSpacing()); // else the list moves under the mouse
+    amount_->setAlignment(Qt::AlignTop);
+    wrong_->letWrap();
+    theme::tint(*wrong_, QPalette::WindowText, Condition::Fault);
+    mark_->setPlaceholderText(tr("What to remember of this moment"));
+    mark_->setMaxLength(1000);
+    // The table gives its room to what is told below it: no button moves.
+    setLayout(inColumn({inRow({{name_, 1}, record_}),
+                        inRow({{mark_, 1}, addMark_}),
+                        amount_,
+                        startRecorder_,
+                        {table_, 1},
+                        wrong_,
+                        message_,
+                        new ReplayBar(sessions_),
+                        inRow({replay_, live_, explain_})}));
     for (QWidget *const widget : std::initializer_list<QWidget *>{mark_, addMark_}) {
         QSizePolicy policy = widget->sizePolicy();
         policy.setRetainSizeWhenHidden(true);
@@ -268,13 +242,12 @@ void RecordPanel::replay() {
 
 void RecordPanel::explain() {
     askOfChosen("session.explain", {}, [this](const QJsonValue &answer) {
-        auto *const dialog = new QDialog(this);
-        dialog->setObjectName("explanation");
+        auto *const dialog = named(new QDialog(this), "explanation");
         dialog->setWindowTitle(tr("What happened"));
         auto *const text = new QPlainTextEdit(shortText(answer["text"].toString(), longestReport));
         text->setReadOnly(true);
         text->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
-        (new QVBoxLayout(dialog))->addWidget(text);
+        dialog->setLayout(inColumn({text}));
         dialog->resize(80 * text->fontMetrics().averageCharWidth(), 30 * text->fontMetrics().lineSpacing());
         dialog_.show(dialog);
     });

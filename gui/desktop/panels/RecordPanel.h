@@ -29,7 +29,7 @@ private:
     using Taken = std::function<void(const QJsonValue &)>;
 
     void layOut();
-    void nameAll();
+    void addActions();
     void connectAll();
     void addHand(const QString &text, const char *name, const std::function<void()> &work);
     /// Asks the recorder, and shows why it was refused.

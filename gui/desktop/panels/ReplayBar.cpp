@@ -1,18 +1,17 @@
 #include "gui/desktop/panels/ReplayBar.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/Quantities.h"
 
 #include <QCheckBox>
 #include <QComboBox>
 #include <QEvent>
-#include <QHBoxLayout>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QTimer>
 #include <QToolButton>
-#include <QVBoxLayout>
 
 #include <algorithm>
 
@@ -23,8 +22,7 @@ constexpr double speeds[]{0.25, 0.5, 1, 2, 5, 10};
 constexpr double justPassed_s = 1; // a second press goes to the mark before that
 
 QToolButton *makeButton(const char *name, const char *icon) {
-    auto *const button = new QToolButton;
-    button->setObjectName(name);
+    auto *const button = named(new QToolButton, name);
     button->setIcon(theme::icon(icon));
     return button;
 }
@@ -34,26 +32,20 @@ QToolButton *makeButton(const char *name, const char *icon) {
 ReplayBar::ReplayBar(Sessions &sessions, QWidget *parent)
     : QWidget(parent)
     , sessions_(sessions)
-    , position_(new PlainLabel)
-    , line_(new Timeline)
-    , pause_(new QPushButton)
+    , position_(named(new PlainLabel, "position"))
+    , line_(named(new Timeline, "timeline"))
+    , pause_(named(new QPushButton, "pauseReplay", tr("The replay waits, or goes on")))
     , before_(makeButton("markBefore", "mark-before"))
     , after_(makeButton("markAfter", "mark-after"))
-    , speed_(new QComboBox)
-    , loop_(new QCheckBox(tr("Loop"))) {
-    position_->setObjectName("position");
+    , speed_(named(new QComboBox, "replaySpeed"))
+    , loop_(named(new QCheckBox(tr("Loop")), "loopReplay", tr("At its end the replay begins anew"))) {
     position_->setMinimumWidth(1);
-    line_->setObjectName("timeline");
-    pause_->setObjectName("pauseReplay");
-    pause_->setToolTip(tr("The replay waits, or goes on"));
-    speed_->setObjectName("replaySpeed");
     speed_->setAccessibleName(tr("Speed of the replay"));
     for (const double speed : speeds)
         speed_->addItem(tr("%1 x").arg(speed), speed);
     speed_->addItem(tr("fastest"), 0.0);
-    loop_->setObjectName("loopReplay");
-    loop_->setToolTip(tr("At its end the replay begins anew"));
-    layOut();
+    filled(this,
+           inColumn({inRow({{position_, 1}, loop_}), line_, inRow({before_, {pause_, 1}, after_, speed_})}));
 
     connect(&sessions, &Sessions::changed, this, &ReplayBar::update);
     connect(line_, &Timeline::heldChanged, this, &ReplayBar::hold);
@@ -73,22 +65,6 @@ ReplayBar::ReplayBar(Sessions &sessions, QWidget *parent)
         sessions_.order("session.loop", {{"loop", isOn}});
     });
     update();
-}
-
-void ReplayBar::layOut() {
-    auto *const top = new QHBoxLayout;
-    top->addWidget(position_, 1);
-    top->addWidget(loop_);
-    auto *const bottom = new QHBoxLayout;
-    bottom->addWidget(before_);
-    bottom->addWidget(pause_, 1);
-    bottom->addWidget(after_);
-    bottom->addWidget(speed_);
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins({});
-    layout->addLayout(top);
-    layout->addWidget(line_);
-    layout->addLayout(bottom);
 }
 
 /// On a low screen the panel is scrolled, also when it becomes low afterwards.

@@ -25,7 +25,6 @@ protected:
 
 private:
     void comeInSight();
-    void layOut();
     void update();
     void showSpeed(double speed);
     void showPosition();

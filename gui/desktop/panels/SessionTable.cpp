@@ -66,14 +66,20 @@ QString dateText(double stamp, bool hasRoom) {
                               (isThisYear ? QString("d MMM") : "d MMM yyyy") + (hasRoom ? " HH:mm" : ""));
 }
 
+/// Seconds; nothing while it goes on. A recorder may be older than `duration_s`.
+std::optional<double> lengthOf(const SessionSummary &session) {
+    if (session.duration_s || !session.end)
+        return session.duration_s;
+    return std::max(0.0, *session.end - session.start);
+}
+
 QString sessionToolTip(const SessionSummary &session) {
     const auto start = timeOf(session.start);
     QStringList lines{shortLine(session.name)};
     lines.append(start ? QLocale().toString(*start, QLocale::ShortFormat)
                        : SessionTable::tr("at an impossible time: %1").arg(session.start));
-    if (session.end)
-        lines.append(SessionTable::tr("%1, %2").arg(durationText(*session.end - session.start),
-                                                    sizeText(session.bytes)));
+    if (const auto length = lengthOf(session))
+        lines.append(SessionTable::tr("%1, %2").arg(durationText(*length), sizeText(session.bytes)));
     lines.append(session.daemons.join(", "));
     lines.append(session.problems.isEmpty() ? SessionTable::tr("complete") : session.problems.join('\n'));
     return toolTipOf(lines.join('\n'));
@@ -128,10 +134,6 @@ const SessionSummary *SessionTable::sessionOf(const QTreeWidgetItem *item) const
     return index >= 0 && index < int(sessions_.size()) ? &sessions_[std::size_t(index)] : nullptr;
 }
 
-const SessionSummary *SessionTable::chosen() const {
-    return sessionOf(currentItem());
-}
-
 void SessionTable::askForName() {
     if (currentItem())
         editItem(currentItem(), Name);
@@ -175,13 +177,13 @@ void SessionTable::tell(const std::vector<SessionSummary> &sessions) {
 
 void SessionTable::fill(QTreeWidgetItem &item, const SessionSummary &session) const {
     auto &row = static_cast<Row &>(item);
-    const double duration_s = session.end.value_or(session.start) - session.start;
     row.setText(Name, shortLine(session.name, longestName));
-    row.setIcon(Name, theme::icon(!session.end                 ? Condition::Busy
+    const auto length = lengthOf(session);
+    row.setIcon(Name, theme::icon(!length                      ? Condition::Busy
                                   : session.problems.isEmpty() ? Condition::Ready
                                                                : Condition::Warning));
     row.setValue(Date, session.start, dateText(session.start, hasRoom_));
-    row.setValue(Duration, duration_s, session.end ? durationText(duration_s) : tr("goes on"));
+    row.setValue(Duration, length.value_or(0), length ? durationText(*length) : tr("goes on"));
     row.setValue(Size, session.bytes, sizeText(session.bytes));
     for (const SessionColumn column : {Name, Date, Duration, Size})
         row.setToolTip(column, sessionToolTip(session));

@@ -15,7 +15,7 @@ public:
     /// The one that was chosen stays so; where none was, the latest is.
     void tell(const std::vector<SessionSummary> &sessions);
     /// Null: none.
-    const SessionSummary *chosen() const;
+    const SessionSummary *chosen() const { return sessionOf(currentItem()); }
     /// Has another name typed for the chosen one.
     void askForName();
     QSize sizeHint() const override;

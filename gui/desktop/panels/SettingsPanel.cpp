@@ -2,48 +2,30 @@
 
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
-#include <QHBoxLayout>
 #include <QJsonArray>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QScrollArea>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 
 SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
-    , title_(new PlainLabel)
+    , title_(named(new PlainLabel, "title"))
     , message_(new MessageLabel)
-    , filter_(new QLineEdit)
-    , changed_(new PlainLabel)
+    , filter_(named(new QLineEdit, "filter"))
+    , changed_(named(new PlainLabel, "changed", tr("What is typed and not applied")))
     , form_(new SchemaForm) {
-    title_->setObjectName("title");
-    filter_->setObjectName("filter");
     filter_->setPlaceholderText(tr("Find a setting"));
     filter_->setClearButtonEnabled(true);
-    auto *const scroll = new QScrollArea;
-    scroll->setWidget(form_);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-
-    auto *const top = new QHBoxLayout;
-    top->addWidget(title_);
-    top->addWidget(filter_, 1);
-    top->addWidget(makeButtons());
-    auto *const layout = new QVBoxLayout(this);
-    layout->addLayout(top);
-    layout->addWidget(scroll, 1);
-    auto *const foot = new QHBoxLayout; // where no row moves with what is told
-    foot->addWidget(message_, 1);
-    foot->addWidget(changed_, 0, Qt::AlignTop);
-    layout->addLayout(foot);
-    changed_->setObjectName("changed");
-    changed_->setToolTip(tr("What is typed and not applied"));
+    setLayout(inColumn({inRow({title_, {filter_, 1}, makeButtons()}),
+                        {scrolled(form_), 1},
+                        inRow({{message_, 1}, {changed_, 0, Qt::AlignTop}})})); // where no row moves with it
     changed_->setFixedWidth(fontMetrics().horizontalAdvance(changesText(999, 999)));
     changed_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
 
@@ -62,43 +44,37 @@ SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     follow(fleet.daemon());
 }
 
-QWidget *SettingsPanel::makeButtons() {
-    auto *const row = new QWidget;
-    auto *const layout = new QHBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
-    const auto button = [&](const char *icon, const QString &text, const char *name) {
-        auto *const made = new QPushButton(theme::icon(QString(icon)), text);
-        made->setObjectName(name);
-        layout->addWidget(made);
-        return made;
+QLayout *SettingsPanel::makeButtons() {
+    const auto button = [](const QString &icon, const QString &text, const char *name) {
+        return named(new QPushButton(theme::icon(icon), text), name);
     };
     apply_ = button("apply", tr("A&pply"), "apply");
     revert_ = button("revert", tr("Re&vert"), "revert");
     revert_->setToolTip(tr("Forgets the changes that were not applied"));
     defaults_ = button("restart", tr("De&faults"), "defaults");
     save_ = button("save", tr("&Save"), "save");
-    connect(apply_, &QPushButton::clicked, this, &SettingsPanel::apply);
+    connect(apply_, &QPushButton::clicked, this,
+            [this] { submit([this](const QString &told) { message_->tell(told); }); });
     connect(revert_, &QPushButton::clicked, this, [this] {
         form_->revert();
         update();
     });
     connect(defaults_, &QPushButton::clicked, form_, &SchemaForm::setDefaults);
     connect(save_, &QPushButton::clicked, this, &SettingsPanel::save);
-    return row;
+    return inRow({apply_, revert_, defaults_, save_});
 }
 
 void SettingsPanel::follow(DaemonLink *daemon) {
-    if (daemon_) {
+    if (daemon_)
         daemon_->disconnect(this);
-        daemon_->unsubscribe(handle_);
-    }
+    settings_.reset();
     keepEdits();
     daemon_ = daemon;
     form_->setSchema({}, {});
     if (daemon) {
         connect(daemon, &DaemonLink::ready, this, [this] { load(); });
         connect(daemon, &DaemonLink::changed, this, &SettingsPanel::update);
-        handle_ = daemon->subscribe("settings", {{"max_rate_hz", 5}}, [this](const TopicUpdate &update) {
+        settings_ = daemon->subscribe("settings", {{"max_rate_hz", 5}}, [this](const TopicUpdate &update) {
             form_->setBaseline(update.json().toObject());
             this->update();
         });
@@ -132,22 +108,25 @@ void SettingsPanel::keepEdits() {
                        .arg(daemon_->name()));
 }
 
+/// done is told unless another daemon is shown by then.
+void SettingsPanel::ask(const QString &method, const QJsonObject &params, const Client::Callback &done) {
+    daemon_->call(method, params, this, [this, asked = daemon_, done](const Result<QJsonValue> &reply) {
+        if (asked && asked == daemon_)
+            done(reply);
+    });
+}
+
 void SettingsPanel::load() {
-    DaemonLink *const daemon = daemon_;
-    daemon->call("settings.schema", {}, this, [=](const Result<QJsonValue> &schema) {
-        if (daemon != daemon_)
-            return;
+    ask("settings.schema", {}, [this](const Result<QJsonValue> &schema) {
         if (!schema || !schema->isObject())
             return message_->tell(schema ? tr("It does not describe its settings") : schema.error().message,
                                   true);
         const QJsonObject found = schema->toObject();
-        daemon->call("settings.get", {}, this, [=](const Result<QJsonValue> &values) {
-            if (daemon != daemon_)
-                return;
+        ask("settings.get", {}, [this, found](const Result<QJsonValue> &values) {
             if (!values || !values->isObject())
                 return message_->tell(values ? tr("It does not tell its settings") : values.error().message,
                                       true);
-            const QJsonObject kept = edits_.take(daemon->address()), typed = form_->changes();
+            const QJsonObject kept = edits_.take(daemon_->address()), typed = form_->changes();
             form_->setSchema(found, values->toObject());
             form_->setFilter(filter_->text());
             form_->edit(kept);
@@ -157,16 +136,9 @@ void SettingsPanel::load() {
     });
 }
 
-void SettingsPanel::apply() {
-    submit([this](const QString &told) { message_->tell(told); });
-}
-
 void SettingsPanel::submit(const std::function<void(const QString &told)> &then) {
-    DaemonLink *const daemon = daemon_;
     const QJsonObject sent = form_->changes();
-    daemon->call("settings.set", {{"values", sent}}, this, [=](const Result<QJsonValue> &done) {
-        if (daemon != daemon_)
-            return;
+    ask("settings.set", {{"values", sent}}, [=](const Result<QJsonValue> &done) {
         if (!done) {
             form_->showErrors(done.error().data.toObject()["errors"].toArray());
             return message_->tell(done.error().message, true);
@@ -182,11 +154,10 @@ void SettingsPanel::submit(const std::function<void(const QString &told)> &then)
 
 /// The daemon may keep other values than were sent, as rounded ones.
 void SettingsPanel::accept(const QJsonObject &sent) {
-    DaemonLink *const daemon = daemon_;
     form_->setBaseline(merged(form_->baseline(), sent));
     update();
-    daemon->call("settings.get", {}, this, [=](const Result<QJsonValue> &values) {
-        if (daemon != daemon_ || !values || !values->isObject())
+    ask("settings.get", {}, [this](const Result<QJsonValue> &values) {
+        if (!values || !values->isObject())
             return;
         form_->setBaseline(values->toObject());
         update();
@@ -195,9 +166,7 @@ void SettingsPanel::accept(const QJsonObject &sent) {
 
 void SettingsPanel::save() {
     const auto keep = [this](const QString &told) {
-        daemon_->call("settings.save", {}, this, [this, told, asked = daemon_](const auto &done) {
-            if (asked != daemon_)
-                return;
+        ask("settings.save", {}, [this, told](const auto &done) {
             if (done)
                 message_->tell(told + tr("Saved: the daemon begins with these settings the next time."));
             else

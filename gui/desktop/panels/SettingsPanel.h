@@ -26,8 +26,8 @@ public:
 
 private:
     void follow(DaemonLink *daemon);
+    void ask(const QString &method, const QJsonObject &params, const Client::Callback &done);
     void load();
-    void apply();
     /// Applies what was edited, and tells how that ended; then goes on when it was taken.
     void submit(const std::function<void(const QString &told)> &then);
     void accept(const QJsonObject &sent);
@@ -35,12 +35,12 @@ private:
     void keepEdits();
     void update();
     static QString changesText(int changed, int unseen);
-    QWidget *makeButtons();
+    QLayout *makeButtons();
 
     Fleet &fleet_;
     QPointer<DaemonLink> daemon_;
     QHash<QString, QJsonObject> edits_; // not applied, by the address of a daemon that is not shown
-    int handle_ = 0;                    // subscription to the topic "settings"
+    Subscription settings_;             // the topic
     PlainLabel *title_;
     MessageLabel *message_;
     QLineEdit *filter_;

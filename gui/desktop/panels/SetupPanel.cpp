@@ -3,6 +3,7 @@
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/panels/WheelsTest.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/setup/SetupText.h"
 #include "protocol/wire/Fields.h"
@@ -10,13 +11,11 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QHBoxLayout>
 #include <QHeaderView>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSplitter>
 #include <QTreeWidget>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -25,8 +24,7 @@ enum ChangeColumn { SettingColumn, NowColumn, NewColumn };
 constexpr int maxFindings = 500;
 
 QTreeWidget *makeTable(const QString &name, const QStringList &header) {
-    auto *const table = new QTreeWidget;
-    table->setObjectName(name);
+    auto *const table = named(new QTreeWidget, name);
     table->setAccessibleName(header.front());
     table->setHeaderLabels(header);
     table->setUniformRowHeights(true);
@@ -59,13 +57,18 @@ QString spokenKind(const QString &kind) {
 SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
-    , samples_(new QComboBox)
-    , ask_(new QCheckBox(tr("Ask silent lines: wheels lifted,\nor motors without power")))
-    , release_(new QCheckBox(tr("End daemons for the search:\nthe robot stands")))
-    , find_(new QPushButton(tr("Searc&h")))
-    , apply_(new QPushButton(theme::icon("apply"), tr("Apply")))
-    , undo_(new QPushButton(theme::icon("revert"), tr("Undo")))
-    , progress_(new QProgressBar)
+    , samples_(
+          named(new QComboBox, "samples", tr("Settings of a whole robot to begin with, or those of now")))
+    , ask_(named(new QCheckBox(tr("Ask silent lines: wheels lifted,\nor motors without power")), "ask",
+                 tr("Silent lines are asked whether they lead to a RoboClaw; another motor controller may "
+                    "take that for a speed")))
+    , release_(named(new QCheckBox(tr("End daemons for the search:\nthe robot stands")), "release",
+                     tr("Daemons that use serial lines or hear lidars are ended and started again; what they "
+                        "record ends. Otherwise their devices are left alone")))
+    , find_(named(new QPushButton(tr("Searc&h")), "findDevices"))
+    , apply_(named(new QPushButton(theme::icon("apply"), tr("Apply")), "applySetup"))
+    , undo_(named(new QPushButton(theme::icon("revert"), tr("Undo")), "undoSetup"))
+    , progress_(named(new QProgressBar, "setupProgress"))
     , found_(makeTable("found", {tr("Found"), tr("Where"), tr("Details")}))
     , changes_(makeTable("changes", {tr("To be written"), tr("Now"), tr("New")}))
     , message_(new MessageLabel) {
@@ -73,14 +76,8 @@ SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
     auto *const tables = new QSplitter;
     tables->addWidget(found_);
     tables->addWidget(changes_);
-    auto *const row = new QHBoxLayout;
-    row->addWidget(makeSteps());
-    row->addWidget(tables, 1);
-    row->addWidget(wheels);
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(9, 2, 9, 2);
-    layout->addLayout(row, 1);
-    layout->addWidget(message_);
+    setLayout(inColumn({{inRow({makeSteps(), {tables, 1}, wheels}), 1}, message_}));
+    layout()->setContentsMargins(9, 2, 9, 2);
 
     connect(find_, &QPushButton::clicked, this, &SetupPanel::find);
     connect(apply_, &QPushButton::clicked, this, &SetupPanel::apply);
@@ -98,39 +95,12 @@ SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
 }
 
 QWidget *SetupPanel::makeSteps() {
-    samples_->setObjectName("samples");
-    samples_->setToolTip(tr("Settings of a whole robot to begin with, or those of now"));
-    ask_->setObjectName("ask");
-    ask_->setToolTip(
-        tr("Silent lines are asked whether they lead to a RoboClaw; another motor controller may "
-           "take that for a speed"));
-    release_->setObjectName("release");
-    release_->setToolTip(
-        tr("Daemons that use serial lines or hear lidars are ended and started again; what they "
-           "record ends. Otherwise their devices are left alone"));
-    find_->setObjectName("findDevices");
-    apply_->setObjectName("applySetup");
-    undo_->setObjectName("undoSetup");
-    progress_->setObjectName("setupProgress");
     progress_->setRange(0, 0);
     progress_->setTextVisible(false);
     progress_->hide();
-
-    auto *const writing = new QHBoxLayout;
-    writing->addWidget(find_);
-    writing->addWidget(apply_);
-    writing->addWidget(undo_);
-    auto *const steps = new QWidget;
-    auto *const layout = new QVBoxLayout(steps);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(4); // all of it without scrolling
-    layout->addWidget(samples_);
-    layout->addWidget(release_);
-    layout->addWidget(ask_);
-    layout->addLayout(writing);
-    layout->addWidget(progress_);
-    layout->addStretch(1);
-    return steps;
+    QLayout *const writing = inRow({find_, apply_, undo_});
+    return filled(new QWidget, inColumn({samples_, release_, ask_, writing, progress_, Part::room()}),
+                  4); // all of it without scrolling
 }
 
 QString SetupPanel::sample() const {

@@ -13,23 +13,25 @@ namespace {
 constexpr int maxTopics = 200, maxFields = 200;
 constexpr std::size_t maxMeasured = 60; // of the 100 subscriptions that a daemon grants
 
-enum Role { AddressRole = Qt::UserRole, TopicRole, PathRole, DaemonRole, DescriptionRole, HeavyRole };
+/// Of a daemon, of a topic of it, or of a number in that.
+struct TopicRow : QTreeWidgetItem {
+    using QTreeWidgetItem::QTreeWidgetItem;
+    QPointer<DaemonLink> daemon;
+    QString topic;
+    QJsonObject description; ///< of a topic
+    bool isHeavy = false;
+    std::optional<FieldId> field; ///< of a number
+};
 
-DaemonLink *daemonOf(const QTreeWidgetItem &item) {
-    return qobject_cast<DaemonLink *>(item.data(0, DaemonRole).value<QPointer<QObject>>());
-}
-
-FieldId fieldOf(const QTreeWidgetItem &item) {
-    return {item.data(0, AddressRole).toString(), item.data(0, TopicRole).toString(),
-            item.data(0, PathRole).toString()};
+/// Of an item that somebody else has put into the tree: an empty one.
+TopicRow &rowIn(QTreeWidgetItem &item) {
+    static TopicRow none;
+    auto *const row = dynamic_cast<TopicRow *>(&item);
+    return row ? *row : none;
 }
 
 bool isTopic(const QTreeWidgetItem &item) {
     return item.parent() && !item.parent()->parent();
-}
-
-QJsonObject descriptionOf(const QTreeWidgetItem &topic) {
-    return topic.data(0, DescriptionRole).toJsonObject();
 }
 
 QHash<QString, QJsonObject> topicsOf(const DaemonLink &daemon) {
@@ -85,18 +87,18 @@ void TopicTree::resizeEvent(QResizeEvent *event) {
 }
 
 std::pair<DaemonLink *, QString> TopicTree::chosenTopic() const {
-    const QTreeWidgetItem *const item = currentItem();
+    QTreeWidgetItem *const item = currentItem();
     if (!item || !item->parent())
         return {};
-    return {daemonOf(*item), item->data(0, TopicRole).toString()};
+    return {rowIn(*item).daemon, rowIn(*item).topic};
 }
 
 QTreeWidgetItem *TopicTree::rowOf(DaemonLink *daemon) {
     for (int i = 0; i < topLevelItemCount(); ++i)
-        if (daemonOf(*topLevelItem(i)) == daemon)
+        if (rowIn(*topLevelItem(i)).daemon == daemon)
             return topLevelItem(i);
-    auto *const row = new QTreeWidgetItem(this);
-    row->setData(0, DaemonRole, QVariant::fromValue(QPointer<QObject>(daemon)));
+    auto *const row = new TopicRow(this);
+    row->daemon = daemon;
     row->setToolTip(0, toolTipOf(daemon->title()));
     row->setExpanded(true);
     return row;
@@ -123,7 +125,7 @@ void TopicTree::listTopics() {
 
 void TopicTree::dropGone() {
     for (int i = topLevelItemCount() - 1; i >= 0; --i) {
-        if (daemonOf(*topLevelItem(i)) || !topLevelItem(i)->data(0, DaemonRole).isValid())
+        if (rowIn(*topLevelItem(i)).daemon)
             continue;
         for (int j = 0; j < topLevelItem(i)->childCount(); ++j) {
             meters_.erase(topLevelItem(i)->child(j));
@@ -136,7 +138,7 @@ void TopicTree::dropGone() {
 void TopicTree::addTopics(QTreeWidgetItem *row, DaemonLink *daemon) {
     QSet<QString> listed{"log", "settings"};
     for (int i = 0; i < row->childCount(); ++i)
-        listed.insert(row->child(i)->data(0, TopicRole).toString());
+        listed.insert(rowIn(*row->child(i)).topic);
     QHash<QString, QJsonObject> described;
     for (const QString &topic : daemon->topics()) {
         if (listed.contains(topic) || row->childCount() >= maxTopics)
@@ -148,19 +150,20 @@ void TopicTree::addTopics(QTreeWidgetItem *row, DaemonLink *daemon) {
 }
 
 void TopicTree::addTopic(QTreeWidgetItem *row, const QString &topic, const QJsonObject &description) {
-    auto *const child = new QTreeWidgetItem(row, {shortLine(topic, longestName)});
-    child->setData(0, TopicRole, topic);
-    child->setData(0, DaemonRole, row->data(0, DaemonRole));
-    child->setData(0, DescriptionRole, description);
-    child->setData(0, HeavyRole, isHeavy(description["schema"].toObject()));
+    auto *const child = new TopicRow(row, {shortLine(topic, longestName)});
+    child->topic = topic;
+    child->daemon = rowIn(*row).daemon;
+    child->description = description;
+    child->isHeavy = isHeavy(description["schema"].toObject());
     child->setChildIndicatorPolicy(QTreeWidgetItem::ShowIndicator);
     child->setToolTip(0, toolTipOf(topic + '\n' + description["summary"].toString()));
-    if (plotted_[daemonOf(*row)->address()].contains(topic))
+    if (plotted_[child->daemon->address()].contains(topic))
         child->setExpanded(true);
 }
 
 void TopicTree::open(QTreeWidgetItem *topic) {
-    addFields(topic, numericPaths(descriptionOf(*topic)["schema"].toObject(), maxFields, UnknownLists::None));
+    addFields(topic,
+              numericPaths(rowIn(*topic).description["schema"].toObject(), maxFields, UnknownLists::None));
     opening_.insert(topic); // lists are as long as those of its next message
     if (topic->childCount() == 0)
         Q_EMIT told(tr("Waiting for a message of %1 ...").arg(topic->text(0)));
@@ -169,27 +172,25 @@ void TopicTree::open(QTreeWidgetItem *topic) {
 }
 
 void TopicTree::addFields(QTreeWidgetItem *topic, const QStringList &paths) {
-    DaemonLink *const daemon = daemonOf(*topic);
-    if (!daemon)
+    const TopicRow &of = rowIn(*topic);
+    if (!of.daemon)
         return;
     const bool wasListing = std::exchange(isListing_, true);
-    const QJsonObject schema = descriptionOf(*topic)["schema"].toObject();
+    const QJsonObject schema = rowIn(*topic).description["schema"].toObject();
     QSet<QString> listed;
     for (int i = 0; i < topic->childCount(); ++i)
-        listed.insert(topic->child(i)->data(0, PathRole).toString());
+        listed.insert(rowIn(*topic->child(i)).field->path);
     for (const QString &path : paths) {
         if (listed.contains(path) || topic->childCount() >= maxFields)
             continue;
-        const QString name = path.isEmpty() ? topic->data(0, TopicRole).toString() : path;
+        const QString name = path.isEmpty() ? of.topic : path;
         const QJsonObject what = schemaAt(schema, path);
-        auto *const child =
-            new QTreeWidgetItem(topic, {shortLine(name, longestName), shortLine(unitOf(what))});
-        child->setData(0, AddressRole, daemon->address());
-        child->setData(0, TopicRole, topic->data(0, TopicRole));
-        child->setData(0, PathRole, path);
-        child->setData(0, DaemonRole, topic->data(0, DaemonRole));
+        auto *const child = new TopicRow(topic, {shortLine(name, longestName), shortLine(unitOf(what))});
+        child->daemon = of.daemon;
+        child->topic = of.topic;
+        child->field = {of.daemon->address(), of.topic, path};
         child->setToolTip(0, toolTipOf(name + '\n' + what["description"].toString()));
-        child->setCheckState(0, isPlotted_(fieldOf(*child)) ? Qt::Checked : Qt::Unchecked);
+        child->setCheckState(0, isPlotted_(*child->field) ? Qt::Checked : Qt::Unchecked);
     }
     isListing_ = wasListing;
 }
@@ -208,32 +209,32 @@ void TopicTree::showTicks(const std::vector<FieldId> &plotted) {
         plotted_[field.address].insert(field.topic);
     const bool wasListing = std::exchange(isListing_, true);
     for (QTreeWidgetItemIterator i(this); *i; ++i) {
-        const DaemonLink *const daemon = daemonOf(**i);
-        const QString topic = (*i)->data(0, TopicRole).toString(), address = daemon ? daemon->address() : "";
-        if ((*i)->data(0, PathRole).isValid())
-            (*i)->setCheckState(0, isPlotted_(fieldOf(**i)) ? Qt::Checked : Qt::Unchecked);
-        else if (plotted_[address].contains(topic) && !before[address].contains(topic))
-            (*i)->setExpanded(true);
+        TopicRow &row = rowIn(**i);
+        const QString address = row.daemon ? row.daemon->address() : QString();
+        if (row.field)
+            row.setCheckState(0, isPlotted_(*row.field) ? Qt::Checked : Qt::Unchecked);
+        else if (plotted_[address].contains(row.topic) && !before[address].contains(row.topic))
+            row.setExpanded(true);
     }
     isListing_ = wasListing;
 }
 
 void TopicTree::onItemChanged(QTreeWidgetItem *item) {
-    if (!isListing_ && item->data(0, PathRole).isValid())
-        Q_EMIT ticked(fieldOf(*item), item->checkState(0) == Qt::Checked);
+    if (!isListing_ && rowIn(*item).field)
+        Q_EMIT ticked(*rowIn(*item).field, item->checkState(0) == Qt::Checked);
 }
 
 // What nobody sees costs nothing on the link; a topic that may be large and begins with all of it is only
 // measured where somebody looks at it.
 bool TopicTree::isMeasured(QTreeWidgetItem *topic) const {
-    if (!daemonOf(*topic) || opening_.count(topic))
-        return daemonOf(*topic);
+    if (!rowIn(*topic).daemon || opening_.count(topic))
+        return rowIn(*topic).daemon;
     const bool isLookedAt = topic->isExpanded() || topic == currentItem();
     if (!isSeen_ || !topic->parent()->isExpanded())
         return false;
     if (!isLookedAt && !viewport()->rect().intersects(visualItemRect(topic)))
         return meters_.count(topic) > 0; // scrolling does not end it
-    return isLookedAt || !topic->data(0, HeavyRole).toBool() || !descriptionOf(*topic)["snapshot"].toBool();
+    return isLookedAt || !rowIn(*topic).isHeavy || !rowIn(*topic).description["snapshot"].toBool();
 }
 
 void TopicTree::measureAll() {
@@ -252,10 +253,10 @@ void TopicTree::measure(QTreeWidgetItem *topic) {
         return topic->setText(1, {});
     }
     if (found == meters_.end()) {
-        const bool isHeavyOne = topic->data(0, HeavyRole).toBool();
+        const TopicRow &row = rowIn(*topic);
         meters_.emplace(
-            topic, std::make_unique<TopicMeter>(daemonOf(*topic), topic->data(0, TopicRole).toString(),
-                                                isHeavyOne ? TopicMeter::heavyRate_hz : TopicMeter::rate_hz,
+            topic, std::make_unique<TopicMeter>(row.daemon, row.topic,
+                                                row.isHeavy ? TopicMeter::heavyRate_hz : TopicMeter::rate_hz,
                                                 [this, topic](const auto &update) { take(topic, update); }));
         return;
     }

@@ -2,14 +2,14 @@
 
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/MessageLabel.h"
+#include "gui/desktop/widgets/Seen.h"
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDockWidget>
 #include <QHostInfo>
 #include <QPushButton>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -24,17 +24,12 @@ WheelsTest::WheelsTest(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
     , turn_(client_, "test of the wheels on " + QHostInfo::localHostName(), Client::defaultTimeout)
-    , lifted_(new QCheckBox(tr("The robot is lifted, nothing\nand nobody touches a wheel")))
-    , test_(new QPushButton(theme::icon("start"), tr("Test the wheels")))
-    , next_(new QPushButton(tr("Ne&xt")))
-    , seenChoice_(new QComboBox)
+    , lifted_(named(new QCheckBox(tr("The robot is lifted, nothing\nand nobody touches a wheel")), "lifted"))
+    , test_(named(new QPushButton(theme::icon("start"), tr("Test the wheels")), "testWheels"))
+    , next_(named(new QPushButton(tr("Ne&xt")), "nextWheel"))
+    , seenChoice_(named(new QComboBox, "seen", tr("What turned?")))
     , message_(new MessageLabel) {
     client_.setFrameLimit(DaemonLink::usualFrame);
-    lifted_->setObjectName("lifted");
-    test_->setObjectName("testWheels");
-    next_->setObjectName("nextWheel");
-    seenChoice_->setObjectName("seen");
-    seenChoice_->setToolTip(tr("What turned?"));
     for (const QString &wheel : wheelNames())
         for (const bool isBackward : {false, true})
             seenChoice_->addItem(
@@ -42,14 +37,7 @@ WheelsTest::WheelsTest(Fleet &fleet, QWidget *parent)
                 QStringList{wheel, isBackward ? "b" : ""});
     seenChoice_->addItem(tr("none turned"), QStringList{"", ""});
 
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(lifted_);
-    layout->addWidget(test_);
-    layout->addWidget(seenChoice_);
-    layout->addWidget(next_);
-    layout->addWidget(message_);
-    layout->addStretch(1);
+    filled(this, inColumn({lifted_, test_, seenChoice_, next_, message_, Part::room()}));
 
     connect(lifted_, &QCheckBox::toggled, this, [this](bool isLifted) {
         if (!isLifted)
@@ -164,9 +152,8 @@ void WheelsTest::onSight(bool isInSight) {
 }
 
 void WheelsTest::showEvent(QShowEvent *event) {
-    for (QWidget *above = parentWidget(); above; above = above->parentWidget())
-        if (const auto *const dock = qobject_cast<QDockWidget *>(above))
-            connect(dock, &QDockWidget::visibilityChanged, this, &WheelsTest::onSight, Qt::UniqueConnection);
+    if (const QDockWidget *const dock = dockOf(*this))
+        connect(dock, &QDockWidget::visibilityChanged, this, &WheelsTest::onSight, Qt::UniqueConnection);
     QWidget::showEvent(event);
 }
 

@@ -6,7 +6,6 @@
 
 #include <QPainter>
 #include <QVector4D>
-#include <cmath>
 #include <optional>
 
 namespace hermes::desktop {

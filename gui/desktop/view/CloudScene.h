@@ -3,7 +3,6 @@
 #include "gui/desktop/view/CloudCamera.h"
 #include "gui/desktop/view/CloudModel.h"
 
-#include <QColor>
 #include <array>
 
 class QPainter;

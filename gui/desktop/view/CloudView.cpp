@@ -125,33 +125,21 @@ void CloudView::mouseMoveEvent(QMouseEvent *event) {
 }
 
 void CloudView::keyPressEvent(QKeyEvent *event) {
-    constexpr double step_deg = 10;
-    CloudCamera &camera = scene_.camera;
-    switch (event->key()) {
-    case Qt::Key_Home:
-        camera.orbit(-step_deg, 0);
-        break;
-    case Qt::Key_End:
-        camera.orbit(step_deg, 0);
-        break;
-    case Qt::Key_PageUp:
-        camera.orbit(0, step_deg);
-        break;
-    case Qt::Key_PageDown:
-        camera.orbit(0, -step_deg);
-        break;
-    case Qt::Key_Plus:
-    case Qt::Key_Equal:
-        camera.zoom(1.2);
-        break;
-    case Qt::Key_Minus:
-        camera.zoom(1 / 1.2);
-        break;
-    case Qt::Key_0:
+    constexpr double step_deg = 10, step = 1.2;
+    static const QMap<int, QPointF> turns{{Qt::Key_Home, {-step_deg, 0}},
+                                          {Qt::Key_End, {step_deg, 0}},
+                                          {Qt::Key_PageUp, {0, step_deg}},
+                                          {Qt::Key_PageDown, {0, -step_deg}}};
+    static const QMap<int, double> zooms{
+        {Qt::Key_Plus, step}, {Qt::Key_Equal, step}, {Qt::Key_Minus, 1 / step}};
+    const int key = event->key();
+    if (key == Qt::Key_0)
         return resetView();
-    default:
+    if (!turns.contains(key) && !zooms.contains(key))
         return QWidget::keyPressEvent(event);
-    }
+    const QPointF turn = turns.value(key);
+    scene_.camera.orbit(turn.x(), turn.y());
+    scene_.camera.zoom(zooms.value(key, 1));
     update();
 }
 

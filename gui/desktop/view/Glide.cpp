@@ -32,10 +32,6 @@ void Glide::hold(const MovingMap &now, const Pose2D &pose) {
     phase_ = Phase::Holds;
 }
 
-void Glide::leap(const Pose2D &leap) {
-    robot_ = robot_ * leap.inverse();
-}
-
 bool Glide::start(int edges, const KeyScans &corrected) {
     from_ = shown_.graph.poses;
     const int common = from_.size();

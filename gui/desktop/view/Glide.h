@@ -40,7 +40,7 @@ public:
     /// Holds what is shown: this, or the middle of a movement. pose: the robot's.
     void hold(const MovingMap &now, const Pose2D &pose);
     /// The robot's pose became leap * pose; it did not move.
-    void leap(const Pose2D &leap);
+    void leap(const Pose2D &leap) { robot_ = robot_ * leap.inverse(); }
     /// From what it holds to the corrected map. False, and it rests: nothing moves, or too much.
     bool start(int edges, const KeyScans &corrected);
     /// The picture after a part of the duration, 0 to 1.

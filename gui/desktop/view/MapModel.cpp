@@ -4,7 +4,6 @@
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
-#include <QtMath>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,10 +82,6 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
     ageing_.start();
     wait_.setSingleShot(true);
     notice_.setSingleShot(true);
-}
-
-std::optional<Pose2D> MapModel::shownPose() const {
-    return pose_ ? std::optional(glide_.shownPose(*pose_)) : std::nullopt;
 }
 
 QRectF MapModel::bounds() const {

@@ -40,7 +40,9 @@ public:
     /// The sensor's pose as matched; absent before the first scan.
     const std::optional<Pose2D> &pose() const { return pose_; }
     /// Where the robot is shown: elsewhere only while a correction of the map is shown as a movement.
-    std::optional<Pose2D> shownPose() const;
+    std::optional<Pose2D> shownPose() const {
+        return pose_ ? std::optional(glide_.shownPose(*pose_)) : std::nullopt;
+    }
     bool isGliding() const { return glide_.phase() != Glide::Phase::Rests; }
     /// How far the key scan that moved most did (m); for a few seconds after the map was corrected.
     const std::optional<double> &correction_m() const { return correction_m_; }
@@ -61,8 +63,9 @@ public:
     /// that they begin where the matched path was at that time.
     const QPolygonF &matchedPath() const { return way(MovingMap::Matched); }
     const QPolygonF &odometryPath() const { return way(MovingMap::Odometry); }
-    const QPolygonF &truthPath() const { return way(MovingMap::Truth); }
-    const QPolygonF &way(MovingMap::Path path) const;
+    const QPolygonF &way(MovingMap::Path path) const {
+        return isGliding() ? glide_.shown().ways[path] : paths_[path].way();
+    }
     /// Numbers of the points at which a path begins anew, for the robot jumped.
     const QVector<int> &breaks(MovingMap::Path path) const { return paths_[path].breaks(); }
     /// Forgets the paths of the map that is shown.
@@ -96,8 +99,10 @@ private:
     void onPose(const PoseMessage &message);
     void onResult(const ScanResult &result);
     void onScan(const ScanMessage &scan);
-    void onOdometry(const OdometryMessage &odometry);
-    void onTruth(const TruthMessage &truth);
+    void onOdometry(const OdometryMessage &odometry) {
+        follow(paths_[MovingMap::Odometry], odometry.pose, odometry.twist);
+    }
+    void onTruth(const TruthMessage &truth) { follow(paths_[MovingMap::Truth], truth.pose, truth.twist); }
     void takeTrust(double trust);
     void addEdge(const MapEdgeMessage &edge);
     void removeEdge(qint64 id);

@@ -5,7 +5,6 @@
 #include "gui/desktop/view/MapColours.h"
 
 #include <QPainter>
-#include <QPainterPath>
 #include <QtMath>
 
 namespace hermes::desktop {
@@ -62,6 +61,9 @@ void MapPainter::paint(QPainter &painter) const {
     if (layers_.grid)
         paintGrid(painter);
     int leftOut = 0;
+    const auto paintPath = [&](MovingMap::Path path, const QPen &pen) {
+        paintWay(painter, model_.way(path), model_.breaks(path), transform_, size_, pen);
+    };
     if (layers_.map)
         leftOut += paintLines(painter, mapped(model_.edges(), transform_), QPen(c.map, 2));
     if (layers_.scan)
@@ -72,11 +74,11 @@ void MapPainter::paint(QPainter &painter) const {
         leftOut += paintLines(painter, mapped(model_.segments(), sensorTransform()),
                               QPen(agedColour(c.accent, model_.poseAge()), 2));
     if (layers_.truth)
-        paintPath(painter, MovingMap::Truth, QPen(c.truth, 1.5, Qt::DotLine));
+        paintPath(MovingMap::Truth, QPen(c.truth, 1.5, Qt::DotLine));
     if (layers_.odometry)
-        paintPath(painter, MovingMap::Odometry, QPen(c.odometry, 1.5, Qt::DashLine));
+        paintPath(MovingMap::Odometry, QPen(c.odometry, 1.5, Qt::DashLine));
     if (layers_.path)
-        paintPath(painter, MovingMap::Matched, QPen(c.path, 1.5));
+        paintPath(MovingMap::Matched, QPen(c.path, 1.5));
     if (layers_.trust)
         leftOut += paintTrust(painter);
     if (layers_.graph)
@@ -167,10 +169,6 @@ int MapPainter::paintCorrespondences(QPainter &painter) const {
         }
     }
     return paintLines(painter, arrows, QPen(mapColours().correspondence, 1));
-}
-
-void MapPainter::paintPath(QPainter &painter, MovingMap::Path path, const QPen &pen) const {
-    paintWay(painter, model_.way(path), model_.breaks(path), transform_, size_, pen);
 }
 
 // The ellipse and the pie hold the pose with 95 %, and are drawn ten times their size: on a good day

@@ -2,7 +2,6 @@
 
 #include "gui/desktop/view/MapModel.h"
 
-#include <QColor>
 #include <QPen>
 #include <QTransform>
 #include <vector>
@@ -49,7 +48,6 @@ private:
     void paintTrustLegend(QPainter &painter) const;
     void paintScan(QPainter &painter) const;
     int paintCorrespondences(QPainter &painter) const;
-    void paintPath(QPainter &painter, MovingMap::Path path, const QPen &pen) const;
     void paintUncertainty(QPainter &painter) const;
     void paintRobot(QPainter &painter) const;
     void paintScaleBar(QPainter &painter, double step_m) const;

@@ -38,18 +38,6 @@ void MapModel::forgetPath(MovingMap::Path path) {
     Q_EMIT changed();
 }
 
-const QPolygonF &MapModel::way(MovingMap::Path path) const {
-    return isGliding() ? glide_.shown().ways[path] : paths_[path].way();
-}
-
-void MapModel::onOdometry(const OdometryMessage &odometry) {
-    follow(paths_[MovingMap::Odometry], odometry.pose, odometry.twist);
-}
-
-void MapModel::onTruth(const TruthMessage &truth) {
-    follow(paths_[MovingMap::Truth], truth.pose, truth.twist);
-}
-
 PathMoment MapModel::moment(const Twist2D &twist) const {
     return {stamp_, isPlausible(twist) ? std::hypot(twist.vx, twist.vy) : 0};
 }

@@ -148,10 +148,6 @@ void MapView::fitTo(double across_m, double along_m) {
         0.5, qMin(width() / qMax(1.0, margin * across_m), height() / qMax(1.0, margin * along_m)), 5000.0);
 }
 
-void MapView::zoom(double factor) {
-    zoomAt(rect().center(), factor);
-}
-
 void MapView::zoomAt(QPointF pixel, double factor) {
     setFitting(false);
     keepScale();
@@ -161,10 +157,6 @@ void MapView::zoomAt(QPointF pixel, double factor) {
         centre_ += fixed - toWorld(pixel);
     tellCursor();
     update();
-}
-
-void MapView::render(QPainter &painter) const {
-    MapPainter(model_, layers_, transform(), size()).paint(painter);
 }
 
 void MapView::paintEvent(QPaintEvent *) {

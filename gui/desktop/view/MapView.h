@@ -3,7 +3,6 @@
 #include "gui/desktop/view/MapPainter.h"
 
 #include <QWidget>
-#include <functional>
 
 namespace hermes::desktop {
 
@@ -32,11 +31,11 @@ public:
     void setFitting(bool isFitting);
     void fit() { setFitting(true); }
     static constexpr double step = 1.2;
-    void zoom(double factor);
+    void zoom(double factor) { zoomAt(rect().center(), factor); }
     /// World to screen: metres to pixels, y up.
     QTransform transform() const;
     /// Draws what the view shows, without the tools.
-    void render(QPainter &painter) const;
+    void render(QPainter &painter) const { MapPainter(model_, layers_, transform(), size()).paint(painter); }
     QSize sizeHint() const override { return {640, 480}; }
 
 Q_SIGNALS:

@@ -37,10 +37,6 @@ double PlotPainter::legendWidth(const std::vector<PlotLine> &lines, const QFont 
     return names + QFontMetricsF(font).horizontalAdvance("-0.000000 rad/s") + 40;
 }
 
-double PlotPainter::xAt(double time_s) const {
-    return chart_.left() + (time_s - time_.left_s()) / time_.span_s() * chart_.width();
-}
-
 void PlotPainter::paint(QPainter &painter) const {
     painter.save();
     painter.setFont(font_);
@@ -241,15 +237,11 @@ QString valueText(double value) {
 
 // Those of Okabe and Ito, which the colour-blind tell apart, where they are seen on the background.
 QPen curvePen(int number) {
-    static const std::array<QColor, 6> light{QColor(0x00, 0x5f, 0xa8), QColor(0xc4, 0x4e, 0x00),
-                                             QColor(0x00, 0x80, 0x5a), QColor(0xa8, 0x3f, 0x7c),
-                                             QColor(0x6b, 0x5b, 0x00), QColor(0x33, 0x8f, 0xc4)};
-    static const std::array<QColor, 6> dark{QColor(0x56, 0xb4, 0xe9), QColor(0xf0, 0x9a, 0x40),
-                                            QColor(0x2f, 0xc4, 0x95), QColor(0xe0, 0x8f, 0xbf),
-                                            QColor(0xf0, 0xe4, 0x42), QColor(0xa8, 0xb8, 0xff)};
+    static const std::array<QRgb, 6> light{0x005fa8, 0xc44e00, 0x00805a, 0xa83f7c, 0x6b5b00, 0x338fc4};
+    static const std::array<QRgb, 6> dark{0x56b4e9, 0xf09a40, 0x2fc495, 0xe08fbf, 0xf0e442, 0xa8b8ff};
     static const std::array<Qt::PenStyle, 3> styles{Qt::SolidLine, Qt::DashLine, Qt::DotLine};
     const auto &colours = theme::isDark() ? dark : light;
-    return QPen(colours[std::size_t(number) % colours.size()], 1.5,
+    return QPen(QColor(colours[std::size_t(number) % colours.size()]), 1.5,
                 styles[std::size_t(number) / colours.size() % styles.size()]);
 }
 

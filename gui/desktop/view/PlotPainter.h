@@ -62,7 +62,9 @@ private:
     QString unitsOf(bool isRight) const;
     int valueTicks() const;
     ChartFrame frameOf(const PlotLine &line) const;
-    double xAt(double time_s) const;
+    double xAt(double time_s) const {
+        return chart_.left() + (time_s - time_.left_s()) / time_.span_s() * chart_.width();
+    }
     bool isCursorSeen() const;
     QRectF cursorBox() const;
     std::optional<QPointF> sampleShown(const PlotLine &line) const;

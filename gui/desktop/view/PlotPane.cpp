@@ -34,14 +34,6 @@ QFont PlotPane::smallFont() const {
     return small;
 }
 
-PlotPainter PlotPane::painter(const QRectF &place) const {
-    return PlotPainter(scene_, time_, place, smallFont(), palette());
-}
-
-QString PlotPane::valueText(int line) const {
-    return painter(rect()).valueText(scene_.lines.at(std::size_t(line)));
-}
-
 void PlotPane::refresh() {
     fit(scene_.left, false);
     fit(scene_.right, true);
@@ -129,18 +121,6 @@ void PlotPane::mouseMoveEvent(QMouseEvent *event) {
             time_.pan(-way.x() * seconds);
     }
     pointAt(event->localPos());
-}
-
-void PlotPane::mouseReleaseEvent(QMouseEvent *) {
-    dragged_.reset();
-}
-
-void PlotPane::mouseDoubleClickEvent(QMouseEvent *) {
-    Q_EMIT liveWanted();
-}
-
-void PlotPane::leaveEvent(QEvent *) {
-    time_.setCursor(std::nullopt);
 }
 
 void PlotPane::keyPressEvent(QKeyEvent *event) {

@@ -18,10 +18,12 @@ public:
     const PlotScene &scene() const { return scene_; }
     /// Fits the axes that nobody zoomed to the curves, and draws anew.
     void refresh();
-    PlotPainter painter(const QRectF &place) const;
+    PlotPainter painter(const QRectF &place) const { return {scene_, time_, place, smallFont(), palette()}; }
     double legendWidth() const { return PlotPainter::legendWidth(scene_.lines, smallFont()); }
     /// The value beside the name of a curve, as it is shown.
-    QString valueText(int line) const;
+    QString valueText(int line) const {
+        return painter(rect()).valueText(scene_.lines.at(std::size_t(line)));
+    }
 
     QSize sizeHint() const override { return {400, 160}; }
 
@@ -37,9 +39,9 @@ protected:
     void wheelEvent(QWheelEvent *event) override;
     void mousePressEvent(QMouseEvent *event) override;
     void mouseMoveEvent(QMouseEvent *event) override;
-    void mouseReleaseEvent(QMouseEvent *event) override;
-    void mouseDoubleClickEvent(QMouseEvent *event) override;
-    void leaveEvent(QEvent *event) override;
+    void mouseReleaseEvent(QMouseEvent *) override { dragged_.reset(); }
+    void mouseDoubleClickEvent(QMouseEvent *) override { Q_EMIT liveWanted(); }
+    void leaveEvent(QEvent *) override { time_.setCursor(std::nullopt); }
     void keyPressEvent(QKeyEvent *event) override;
     void focusInEvent(QFocusEvent *event) override;
     void contextMenuEvent(QContextMenuEvent *event) override;

@@ -1,7 +1,5 @@
 #include "gui/desktop/widgets/AgedLabel.h"
 
-#include <QPalette>
-
 namespace hermes::desktop {
 
 AgedLabel::AgedLabel(QWidget *parent)

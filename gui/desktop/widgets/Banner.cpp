@@ -4,9 +4,8 @@ namespace hermes::desktop {
 
 Banner::Banner(QWidget *parent)
     : PlainLabel({}, parent) {
-    setWordWrap(true);
+    letWrap();
     setMargin(8);
-    setMinimumWidth(1);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     setBold(true);
 }

@@ -3,7 +3,6 @@
 #include "gui/desktop/widgets/ValueEditor.h"
 
 #include <QCheckBox>
-#include <QHBoxLayout>
 
 namespace hermes::desktop {
 
@@ -14,10 +13,7 @@ public:
     explicit CheckEditor(const QJsonObject &schema, QWidget *parent = nullptr)
         : ValueEditor(parent)
         , box_(new QCheckBox) {
-        auto *const layout = new QHBoxLayout(this);
-        layout->setContentsMargins(0, 0, 0, 0);
-        layout->addWidget(box_);
-        setFocusProxy(box_);
+        hold(box_);
         connect(box_, &QCheckBox::clicked, this, [this](bool isTicked) {
             value_ = isTicked;
             Q_EMIT edited();
@@ -31,7 +27,6 @@ public:
         box_->setChecked(value.toBool());
     }
     void showFaults(const QString &, const Faults &) override {}
-    QWidgetList focusOrder() const override { return {box_}; }
 
 private:
     QCheckBox *box_;

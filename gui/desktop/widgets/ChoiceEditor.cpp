@@ -1,11 +1,9 @@
 #include "gui/desktop/widgets/ChoiceEditor.h"
 
-#include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
 #include <QComboBox>
-#include <QHBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -46,10 +44,7 @@ ChoiceEditor::ChoiceEditor(const QJsonObject &schema, const QJsonArray &values, 
                            QWidget *parent)
     : ValueEditor(parent)
     , list_(new QComboBox) {
-    auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(list_);
-    setFocusProxy(list_);
+    hold(list_);
     list_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     if (isOptional)
         list_->addItem(tr("not given"), QJsonValue(QJsonValue::Undefined));
@@ -70,17 +65,6 @@ void ChoiceEditor::setValue(const QJsonValue &value) {
         if (list_->itemData(i).toJsonValue() == value)
             found = i;
     list_->setCurrentIndex(found);
-}
-
-void ChoiceEditor::showFaults(const QString &path, const Faults &faults) {
-    QPalette palette;
-    if (faultAt(faults, path) != faults.end())
-        palette.setColor(QPalette::Text, theme::colour(Condition::Fault));
-    list_->setPalette(palette);
-}
-
-QWidgetList ChoiceEditor::focusOrder() const {
-    return {list_};
 }
 
 } // namespace hermes::desktop

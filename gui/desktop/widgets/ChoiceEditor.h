@@ -23,8 +23,6 @@ public:
 
     QJsonValue value() const override;
     void setValue(const QJsonValue &value) override;
-    void showFaults(const QString &path, const Faults &faults) override;
-    QWidgetList focusOrder() const override;
 
 private:
     QComboBox *list_;

@@ -24,9 +24,7 @@ ValueEditor *makeEditor(const QJsonObject &schema, const EditorPlace &place) {
         return new ChoiceEditor(schema, choices, place.isOptional);
     if (type == "array" && isNumber(schema["items"].toObject()))
         return new LineEditor(schema, Kind::Numbers, place.empty);
-    if (type == "array")
-        return new StructureEditor(schema, place);
-    if (type == "object" || (type.isEmpty() && schema["properties"].isObject()))
+    if (type == "array" || type == "object" || (type.isEmpty() && schema["properties"].isObject()))
         return new StructureEditor(schema, place);
     return new LineEditor(schema,
                           type == "string"   ? Kind::Text

@@ -27,6 +27,10 @@ QString shortText(const QString &text, int longest) {
     return cut(text, longest, true);
 }
 
+QString labelText(QString text) {
+    return text.replace('&', "&&");
+}
+
 QString toolTipOf(const QString &text) {
     if (text.isEmpty())
         return {};

@@ -14,6 +14,8 @@ constexpr int longestName = 60; // of a recording, a topic, a mark
 QString shortLine(const QString &text, int longest = 200);
 /// The same with its lines kept.
 QString shortText(const QString &text, int longest = 1000);
+/// A text of a button or a menu, in which "&" is no mark of a key.
+QString labelText(QString text);
 /// A tooltip, which Qt takes for HTML where it looks like it, with this plain text.
 QString toolTipOf(const QString &text);
 /// With so many decimals while that is short, else as a power of ten.

@@ -1,6 +1,7 @@
 #include "gui/desktop/widgets/JsonEditor.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
@@ -8,7 +9,6 @@
 #include <QJsonDocument>
 #include <QJsonParseError>
 #include <QPlainTextEdit>
-#include <QVBoxLayout>
 #include <algorithm>
 #include <utility>
 
@@ -38,13 +38,12 @@ bool isShowable(const QString &text) {
 
 JsonEditor::JsonEditor(QWidget *parent)
     : ValueEditor(parent) {
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
+    filled(this, inColumn({}));
 }
 
 /// Above the note.
 void JsonEditor::show(QWidget *shown) {
-    static_cast<QVBoxLayout *>(layout())->insertWidget(0, shown);
+    static_cast<QBoxLayout *>(layout())->insertWidget(0, shown);
     setFocusProxy(text_);
     Q_EMIT rebuilt();
 }
@@ -104,22 +103,9 @@ void JsonEditor::addFaults(const QString &path, Faults &faults) const {
         faults[path] = tr("whole numbers of at most 15 digits: more would not arrive as they are");
 }
 
-void JsonEditor::showFaults(const QString &path, const Faults &faults) {
-    if (!text_)
-        return;
-    QPalette palette;
-    if (faultAt(faults, path) != faults.end())
-        palette.setColor(QPalette::Text, theme::colour(Condition::Fault));
-    text_->setPalette(palette);
-}
-
 bool JsonEditor::placeNote(QWidget *note) {
-    static_cast<QVBoxLayout *>(layout())->addWidget(note);
+    layout()->addWidget(note);
     return true;
-}
-
-QWidgetList JsonEditor::focusOrder() const {
-    return text_ ? QWidgetList{text_} : QWidgetList();
 }
 
 } // namespace hermes::desktop

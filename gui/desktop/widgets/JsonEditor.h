@@ -21,9 +21,8 @@ public:
     /// The value is kept, and not shown.
     void setTooLong(const QJsonValue &value);
     void addFaults(const QString &path, Faults &faults) const override;
-    void showFaults(const QString &path, const Faults &faults) override;
     bool placeNote(QWidget *note) override;
-    QWidgetList focusOrder() const override;
+    QWidgetList focusOrder() const override { return text_ ? ValueEditor::focusOrder() : QWidgetList(); }
 
 private:
     void show(QWidget *shown);

@@ -1,11 +1,9 @@
 #include "gui/desktop/widgets/LineEditor.h"
 
-#include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
 #include <QDateTime>
-#include <QHBoxLayout>
 #include <QHostAddress>
 #include <QJsonArray>
 #include <QKeyEvent>
@@ -77,10 +75,7 @@ LineEditor::LineEditor(const QJsonObject &schema, Kind kind, Empty empty, QWidge
     , kind_(kind)
     , empty_(empty)
     , line_(new QLineEdit) {
-    auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(line_);
-    setFocusProxy(line_);
+    hold(line_);
     const QString example = exampleOf(schema["format"].toString());
     if (isSecret(schema))
         line_->setEchoMode(QLineEdit::Password);
@@ -151,17 +146,6 @@ void LineEditor::addFaults(const QString &path, Faults &faults) const {
         faults[path] = tr("each bracket and quote to be closed");
     if (kind_ != Kind::Text && line_->text() != givenText_ && losesDigits(text))
         faults[path] = tr("at most 15 digits: more would not arrive as they are");
-}
-
-void LineEditor::showFaults(const QString &path, const Faults &faults) {
-    QPalette palette;
-    if (faultAt(faults, path) != faults.end())
-        palette.setColor(QPalette::Text, theme::colour(Condition::Fault));
-    line_->setPalette(palette);
-}
-
-QWidgetList LineEditor::focusOrder() const {
-    return {line_};
 }
 
 bool LineEditor::eventFilter(QObject *watched, QEvent *event) {

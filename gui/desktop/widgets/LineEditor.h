@@ -21,8 +21,6 @@ public:
     QJsonValue value() const override;
     void setValue(const QJsonValue &value) override;
     void addFaults(const QString &path, Faults &faults) const override;
-    void showFaults(const QString &path, const Faults &faults) override;
-    QWidgetList focusOrder() const override;
 
 protected:
     bool eventFilter(QObject *watched, QEvent *event) override;

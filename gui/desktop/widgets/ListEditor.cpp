@@ -1,13 +1,13 @@
 #include "gui/desktop/widgets/ListEditor.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
 #include <QJsonArray>
 #include <QPushButton>
 #include <QToolButton>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -38,19 +38,11 @@ ListEditor::ListEditor(const QJsonObject &schema, const EditorPlace &place, QWid
     , item_(schema["items"].toObject())
     , place_(place)
     , foldsOut_(isStructure(item_))
-    , lines_(new QVBoxLayout)
-    , foot_(new QHBoxLayout)
-    , add_(new QPushButton(theme::icon("add"), tr("Add"))) {
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(2);
-    layout->addLayout(lines_);
-    layout->addLayout(foot_);
+    , add_(named(new QPushButton(theme::icon("add"), tr("Add")), "add", tr("Adds a row at the end")))
+    , lines_(inColumn({}))
+    , foot_(inRow({add_, Part::room()})) {
+    filled(this, inColumn({lines_, foot_}), 2);
     lines_->setSpacing(2);
-    foot_->addWidget(add_);
-    foot_->addStretch();
-    add_->setObjectName("add");
-    add_->setToolTip(tr("Adds a row at the end"));
     setFocusProxy(add_);
     connect(add_, &QPushButton::clicked, this, &ListEditor::add);
 }
@@ -62,10 +54,6 @@ int ListEditor::indexOf(const Row *row) const {
         if (rows_[i].get() == row)
             return int(i);
     return -1;
-}
-
-QJsonValue ListEditor::valueOf(const Row &row) {
-    return row.editor ? row.editor->value() : row.folded;
 }
 
 QJsonValue ListEditor::value() const {
@@ -84,8 +72,7 @@ void ListEditor::setValue(const QJsonValue &value) {
     isGiven_ = !value.isUndefined();
     const bool isSameSize = list.size() == int(rows_.size());
     while (int(rows_.size()) > list.size()) {
-        rows_.back()->box->deleteLater();
-        rows_.back()->box->hide();
+        discard(rows_.back()->box);
         rows_.pop_back();
     }
     for (int i = 0; i < list.size(); ++i)
@@ -101,47 +88,40 @@ void ListEditor::setValue(const QJsonValue &value) {
 ListEditor::Row &ListEditor::addRow(const QJsonValue &value) {
     rows_.push_back(std::make_unique<Row>());
     Row &row = *rows_.back();
-    row.box = new QWidget;
-    auto *const column = new QVBoxLayout(row.box);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(2);
-    auto *const line = new QHBoxLayout;
-    column->addLayout(line);
-    line->setSpacing(2);
+    const auto button = [](const char *name) {
+        auto *const made = named(new QToolButton, name);
+        made->setAutoRaise(true);
+        return made;
+    };
+    row.up = button("up");
+    row.down = button("down");
+    row.remove = button("remove");
+    row.up->setArrowType(Qt::UpArrow);
+    row.down->setArrowType(Qt::DownArrow);
+    row.remove->setIcon(theme::icon("remove"));
+    QWidget *shown = nullptr;
     if (foldsOut_) {
-        row.fold = new QPushButton;
-        row.fold->setObjectName("fold");
+        shown = row.fold = named(new QPushButton, "fold");
         row.fold->setFlat(true);
         row.fold->setStyleSheet("text-align: left");
         row.fold->setMinimumWidth(1);
         row.fold->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-        line->addWidget(row.fold, 1);
         connect(row.fold, &QPushButton::clicked, this, [this, &row] { unfold(row, !row.editor); });
         row.folded = value;
         showFolded(row);
     } else {
         makeRowEditor(row, value);
-        line->addWidget(row.editor, 1);
+        shown = row.editor;
     }
-    row.up = addButton(row, *line, "up");
-    row.down = addButton(row, *line, "down");
-    row.remove = addButton(row, *line, "remove");
-    row.up->setArrowType(Qt::UpArrow);
-    row.down->setArrowType(Qt::DownArrow);
-    row.remove->setIcon(theme::icon("remove"));
+    QLayout *const line = inRow(
+        {{shown, 1}, {row.up, 0, Qt::AlignTop}, {row.down, 0, Qt::AlignTop}, {row.remove, 0, Qt::AlignTop}});
+    line->setSpacing(2);
+    row.box = filled(new QWidget, inColumn({line}), 2);
     connect(row.up, &QToolButton::clicked, this, [this, &row] { move(&row, -1); });
     connect(row.down, &QToolButton::clicked, this, [this, &row] { move(&row, 1); });
     connect(row.remove, &QToolButton::clicked, this, [this, &row] { remove(&row); });
     lines_->addWidget(row.box);
     return row;
-}
-
-QToolButton *ListEditor::addButton(Row &row, QBoxLayout &line, const char *name) {
-    auto *const button = new QToolButton(row.box);
-    button->setObjectName(name);
-    button->setAutoRaise(true);
-    line.addWidget(button, 0, Qt::AlignTop);
-    return button;
 }
 
 void ListEditor::makeRowEditor(Row &row, const QJsonValue &value) {
@@ -173,8 +153,7 @@ void ListEditor::unfold(Row &row, bool isUnfolded) {
         row.box->layout()->addWidget(row.editor);
     } else {
         row.folded = row.editor->value();
-        row.editor->hide();
-        row.editor->deleteLater();
+        discard(row.editor);
         row.editor = nullptr;
     }
     showFolded(row);
@@ -187,7 +166,7 @@ void ListEditor::showFolded(Row &row) {
         return;
     const QString summary = summaryOf(valueOf(row));
     const QString text = summary.isEmpty() ? tr("(empty)") : summary;
-    row.fold->setText((row.editor ? u8"\u25be " : u8"\u25b8 ") + QString(text).replace('&', "&&"));
+    row.fold->setText((row.editor ? u8"\u25be " : u8"\u25b8 ") + labelText(text));
     row.fold->setAccessibleName(text);
     row.fold->setToolTip(toolTipOf((row.editor ? tr("Folds up: ") : tr("Folds out: ")) + text));
 }
@@ -205,8 +184,7 @@ void ListEditor::add() {
 
 void ListEditor::remove(const Row *row) {
     const int i = indexOf(row);
-    row->box->hide();
-    row->box->deleteLater();
+    discard(row->box);
     rows_.erase(rows_.begin() + i);
     number();
     Q_EMIT rebuilt();
@@ -268,10 +246,7 @@ void ListEditor::showFaults(const QString &path, const Faults &faults) {
             row.editor->showFaults(place, faults);
         if (!row.fold)
             continue;
-        QPalette palette;
-        if (faultAt(faults, place) != faults.end())
-            palette.setColor(QPalette::ButtonText, theme::colour(Condition::Fault));
-        row.fold->setPalette(palette);
+        theme::tint(*row.fold, QPalette::ButtonText, theme::faultIf(faultAt(faults, place) != faults.end()));
     }
 }
 

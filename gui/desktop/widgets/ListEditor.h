@@ -4,7 +4,6 @@
 
 #include <vector>
 
-class QAbstractButton;
 class QBoxLayout;
 class QPushButton;
 class QToolButton;
@@ -38,7 +37,6 @@ private:
     };
 
     Row &addRow(const QJsonValue &value);
-    QToolButton *addButton(Row &row, QBoxLayout &line, const char *name);
     void setRow(Row &row, const QJsonValue &value);
     void makeRowEditor(Row &row, const QJsonValue &value);
     void unfold(Row &row, bool isUnfolded);
@@ -48,15 +46,15 @@ private:
     void add();
     void number();
     int indexOf(const Row *row) const;
-    static QJsonValue valueOf(const Row &row);
+    static QJsonValue valueOf(const Row &row) { return row.editor ? row.editor->value() : row.folded; }
 
     const QJsonObject schema_, item_;
     const EditorPlace place_;
     const bool foldsOut_;
     bool isGiven_ = false; // also when it has no rows
     std::vector<std::unique_ptr<Row>> rows_;
-    QBoxLayout *lines_, *foot_;
     QPushButton *add_;
+    QBoxLayout *lines_, *foot_;
 };
 
 } // namespace hermes::desktop

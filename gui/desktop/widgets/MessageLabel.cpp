@@ -19,10 +19,7 @@ MessageLabel::MessageLabel(QWidget *parent)
 }
 
 void MessageLabel::tell(const QString &text, bool isError, bool isState) {
-    QPalette palette;
-    if (isError)
-        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    setPalette(palette);
+    theme::tint(*this, QPalette::WindowText, theme::faultIf(isError));
     setText(inPlainWords(text));
     setEnabled(true);
     show();

@@ -1,6 +1,7 @@
 #include "gui/desktop/widgets/ObjectEditor.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
@@ -36,26 +37,17 @@ ObjectEditor::ObjectEditor(const QJsonObject &schema, const EditorPlace &place, 
     , properties_(schema["properties"].toObject())
     , place_(place)
     , grid_(new QGridLayout)
-    , foot_(new QHBoxLayout)
-    , field_(new QPushButton(theme::icon("add"), tr("Add a value")))
-    , free_(new QPushButton(theme::icon("add"), tr("Add")))
+    , field_(named(new QPushButton(theme::icon("add"), tr("Add a value")), "addField",
+                   tr("Values that may be given")))
+    , free_(named(new QPushButton(theme::icon("add"), tr("Add")), "addFree",
+                  tr("Adds a row with a name and a value")))
+    , foot_(inRow({field_, free_, Part::room()}))
     , absent_(new QMenu(this)) {
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(2);
-    layout->addLayout(grid_);
-    layout->addLayout(foot_);
+    filled(this, inColumn({grid_, foot_}), 2);
     grid_->setVerticalSpacing(2);
     grid_->setColumnStretch(EditorColumn, 3);
     grid_->setColumnStretch(NoteColumn, 2);
-    foot_->addWidget(field_);
-    foot_->addWidget(free_);
-    foot_->addStretch();
-    field_->setObjectName("addField");
-    field_->setToolTip(tr("Values that may be given"));
     field_->setMenu(absent_);
-    free_->setObjectName("addFree");
-    free_->setToolTip(tr("Adds a row with a name and a value"));
     free_->setVisible(isOpen(schema));
     connect(free_, &QPushButton::clicked, this, &ObjectEditor::addFree);
     connect(absent_, &QMenu::triggered, this,
@@ -118,10 +110,8 @@ void ObjectEditor::setValue(const QJsonValue &value) {
 
 void ObjectEditor::clear() {
     while (!rows_.empty()) {
-        for (QWidget *const widget : qAsConst(rows_.back()->widgets)) {
-            widget->hide();
-            widget->deleteLater();
-        }
+        for (QWidget *const widget : qAsConst(rows_.back()->widgets))
+            discard(widget);
         rows_.pop_back();
     }
 }
@@ -137,10 +127,8 @@ ObjectEditor::Row &ObjectEditor::addRow(const QString &key, const QJsonValue &va
     row.editor->setObjectName("member " + key.left(100));
     row.editor->setEnabled(!row.schema["readOnly"].toBool());
     row.editor->setValue(value);
-    row.note = new PlainLabel;
-    row.note->setObjectName("note");
-    row.note->setWordWrap(true);
-    row.note->setMinimumWidth(1);
+    row.note = named(new PlainLabel, "note");
+    row.note->letWrap();
     auto *const unit = new PlainLabel(shownUnit(row.schema));
     row.widgets = {makeTitle(row), row.editor, unit, row.note};
     const bool isWide = row.editor->placeNote(row.note);
@@ -153,12 +141,11 @@ ObjectEditor::Row &ObjectEditor::addRow(const QString &key, const QJsonValue &va
     unit->setParent(isWide ? this : unit->parentWidget());
     unit->setVisible(!isWide);
     if (!isMust) {
-        row.remove = new QToolButton;
-        row.remove->setObjectName("remove");
+        const QString toolTip = tr("Leaves %1 out").arg(shortLine(key, longestTitle));
+        row.remove = named(new QToolButton, "remove", toolTipOf(toolTip));
         row.remove->setAutoRaise(true);
         row.remove->setText(u8"\u2715"); // a row of a list has a minus
-        row.remove->setToolTip(toolTipOf(tr("Leaves %1 out").arg(shortLine(key, longestTitle))));
-        row.remove->setAccessibleName(tr("Leaves %1 out").arg(shortLine(key, longestTitle)));
+        row.remove->setAccessibleName(toolTip);
         connect(row.remove, &QToolButton::clicked, this, [this, &row] { remove(&row); });
         grid_->addWidget(row.remove, line_, RemoveColumn, isWide ? Qt::AlignTop : Qt::AlignVCenter);
         row.widgets.append(row.remove);
@@ -173,16 +160,14 @@ ObjectEditor::Row &ObjectEditor::addRow(const QString &key, const QJsonValue &va
 
 QWidget *ObjectEditor::makeTitle(Row &row) {
     if (!properties_.contains(row.key)) {
-        row.freeKey = new QLineEdit(row.key);
-        row.freeKey->setObjectName("key");
+        row.freeKey = named(new QLineEdit(row.key), "key");
         row.freeKey->setPlaceholderText(tr("name"));
         row.freeKey->setAccessibleName(tr("Name of the value"));
         row.freeKey->setMinimumWidth(80);
         connect(row.freeKey, &QLineEdit::textEdited, this, &ValueEditor::edited);
         return row.freeKey;
     }
-    auto *const title =
-        new PlainLabel(shortLine(titleOf(row.key, row.schema), longestTitle).replace('&', "&&"));
+    auto *const title = new PlainLabel(labelText(shortLine(titleOf(row.key, row.schema), longestTitle)));
     title->setBuddy(row.editor);
     title->setMargin(3);
     return title;
@@ -210,10 +195,8 @@ void ObjectEditor::addFree() {
 void ObjectEditor::remove(const Row *row) {
     const auto found =
         std::find_if(rows_.begin(), rows_.end(), [row](const auto &one) { return one.get() == row; });
-    for (QWidget *const widget : row->widgets) {
-        widget->hide();
-        widget->deleteLater();
-    }
+    for (QWidget *const widget : row->widgets)
+        discard(widget);
     rows_.erase(found);
     offer();
     Q_EMIT rebuilt();
@@ -230,7 +213,7 @@ void ObjectEditor::offer() {
         if (find(property.key()) || absent_->actions().size() >= maxMembers)
             continue;
         const QString title = shortLine(titleOf(property.key(), property->toObject()), longestTitle);
-        QAction *const action = absent_->addAction(QString(title).replace('&', "&&"));
+        QAction *const action = absent_->addAction(labelText(title));
         action->setData(property.key());
         action->setToolTip(toolTipOf(property->toObject()["description"].toString()));
     }
@@ -259,10 +242,7 @@ void ObjectEditor::showFaults(const QString &path, const Faults &faults) {
         row->editor->showFaults(place, faults);
         const QString fault = faultText(faults, place, row->schema);
         row->note->setText(shortLine(fault.isEmpty() ? limitsOf(row->schema) : fault, longestNote));
-        QPalette palette;
-        if (!fault.isEmpty())
-            palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-        row->note->setPalette(palette);
+        theme::tint(*row->note, QPalette::WindowText, theme::faultIf(!fault.isEmpty()));
     }
 }
 

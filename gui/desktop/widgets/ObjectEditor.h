@@ -59,8 +59,8 @@ private:
     std::vector<std::unique_ptr<Row>> rows_;
     int line_ = 0; // of the grid
     QGridLayout *grid_;
-    QBoxLayout *foot_;
     QPushButton *field_, *free_;
+    QBoxLayout *foot_;
     QMenu *absent_;
 };
 

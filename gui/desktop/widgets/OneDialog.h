@@ -1,7 +1,9 @@
 #pragma once
 
-#include <QDialog>
+#include <QMessageBox>
 #include <QPointer>
+#include <QPushButton>
+#include <functional>
 
 namespace hermes::desktop {
 
@@ -15,6 +17,17 @@ public:
         dialog->setAttribute(Qt::WA_DeleteOnClose);
         dialog->setWindowModality(Qt::NonModal);
         dialog->show();
+    }
+    /// Asks whether something is really to be done.
+    void ask(QWidget *parent, const QString &title, const QString &question, const QString &yes,
+             const std::function<void()> &work) {
+        auto *const box =
+            new QMessageBox(QMessageBox::Question, title, question, QMessageBox::Cancel, parent);
+        QPushButton *const accept = box->addButton(yes, QMessageBox::AcceptRole);
+        accept->setObjectName("accept");
+        box->setDefaultButton(QMessageBox::Cancel);
+        QObject::connect(accept, &QPushButton::clicked, parent, work);
+        show(box);
     }
     void close() {
         if (open_)

@@ -26,6 +26,11 @@ void PlainLabel::setBold(bool isBold) {
     setFont(changed);
 }
 
+void PlainLabel::letWrap() {
+    setWordWrap(true);
+    setMinimumWidth(1);
+}
+
 void PlainLabel::letElide(Qt::TextElideMode mode) {
     mode_ = mode;
     setMinimumWidth(1);
@@ -34,10 +39,6 @@ void PlainLabel::letElide(Qt::TextElideMode mode) {
 void PlainLabel::keepRoom(int most) {
     letElide();
     room_ = most;
-}
-
-bool PlainLabel::isElided() const {
-    return shownText() != text();
 }
 
 QString PlainLabel::shownText() const {

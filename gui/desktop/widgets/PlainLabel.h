@@ -14,13 +14,15 @@ public:
 
     void setText(const QString &text);
     void setBold(bool isBold);
+    /// Breaks its lines; a word without end widens no panel.
+    void letWrap();
     /// One line that gives way to what is beside it: dots stand for what is left out, and the tool tip has
     /// all.
     void letElide(Qt::TextElideMode mode = Qt::ElideRight);
     /// So wide it stays (pixels), as far as its text is, while others beside it are cut.
     void keepRoom(int most);
     /// Whether not all of it is seen at this width.
-    bool isElided() const;
+    bool isElided() const { return shownText() != text(); }
     /// What is seen of the text.
     QString shownText() const;
 

@@ -4,12 +4,12 @@
 #include "common/schema/SchemaText.h"
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/EditorFactory.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QGridLayout>
-#include <QVBoxLayout>
 #include <algorithm>
 #include <set>
 
@@ -36,11 +36,9 @@ bool isGroup(const QJsonObject &schema) {
 }
 
 QLabel *makeDescription(const QJsonObject &schema) {
-    auto *const label = new PlainLabel;
+    auto *const label = named(new PlainLabel(shortLine(schema["description"].toString())), "description");
     label->letElide();
     label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    label->setObjectName("description");
-    label->setText(shortLine(schema["description"].toString()));
     label->setForegroundRole(QPalette::PlaceholderText);
     return label;
 }
@@ -49,15 +47,10 @@ QLabel *makeDescription(const QJsonObject &schema) {
 
 SchemaForm::SchemaForm(QWidget *parent)
     : QWidget(parent)
-    , notice_(new PlainLabel) {
-    auto *const column = new QVBoxLayout(this);
-    column->addWidget(notice_);
-    notice_->setObjectName("notice");
-    notice_->setWordWrap(true);
-    notice_->setMinimumWidth(1);
-    QPalette warning;
-    warning.setColor(QPalette::WindowText, theme::colour(Condition::Warning));
-    notice_->setPalette(warning);
+    , notice_(named(new PlainLabel, "notice")) {
+    setLayout(inColumn({notice_}));
+    notice_->letWrap();
+    theme::tint(*notice_, QPalette::WindowText, Condition::Warning);
 }
 
 void SchemaForm::setSchema(const QJsonObject &schema, const QJsonObject &values) {
@@ -110,15 +103,14 @@ void SchemaForm::addRow(const QString &path, const QJsonObject &schema, bool isR
     row.group = schema["group"].toString();
     if (row.group.isEmpty())
         row.group = path.contains('.') ? path.section('.', 0, 0) : QString();
-    row.title = new PlainLabel(shortLine(titleOf(path, schema), longestTitle).replace('&', "&&"));
+    row.title = new PlainLabel(labelText(shortLine(titleOf(path, schema), longestTitle)));
     const bool isOptional =
         !isRequired && !schema.contains("default") && valueAt(baseline_, path).isUndefined();
     row.editor = makeEditor(schema, {room_, 0, isOptional, LineEditor::Empty::Absent});
     row.editor->setObjectName(path);
     row.editor->setEnabled(!schema["readOnly"].toBool());
     row.title->setBuddy(row.editor);
-    row.note = new PlainLabel;
-    row.note->setObjectName(path + "/note");
+    row.note = named(new PlainLabel, path + "/note");
     row.widgets = {row.title, row.editor, row.note};
     row.isWide = row.editor->placeNote(row.note);
     if (!row.isWide)
@@ -150,9 +142,8 @@ void SchemaForm::arrange() {
     grid->setVerticalSpacing(4);
     int line = 0;
     for (const QString &group : groups) {
-        auto *const heading = new PlainLabel(shortLine(group, longestTitle));
+        auto *const heading = named(new PlainLabel(shortLine(group, longestTitle)), "heading");
         heading->setBold(true);
-        heading->setObjectName("heading");
         headings_.emplace_back(heading, group);
         grid->addWidget(heading, line++, 0, 1, 5);
         heading->setVisible(!group.isEmpty());
@@ -316,11 +307,10 @@ void SchemaForm::mark(const QString &path, Row &row) {
     if (const QString spoken = spokenAmount(now.toDouble(), row.schema["unit"].toString()); !spoken.isEmpty())
         note = tr("%1 (%2)").arg(spoken, note);
     row.note->setText(shortLine(note, longestNote));
-    QPalette palette;
-    if (!fault.isEmpty() || isChanged)
-        palette.setColor(QPalette::WindowText,
-                         theme::colour(fault.isEmpty() ? Condition::Busy : Condition::Fault));
-    row.note->setPalette(palette);
+    std::optional<Condition> condition = theme::faultIf(!fault.isEmpty());
+    if (!condition && isChanged)
+        condition = Condition::Busy;
+    theme::tint(*row.note, QPalette::WindowText, condition);
 }
 
 void SchemaForm::setFilter(const QString &text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QDockWidget>
 #include <QScrollArea>
 
 namespace hermes::desktop {
@@ -16,6 +17,14 @@ inline bool isSeen(const QWidget &widget, bool scrolled = false) {
         place = isScrolled ? outer->rect() : place.translated(inner->pos()) & outer->rect();
     }
     return widget.isVisible() && !place.isEmpty();
+}
+
+/// The dock that a widget lies in; null: in none.
+inline QDockWidget *dockOf(const QWidget &widget) {
+    QWidget *above = widget.parentWidget();
+    while (above && !qobject_cast<QDockWidget *>(above))
+        above = above->parentWidget();
+    return static_cast<QDockWidget *>(above);
 }
 
 } // namespace hermes::desktop

@@ -1,12 +1,12 @@
 #include "gui/desktop/widgets/StructureEditor.h"
 
+#include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/JsonEditor.h"
 #include "gui/desktop/widgets/ListEditor.h"
 #include "gui/desktop/widgets/ObjectEditor.h"
 
 #include <QJsonArray>
-#include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
@@ -25,8 +25,7 @@ StructureEditor::StructureEditor(const QJsonObject &schema, const EditorPlace &p
     , schema_(schema)
     , place_(place)
     , isList_(schema["type"] == "array") {
-    auto *const layout = new QVBoxLayout(this);
-    layout->setContentsMargins(0, 0, 0, 0);
+    filled(this, inColumn({}));
     setValue(schema["default"]);
 }
 
@@ -85,25 +84,9 @@ void StructureEditor::setValue(const QJsonValue &value) {
         inner_->setValue(value);
 }
 
-QJsonValue StructureEditor::value() const {
-    return inner_->value();
-}
-
-void StructureEditor::addFaults(const QString &path, Faults &faults) const {
-    inner_->addFaults(path, faults);
-}
-
-void StructureEditor::showFaults(const QString &path, const Faults &faults) {
-    inner_->showFaults(path, faults);
-}
-
 bool StructureEditor::placeNote(QWidget *note) {
     note_ = note;
     return inner_->placeNote(note);
-}
-
-QWidgetList StructureEditor::focusOrder() const {
-    return inner_->focusOrder();
 }
 
 } // namespace hermes::desktop

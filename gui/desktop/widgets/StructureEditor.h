@@ -16,12 +16,12 @@ public:
     StructureEditor(const QJsonObject &schema, const EditorPlace &place, QWidget *parent = nullptr);
     ~StructureEditor() override;
 
-    QJsonValue value() const override;
+    QJsonValue value() const override { return inner_->value(); }
     void setValue(const QJsonValue &value) override;
-    void addFaults(const QString &path, Faults &faults) const override;
-    void showFaults(const QString &path, const Faults &faults) override;
+    void addFaults(const QString &path, Faults &faults) const override { inner_->addFaults(path, faults); }
+    void showFaults(const QString &path, const Faults &faults) override { inner_->showFaults(path, faults); }
     bool placeNote(QWidget *note) override;
-    QWidgetList focusOrder() const override;
+    QWidgetList focusOrder() const override { return inner_->focusOrder(); }
 
 private:
     bool suitsRows(const QJsonValue &value) const;

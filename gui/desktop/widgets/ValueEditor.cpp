@@ -1,4 +1,6 @@
 #include "gui/desktop/widgets/ValueEditor.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/Arrangement.h"
 
 namespace hermes::desktop {
 
@@ -14,10 +16,14 @@ QString pathOf(const QString &parent, const QString &key) {
     return parent.isEmpty() ? key : parent + '.' + key;
 }
 
-void ValueEditor::addFaults(const QString &, Faults &) const {}
+void ValueEditor::showFaults(const QString &path, const Faults &faults) {
+    if (focusProxy())
+        theme::tint(*focusProxy(), QPalette::Text, theme::faultIf(faultAt(faults, path) != faults.end()));
+}
 
-bool ValueEditor::placeNote(QWidget *) {
-    return false;
+void ValueEditor::hold(QWidget *input) {
+    filled(this, inRow({input}));
+    setFocusProxy(input);
 }
 
 void chainFocus(const QWidgetList &order) {

@@ -14,7 +14,8 @@ Faults::const_iterator faultAt(const Faults &faults, const QString &path);
 /// The path of a member or an element.
 QString pathOf(const QString &parent, const QString &key);
 
-/// The input for one value of a JSON Schema.
+/// The input for one value of a JSON Schema. Its own showFaults() and focusOrder() are those of a single
+/// input.
 class ValueEditor : public QWidget {
     Q_OBJECT
 public:
@@ -25,13 +26,17 @@ public:
     virtual QJsonValue value() const = 0;
     virtual void setValue(const QJsonValue &value) = 0;
     /// Adds what is wrong with the input whatever the schema's check says, as text that cannot be read.
-    virtual void addFaults(const QString &path, Faults &faults) const;
+    virtual void addFaults(const QString & /*path*/, Faults & /*faults*/) const {}
     /// Shows which of its values are wrong.
-    virtual void showFaults(const QString &path, const Faults &faults) = 0;
+    virtual void showFaults(const QString &path, const Faults &faults);
     /// Takes a note of the value into its own lines, where it has several; false: it has one line.
-    virtual bool placeNote(QWidget *note);
+    virtual bool placeNote(QWidget * /*note*/) { return false; }
     /// What takes the focus, in the order in which Tab goes.
-    virtual QWidgetList focusOrder() const = 0;
+    virtual QWidgetList focusOrder() const { return {focusProxy()}; }
+
+protected:
+    /// It consists of this one input, which has the focus.
+    void hold(QWidget *input);
 
 Q_SIGNALS:
     /// The operator changed it, by however little.

@@ -1,8 +1,7 @@
 #include "gui/vector/evaluation/MotionErrors.h"
 
-#include "vectorlib/geometry/Angle.h"
+#include "gui/vector/Quantile.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace hermes::vector {
@@ -11,19 +10,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The value below which so much of all lies.
-double quantileOf(std::vector<double> values, double share) {
-    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 void addSummary(Json &json, const std::string &unit, const std::vector<double> &values) {
     const bool any = !values.empty();
     const double sum = std::accumulate(values.begin(), values.end(), 0.0);
     json["mean_" + unit] = any ? Json(sum / double(values.size())) : Json();
-    json["median_" + unit] = any ? Json(quantileOf(values, 0.5)) : Json();
-    json["percentile_95_" + unit] = any ? Json(quantileOf(values, 0.95)) : Json();
+    json["median_" + unit] = any ? Json(quantile(values, 0.5)) : Json();
+    json["percentile_95_" + unit] = any ? Json(quantile(values, 0.95)) : Json();
 }
 
 } // namespace

@@ -13,7 +13,7 @@ struct CloudSession {
         : daemon(mischief) {
         panel.resize(640, 360);
         panel.show();
-        fleet.add(QString("127.0.0.1:%1").arg(daemon.port()));
+        fleet.add(daemon.address());
         QTRY_VERIFY(daemon.subscriptions("cloud") > 0);
     }
     QString summary() const { return panel.findChild<QLabel *>("cloudSummary")->text(); }

@@ -17,7 +17,7 @@ struct EightSession {
     explicit EightSession(bool isAtEnd = true) {
         panel.resize(800, 600);
         panel.show();
-        fleet.add(QString("127.0.0.1:%1").arg(daemon.port()));
+        fleet.add(daemon.address());
         [&] {
             for (const char *const topic : {"map", "graph", "pose"})
                 QTRY_VERIFY(daemon.subscriptions(topic) > 0);

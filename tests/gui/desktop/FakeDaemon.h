@@ -49,6 +49,8 @@ public:
     }
 
     quint16 port() const { return port_; }
+    /// Seen from this computer; 127.0.0.2 is another one where the daemon isEverywhere.
+    QString address(const char *host = "127.0.0.1") const { return QString("%1:%2").arg(host).arg(port_); }
     /// A message to all who have subscribed to the topic, with a stamp of its own if one is given.
     void say(const QByteArray &topic, const QByteArray &data, const QByteArray &stamp = {}) {
         inThread([&] {

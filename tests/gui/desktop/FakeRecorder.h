@@ -83,7 +83,8 @@ private:
                                                state.start + state.duration_s,
                                                state.bytes,
                                                {"recorder"},
-                                               state.problems});
+                                               state.problems,
+                                               state.duration_s});
         });
         add("session.mark", {Field::text("text", "What")}, [this](const Call &call) {
             state.marks.push_back({state.duration_s, call.text("text")});

@@ -22,7 +22,7 @@ protected:
     }
     void open(const Mischief &mischief) {
         daemon_ = std::make_unique<FakeDaemon>(mischief);
-        address_ = QString("127.0.0.1:%1").arg(daemon_->port());
+        address_ = daemon_->address();
         window_ = std::make_unique<OpenWindow>();
         QVERIFY(window_->show());
         QVERIFY(window_->fleet.add(address_).ok());

@@ -14,9 +14,9 @@ private Q_SLOTS:
         const FakeDaemon blue(robot("blue"));
         OpenWindow open;
         QVERIFY(open.show());
-        QVERIFY(open.fleet.add(addressOf(red)));
-        QVERIFY(open.fleet.add(addressOf(blue)));
-        QTRY_VERIFY(open.fleet.robotAt(addressOf(red)) && open.fleet.robotAt(addressOf(blue)));
+        QVERIFY(open.fleet.add(red.address()));
+        QVERIFY(open.fleet.add(blue.address()));
+        QTRY_VERIFY(open.fleet.robotAt(red.address()) && open.fleet.robotAt(blue.address()));
         const MapModel &model = open.window.findChild<MapPanel *>()->model();
         QTRY_COMPARE(model.edges().size(), 1);
         QTRY_COMPARE(model.scan().size(), 2);
@@ -28,13 +28,13 @@ private Q_SLOTS:
         QTRY_VERIFY(!model.odometryPath().isEmpty());
         QTRY_COMPARE(open.window.findChild<QLabel *>("measured0")->text(), QString("0.25"));
 
-        open.fleet.choose(open.fleet.robotAt(addressOf(blue)));
+        open.fleet.choose(open.fleet.robotAt(blue.address()));
         QVERIFY(model.edges().isEmpty() && model.scan().isEmpty() && model.segments().isEmpty());
         QVERIFY(model.correspondences().isEmpty() && model.odometryPath().isEmpty() && !model.pose());
         QCOMPARE(model.reliability(), 0.0);
         QTRY_VERIFY(open.window.findChild<QLabel *>("measured0")->text() != "0.25");
 
-        open.fleet.choose(open.fleet.robotAt(addressOf(red)));
+        open.fleet.choose(open.fleet.robotAt(red.address()));
         QTRY_COMPARE(model.edges().size(), 1);
     }
 
@@ -45,7 +45,7 @@ private Q_SLOTS:
         FakeDaemon daemon(robot);
         OpenWindow open;
         QVERIFY(open.show());
-        QVERIFY(open.fleet.add(addressOf(daemon)));
+        QVERIFY(open.fleet.add(daemon.address()));
         const MapModel &model = open.window.map().model();
         QTRY_COMPARE(model.reliability(), 0.5);
         for (const bool isTrusted : {true, false}) {
@@ -64,13 +64,13 @@ private Q_SLOTS:
         slow.results["session.list"] = "[]},\"x\":{";
         const FakeDaemon red(recorded), blue(slow);
         OpenWindow open;
-        QVERIFY(open.fleet.add(addressOf(red)));
-        QVERIFY(open.fleet.add(addressOf(blue)));
+        QVERIFY(open.fleet.add(red.address()));
+        QVERIFY(open.fleet.add(blue.address()));
         auto *const list = open.window.findChild<RecordPanel *>()->findChild<QTreeWidget *>("sessions");
-        QTRY_VERIFY(open.fleet.robotAt(addressOf(red)) && open.fleet.robotAt(addressOf(blue)));
+        QTRY_VERIFY(open.fleet.robotAt(red.address()) && open.fleet.robotAt(blue.address()));
         QTRY_COMPARE(list->topLevelItemCount(), 1);
         QCOMPARE(list->topLevelItem(0)->text(0), QString("corridor"));
-        open.fleet.choose(open.fleet.robotAt(addressOf(blue)));
+        open.fleet.choose(open.fleet.robotAt(blue.address()));
         QCOMPARE(list->topLevelItemCount(), 0); // at once
     }
 
@@ -78,14 +78,14 @@ private Q_SLOTS:
     void topicsStayWithTheirDaemon() {
         auto first = std::make_unique<FakeDaemon>(Mischief());
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(*first)));
+        QVERIFY(fleet.add(first->address()));
         QTRY_VERIFY(fleet.robot()->withTopic("pose"));
         DaemonLink *const source = fleet.robot()->withTopic("pose");
         TopicFeed feed(
             fleet, "pose", {}, [](const TopicUpdate &) {}, nullptr);
         QCOMPARE(feed.source(), source);
         const FakeDaemon second{Mischief()};
-        QVERIFY(fleet.add(addressOf(second)));
+        QVERIFY(fleet.add(second.address()));
         QTRY_COMPARE(int(fleet.robot()->allWithMethod("fake.call").size()), 2);
         QCOMPARE(feed.source(), source);
         first.reset();
@@ -94,7 +94,6 @@ private Q_SLOTS:
     }
 
 private:
-    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
     /// A robot of a single daemon.
     static Mischief robot(const QByteArray &name) {
         Mischief all;

@@ -51,7 +51,7 @@ private Q_SLOTS:
         FakeDaemon daemon{Mischief{}};
         OpenWindow open;
         QVERIFY(open.show());
-        QVERIFY(open.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QVERIFY(open.fleet.add(daemon.address()).ok());
         QTRY_VERIFY(daemon.subscriptions("pose") > 0);
         QTest::qWait(100);
         QCOMPARE(daemon.subscriptions("cloud"), 0);

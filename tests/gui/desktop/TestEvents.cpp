@@ -174,7 +174,7 @@ private Q_SLOTS:
     void healthIsToldWhileItLasts() {
         FakeDaemon daemon({});
         OpenWindow window;
-        QVERIFY(window.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QVERIFY(window.fleet.add(daemon.address()).ok());
         QVERIFY(window.show());
         QTRY_VERIFY(daemon.subscriptions("status") > 0);
         const auto status = [](const QByteArray &items) {
@@ -208,7 +208,7 @@ private Q_SLOTS:
         mischief.topics["log"] = record(2500, "live");
         FakeDaemon daemon(mischief);
         OpenWindow window;
-        QVERIFY(window.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QVERIFY(window.fleet.add(daemon.address()).ok());
         QVERIFY(window.show());
         QTRY_COMPARE(rowsOf(window).filter("test: before").size(), 1);
         QTRY_COMPARE(rowsOf(window).filter("test: live").size(), 1);
@@ -252,7 +252,7 @@ private Q_SLOTS:
     void hostileTextIsPlain() {
         FakeDaemon daemon({});
         OpenWindow window;
-        QVERIFY(window.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QVERIFY(window.fleet.add(daemon.address()).ok());
         QVERIFY(window.show());
         QTRY_VERIFY(daemon.subscriptions("log") > 0);
         const QByteArray text = "<b>bold</b>\\u202e\\n" + QByteArray(10000, 'x');

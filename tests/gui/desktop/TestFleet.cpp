@@ -11,15 +11,14 @@ private Q_SLOTS:
     void robotsTellWhoTheyAre() {
         const FakeDaemon red(of(1)), sameHost(of(1)), blue(of(2)), plainOne(plain());
         Fleet fleet;
-        for (const FakeDaemon *daemon : {&red, &sameHost, &blue, &plainOne})
-            QVERIFY(fleet.add(addressOf(*daemon)));
-        QVERIFY(fleet.add(farAddressOf(red)));
-        QTRY_VERIFY(fleet.robotAt(farAddressOf(red)) && fleet.robotAt(addressOf(blue)));
+        QVERIFY(add(fleet, {&red, &sameHost, &blue, &plainOne}));
+        QVERIFY(fleet.add(red.address("127.0.0.2")));
+        QTRY_VERIFY(fleet.robotAt(red.address("127.0.0.2")) && fleet.robotAt(blue.address()));
         QTRY_COMPARE(int(fleet.robotAt(idOf(1))->daemons().size()), 3); // on two hosts
-        QCOMPARE(fleet.robotAt(farAddressOf(red)), fleet.robotAt(idOf(1)));
-        QCOMPARE(fleet.robotAt(addressOf(sameHost)), fleet.robotAt(idOf(1)));
+        QCOMPARE(fleet.robotAt(red.address("127.0.0.2")), fleet.robotAt(idOf(1)));
+        QCOMPARE(fleet.robotAt(sameHost.address()), fleet.robotAt(idOf(1)));
         QCOMPARE(fleet.robotAt(idOf(1))->address(), QString("127.0.0.1, 127.0.0.2"));
-        QCOMPARE(fleet.robotAt(addressOf(blue)), fleet.robotAt(idOf(2)));
+        QCOMPARE(fleet.robotAt(blue.address()), fleet.robotAt(idOf(2)));
         QTRY_COMPARE(ownerOf(fleet, plainOne), QString("127.0.0.1")); // no robot of its host has a supervisor
         QCOMPARE(int(fleet.robots().size()), 3);
         for (const auto &robot : fleet.robots())
@@ -29,23 +28,23 @@ private Q_SLOTS:
 
     // Each with its supervisor; what runs there is told by that of its host.
     void aRobotOfTwoComputers() {
-        FakeDaemon near(of(1, "rover", {})), far(of(1, "rover", {})), motors(of(1));
+        FakeDaemon near(of(1, supervisor("rover", {}))), far(of(1, supervisor("rover", {}))), motors(of(1));
         const auto hasIts = [&](const FakeDaemon &supervisor, const QString &motorsAddress, Fleet &fleet) {
             const DaemonLink *const link = fleet.daemonAt(motorsAddress);
             return link && fleet.robots().front()->process(*link) &&
                    fleet.robots().front()->supervisorOf(*link)->port() == supervisor.port();
         };
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(near)));
-        QVERIFY(fleet.add(farAddressOf(far)));
+        QVERIFY(fleet.add(near.address()));
+        QVERIFY(fleet.add(far.address("127.0.0.2")));
         QTRY_COMPARE(namesOf(fleet), QStringList("rover"));
         QTRY_VERIFY(near.subscriptions("processes") == 1 && far.subscriptions("processes") == 1);
         near.say("processes", list("rover", {motors.port()}));
-        QTRY_VERIFY(hasIts(near, addressOf(motors), fleet));
-        QVERIFY(!fleet.daemonAt(farAddressOf(motors)));
+        QTRY_VERIFY(hasIts(near, motors.address(), fleet));
+        QVERIFY(!fleet.daemonAt(motors.address("127.0.0.2")));
         far.say("processes", list("rover", {motors.port()}));
-        QTRY_VERIFY(hasIts(far, farAddressOf(motors), fleet));
-        QVERIFY(hasIts(near, addressOf(motors), fleet));
+        QTRY_VERIFY(hasIts(far, motors.address("127.0.0.2"), fleet));
+        QVERIFY(hasIts(near, motors.address(), fleet));
         QTRY_COMPARE(fleet.robot()->problem(), QString("2 of its daemons can be driven, of which one is"));
         QVERIFY(fleet.remove(fleet.robot()));
         QVERIFY(fleet.robots().empty() && fleet.addresses().isEmpty());
@@ -65,16 +64,16 @@ private Q_SLOTS:
         odd.results["daemon.info"] = R"({"name":"odd","description_hash":"1","robot":)" + robot + '}';
         const FakeDaemon daemon(odd);
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(daemon)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(daemon)));
-        QCOMPARE(fleet.robotAt(addressOf(daemon))->id(), QString("127.0.0.1"));
+        QVERIFY(fleet.add(daemon.address()));
+        QTRY_VERIFY(fleet.robotAt(daemon.address()));
+        QCOMPARE(fleet.robotAt(daemon.address())->id(), QString("127.0.0.1"));
     }
 
     void toldAnotherRobotThanBefore() {
         FakeDaemon daemon(of(1));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(daemon)));
-        QTRY_COMPARE(fleet.robotAt(addressOf(daemon)), fleet.robotAt(idOf(1)));
+        QVERIFY(fleet.add(daemon.address()));
+        QTRY_COMPARE(fleet.robotAt(daemon.address()), fleet.robotAt(idOf(1)));
         QVERIFY(fleet.robot());
         QSignalSpy moved(&fleet, &Fleet::moved);
         daemon.setResult("daemon.info", R"({"name":"fake","description_hash":"1","robot":{"id":")" +
@@ -88,21 +87,20 @@ private Q_SLOTS:
     void whatASupervisorNamesIsItsRobot() {
         const FakeDaemon motors(plain()), stranger(plain());
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(motors)));
-        QVERIFY(fleet.add(addressOf(stranger)));
+        QVERIFY(add(fleet, {&motors, &stranger}));
         QCOMPARE(namesOf(fleet), QStringList("127.0.0.1"));
         DaemonLink *const link = fleet.robots().front()->daemons().front();
         const FakeDaemon rover(supervisor("rover", {motors.port()}));
         QSignalSpy moved(&fleet, &Fleet::moved);
-        QVERIFY(fleet.add(addressOf(rover))); // second
+        QVERIFY(fleet.add(rover.address())); // second
         QTRY_COMPARE(ownerOf(fleet, motors), QString("rover"));
         QCOMPARE(ownerOf(fleet, rover), QString("rover"));
         QTRY_COMPARE(ownerOf(fleet, stranger), QString("rover")); // the only one there
         QCOMPARE(namesOf(fleet), QStringList("rover"));
-        QVERIFY(fleet.robotAt(addressOf(rover))->has(link));
+        QVERIFY(fleet.robotAt(rover.address())->has(link));
         QCOMPARE(moved.count(), 3);
         const FakeDaemon other(supervisor("other", {}));
-        QVERIFY(fleet.add(addressOf(other)));
+        QVERIFY(fleet.add(other.address()));
         QTRY_COMPARE(ownerOf(fleet, stranger), QString("127.0.0.1")); // of which one nobody knows
         QCOMPARE(ownerOf(fleet, motors), QString("rover"));
     }
@@ -111,8 +109,7 @@ private Q_SLOTS:
         const FakeDaemon first(plain()), second(plain());
         const FakeDaemon one(supervisor("one", {first.port()})), other(supervisor("other", {second.port()}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
-        QVERIFY(fleet.add(addressOf(other)));
+        QVERIFY(add(fleet, {&one, &other}));
         QTRY_COMPARE(namesOf(fleet), QStringList({"one", "other"}));
         QTRY_COMPARE(ownerOf(fleet, first), QString("one"));
         QTRY_COMPARE(ownerOf(fleet, second), QString("other"));
@@ -127,11 +124,11 @@ private Q_SLOTS:
         FakeDaemon motors(plain()), one(supervisor("one", {motors.port()}));
         const FakeDaemon other(supervisor("other", {motors.port()}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
+        QVERIFY(fleet.add(one.address()));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("one"));
-        QVERIFY(fleet.add(addressOf(other)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(other)));
-        QTRY_COMPARE(int(fleet.robotAt(addressOf(other))->named().size()), 1);
+        QVERIFY(fleet.add(other.address()));
+        QTRY_VERIFY(fleet.robotAt(other.address()));
+        QTRY_COMPARE(int(fleet.robotAt(other.address())->named().size()), 1);
         QCOMPARE(ownerOf(fleet, motors), QString("one"));
         one.say("processes", list("one", {}));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("other"));
@@ -142,13 +139,12 @@ private Q_SLOTS:
         FakeDaemon one(supervisor("one", {}));
         const FakeDaemon other(supervisor("other", {}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
-        QVERIFY(fleet.add(addressOf(other)));
+        QVERIFY(add(fleet, {&one, &other}));
         QTRY_COMPARE(namesOf(fleet), QStringList({"one", "other"}));
         QTRY_COMPARE(one.subscriptions("processes"), 1);
         QVector<int> ports{one.port(), other.port(), other.port(), 0};
         one.say("processes", list("one", ports));
-        const Robot &robot = *fleet.robotAt(addressOf(one));
+        const Robot &robot = *fleet.robotAt(one.address());
         QTRY_COMPARE(int(robot.named().size()), 1);
         QCOMPARE(ownerOf(fleet, other), QString("other"));
         for (int port = 20000; port < 21000; ++port)
@@ -156,7 +152,7 @@ private Q_SLOTS:
         one.say("processes", list("one", ports));
         QTRY_VERIFY(robot.problem().startsWith("904 more processes"));
         QCOMPARE(int(robot.daemons().size()), 97); // and itself
-        QCOMPARE(int(fleet.robotAt(addressOf(other))->daemons().size()), 1);
+        QCOMPARE(int(fleet.robotAt(other.address())->daemons().size()), 1);
     }
 
     void namedNoMore() {
@@ -164,11 +160,10 @@ private Q_SLOTS:
             rover(supervisor("rover", {known.port(), unknown.port(), 9}));
         const FakeDaemon other(supervisor("other", {}));
         Fleet fleet;
-        for (const FakeDaemon *daemon : std::initializer_list<const FakeDaemon *>{&known, &other, &rover})
-            QVERIFY(fleet.add(addressOf(*daemon)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(other)));
+        QVERIFY(add(fleet, {&known, &other, &rover}));
+        QTRY_VERIFY(fleet.robotAt(other.address()));
         QTRY_COMPARE(ownerOf(fleet, unknown), QString("rover"));
-        QTRY_COMPARE(int(fleet.robotAt(addressOf(rover))->allWithMethod("motor.drive").size()), 2);
+        QTRY_COMPARE(int(fleet.robotAt(rover.address())->allWithMethod("motor.drive").size()), 2);
         rover.say("processes", list("rover", {}));
         QTRY_COMPARE(ownerOf(fleet, known), QString("127.0.0.1"));
         QCOMPARE(ownerOf(fleet, unknown), QString("127.0.0.1")); // it is there
@@ -181,14 +176,12 @@ private Q_SLOTS:
         FakeDaemon motors(plain()), stranger(plain()), rover(supervisor("rover", {}));
         const FakeDaemon other(supervisor("other", {}));
         Fleet fleet;
-        for (const FakeDaemon *daemon :
-             std::initializer_list<const FakeDaemon *>{&motors, &stranger, &rover, &other})
-            QVERIFY(fleet.add(addressOf(*daemon)));
+        QVERIFY(add(fleet, {&motors, &stranger, &rover, &other}));
         QTRY_COMPARE(namesOf(fleet), QStringList({"127.0.0.1", "other", "rover"}));
         QTRY_COMPARE(int(fleet.robotAt("127.0.0.1")->allWithMethod("motor.drive").size()), 2);
         QTRY_COMPARE(rover.subscriptions("processes"), 1);
         Robot *const host = fleet.robotAt("127.0.0.1");
-        DaemonLink *const chosen = fleet.daemonAt(addressOf(motors));
+        DaemonLink *const chosen = fleet.daemonAt(motors.address());
         fleet.choose(chosen);
         QSignalSpy daemonChosen(&fleet, &Fleet::daemonChosen), robotChosen(&fleet, &Fleet::robotChosen);
         rover.say("processes", list("rover", {motors.port()}));
@@ -201,12 +194,12 @@ private Q_SLOTS:
         QCOMPARE(fleet.robot()->name(), QString("rover"));
         fleet.choose(host);
         QVERIFY(!fleet.daemon());
-        fleet.choose(fleet.robotAt(addressOf(rover)));
+        fleet.choose(fleet.robotAt(rover.address()));
         QVERIFY(fleet.daemon() == chosen); // as it was when that robot was chosen last
         fleet.choose(host);
         rover.say("processes", list("rover", {}));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("127.0.0.1"));
-        fleet.choose(fleet.robotAt(addressOf(rover)));
+        fleet.choose(fleet.robotAt(rover.address()));
         QVERIFY(!fleet.daemon()); // which is another robot's now
         fleet.choose(host);
         rover.say("processes", list("rover", {motors.port(), stranger.port()}));
@@ -216,17 +209,17 @@ private Q_SLOTS:
 
     void theRobotOfLastTimeIsChosen() {
         const FakeDaemon one(supervisor("one", {})), other(supervisor("other", {}));
-        QString last = addressOf(other); // as it was kept before robots had ids
+        QString last = other.address(); // as it was kept before robots had ids
         for (const bool isMeant : {false, false, true}) {
             Fleet fleet;
             fleet.prefer(last);
-            QVERIFY(fleet.add(addressOf(one)));
-            QTRY_VERIFY(fleet.robotAt(addressOf(one)));
+            QVERIFY(fleet.add(one.address()));
+            QTRY_VERIFY(fleet.robotAt(one.address()));
             if (isMeant)
                 fleet.keepChoice(); // somebody drives it
-            QVERIFY(fleet.add(addressOf(other)));
-            QTRY_VERIFY(fleet.robotAt(addressOf(other)));
-            QCOMPARE(fleet.robot(), fleet.robotAt(addressOf(isMeant ? one : other)));
+            QVERIFY(fleet.add(other.address()));
+            QTRY_VERIFY(fleet.robotAt(other.address()));
+            QCOMPARE(fleet.robot(), fleet.robotAt((isMeant ? one : other).address()));
             last = fleet.preferred();
         }
     }
@@ -244,11 +237,11 @@ private Q_SLOTS:
     void twoNamesOfThisComputerAreOneHost() {
         const FakeDaemon daemon(plain());
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(daemon)));
+        QVERIFY(fleet.add(daemon.address()));
         QVERIFY(fleet.add(QString("localhost:%1").arg(daemon.port())));
         QVERIFY(fleet.add("localhost"));
         QVERIFY(fleet.add("127.0.0.1"));
-        QCOMPARE(fleet.addresses(), QStringList({addressOf(daemon), "127.0.0.1"}));
+        QCOMPARE(fleet.addresses(), QStringList({daemon.address(), "127.0.0.1"}));
         QTRY_VERIFY(fleet.robotAt("127.0.0.1")->withName("fake"));
         int count = 0;
         for (const auto &robot : fleet.robots())
@@ -263,12 +256,12 @@ private Q_SLOTS:
             R"({"name":"supervisor","pid":17,"started":1000.5,"host":"h","description_hash":"1"})";
         const FakeDaemon one(named), other(named);
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(one)));
-        QVERIFY(fleet.add(addressOf(other)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(other)));
+        QVERIFY(fleet.add(one.address()));
+        QTRY_VERIFY(fleet.robotAt(one.address()));
+        QVERIFY(fleet.add(other.address()));
+        QTRY_VERIFY(fleet.robotAt(other.address()));
         const auto problems = [&] {
-            return fleet.robotAt(addressOf(one))->problem() + fleet.robotAt(addressOf(other))->problem();
+            return fleet.robotAt(one.address())->problem() + fleet.robotAt(other.address())->problem();
         };
         QTRY_COMPARE(problems().count(" of the robot rover, by another address"), 2); // it is one robot
     }
@@ -276,10 +269,10 @@ private Q_SLOTS:
     void robotsOfOneNameAreToldApart() {
         const FakeDaemon one(supervisor("rover", {})), other(supervisor("rover", {}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(one)) && fleet.robot()->name() == "rover");
+        QVERIFY(fleet.add(one.address()));
+        QTRY_VERIFY(fleet.robotAt(one.address()) && fleet.robot()->name() == "rover");
         QCOMPARE(fleet.titleOf(*fleet.robot()), QString("rover"));
-        QVERIFY(fleet.add(addressOf(other)));
+        QVERIFY(fleet.add(other.address()));
         QTRY_COMPARE(namesOf(fleet), QStringList({"rover", "rover"}));
         for (const auto &robot : fleet.robots())
             QCOMPARE(fleet.titleOf(*robot), QString("rover (%1)").arg(robot->address()));
@@ -288,8 +281,8 @@ private Q_SLOTS:
     void givenNames() {
         const FakeDaemon one(supervisor("rover", {}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(one)));
+        QVERIFY(fleet.add(one.address()));
+        QTRY_VERIFY(fleet.robotAt(one.address()));
         fleet.setNames({{fleet.robot()->id(), "Red"}});
         QTRY_COMPARE(namesOf(fleet), QStringList("Red"));
         fleet.rename(*fleet.robot(), "  " + QString(10000, 'x'));
@@ -302,10 +295,10 @@ private Q_SLOTS:
     void removedAndBroughtBack() {
         const FakeDaemon motors(plain()), stranger(plain()), rover(supervisor("rover", {motors.port()}));
         Fleet fleet;
-        for (const QString &address : {addressOf(motors), farAddressOf(stranger), addressOf(rover)})
+        for (const QString &address : {motors.address(), stranger.address("127.0.0.2"), rover.address()})
             QVERIFY(fleet.add(address));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("rover"));
-        fleet.choose(fleet.robotAt(addressOf(rover)));
+        fleet.choose(fleet.robotAt(rover.address()));
         fleet.setObjection([](const Robot &robot) { return robot.name() + " is busy"; });
         QCOMPARE(fleet.remove(fleet.robot()).error().message, QString("rover is busy"));
         fleet.setObjection({});
@@ -314,7 +307,7 @@ private Q_SLOTS:
         QVERIFY(back);
         QCOMPARE(namesOf(fleet), QStringList("127.0.0.2"));
         QCOMPARE(fleet.robot()->name(), QString("127.0.0.2"));
-        QCOMPARE(fleet.addresses(), QStringList(farAddressOf(stranger)));
+        QCOMPARE(fleet.addresses(), QStringList(stranger.address("127.0.0.2")));
         QTRY_VERIFY(!link); // and no connection of it
         for (const QString &address : *back)
             QVERIFY(fleet.add(address));
@@ -329,11 +322,11 @@ private Q_SLOTS:
         const FakeDaemon motors(plain());
         const FakeDaemon one(supervisor("one", {motors.port()})), other(supervisor("other", {motors.port()}));
         Fleet fleet;
-        QVERIFY(fleet.add(addressOf(one)));
+        QVERIFY(fleet.add(one.address()));
         QTRY_COMPARE(ownerOf(fleet, motors), QString("one"));
-        QVERIFY(fleet.add(addressOf(other)));
-        QTRY_VERIFY(fleet.robotAt(addressOf(other)) && !fleet.robotAt(addressOf(other))->named().empty());
-        QVERIFY(fleet.remove(fleet.robotAt(addressOf(one))));
+        QVERIFY(fleet.add(other.address()));
+        QTRY_VERIFY(fleet.robotAt(other.address()) && !fleet.robotAt(other.address())->named().empty());
+        QVERIFY(fleet.remove(fleet.robotAt(one.address())));
         QCOMPARE(ownerOf(fleet, motors), QString("other"));
         QTRY_VERIFY(fleet.robot()->withMethod("motor.drive"));
     }
@@ -342,9 +335,9 @@ private Q_SLOTS:
         const FakeDaemon other(supervisor("other", {}));
         Fleet fleet;
         QVERIFY(fleet.add("127.0.0.1"));
-        QVERIFY(fleet.add(addressOf(other)));
+        QVERIFY(fleet.add(other.address()));
         QTRY_COMPARE(ownerOf(fleet, other), QString("other"));
-        const auto back = fleet.remove(fleet.robotAt(addressOf(other)));
+        const auto back = fleet.remove(fleet.robotAt(other.address()));
         QVERIFY(back && back->contains("127.0.0.1")); // where it may have been found
         QVERIFY(!fleet.addresses().contains("127.0.0.1"));
         for (const QString &address : *back)
@@ -353,20 +346,13 @@ private Q_SLOTS:
     }
 
 private:
-    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
-    static QString farAddressOf(const FakeDaemon &daemon) {
-        return QString("127.0.0.2:%1").arg(daemon.port());
+    static bool add(Fleet &fleet, std::initializer_list<const FakeDaemon *> daemons) {
+        return std::all_of(daemons.begin(), daemons.end(),
+                           [&](const FakeDaemon *one) { return fleet.add(one->address()).ok(); });
     }
     static QString idOf(int robot) { return QString("11111111-2222-4333-8444-55555555555%1").arg(robot); }
-    /// One that tells its robot.
-    static Mischief of(int robot) {
-        Mischief daemon = plain();
-        daemon.robotId = idOf(robot).toUtf8();
-        return daemon;
-    }
-    /// A supervisor of that robot.
-    static Mischief of(int robot, const QByteArray &name, const QVector<int> &ports) {
-        Mischief daemon = supervisor(name, ports);
+    /// That daemon, where it tells this robot.
+    static Mischief of(int robot, Mischief daemon = plain()) {
         daemon.robotId = idOf(robot).toUtf8();
         return daemon;
     }
@@ -378,13 +364,11 @@ private:
         return daemon;
     }
     static QByteArray list(const QByteArray &robot, const QVector<int> &ports) {
-        QByteArray processes;
-        for (const int port : ports) {
-            processes += processes.isEmpty() ? "" : ",";
-            processes += R"({"name":"p","state":"running","pid":7,"restarts":0,"port":)" +
-                         QByteArray::number(port) + '}';
-        }
-        return "{\"robot\":\"" + robot + "\",\"processes\":[" + processes + "]}";
+        QStringList processes;
+        for (const int port : ports)
+            processes
+                << QString(R"({"name":"p","state":"running","pid":7,"restarts":0,"port":%1})").arg(port);
+        return "{\"robot\":\"" + robot + "\",\"processes\":[" + processes.join(',').toUtf8() + "]}";
     }
     static Mischief supervisor(const QByteArray &robot, const QVector<int> &ports) {
         Mischief daemon;
@@ -403,7 +387,7 @@ private:
     static QString ownerOf(const Fleet &fleet, const FakeDaemon &daemon) {
         for (const auto &robot : fleet.robots())
             for (const DaemonLink *link : robot->daemons())
-                if (link->address() == addressOf(daemon))
+                if (link->address() == daemon.address())
                     return robot->name();
         return {};
     }

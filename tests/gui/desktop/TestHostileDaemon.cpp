@@ -8,7 +8,7 @@ using namespace hermes;
 using namespace hermes::desktop;
 
 static DaemonLink *add(Fleet &fleet, const FakeDaemon &daemon) {
-    const QString address = QString("127.0.0.1:%1").arg(daemon.port());
+    const QString address = daemon.address();
     fleet.add(address);
     for (const auto &robot : fleet.robots())
         for (DaemonLink *const link : robot->daemons())

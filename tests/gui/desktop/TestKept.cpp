@@ -28,7 +28,7 @@ private Q_SLOTS:
     void whatIsSetOutlivesAKill() {
         if (qEnvironmentVariableIsSet(ofChild)) { // the one that is killed
             const FakeDaemon daemon(rover());
-            LayoutWindow one(qEnvironmentVariable(ofChild), {QString("127.0.0.1:%1").arg(daemon.port())});
+            LayoutWindow one(qEnvironmentVariable(ofChild), {daemon.address()});
             setAll(one);
             QTest::qWait(1000);
             ::raise(SIGKILL);

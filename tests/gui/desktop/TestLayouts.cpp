@@ -63,7 +63,7 @@ private Q_SLOTS:
         motors.isMotors = true;
         motors.hasTopics = false;
         const FakeDaemon daemon(motors);
-        LayoutWindow one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
+        LayoutWindow one(file_, {daemon.address()});
         QTRY_VERIFY(one.drive->isPossible());
         one.saveAs("other");
         DaemonLink *const link = one.fleet.robot()->daemons().front();
@@ -84,20 +84,17 @@ private Q_SLOTS:
         Mischief supervisor;
         supervisor.topics["processes"] = R"({"robot":"rover","processes":[]})";
         const FakeDaemon one(supervisor), other(supervisor);
-        const auto address = [](const FakeDaemon &daemon) {
-            return QString("127.0.0.1:%1").arg(daemon.port());
-        };
         {
-            LayoutWindow first(file_, {address(one), address(other)});
-            QTRY_VERIFY(first.fleet.robotAt(address(one)) && first.fleet.robotAt(address(other)));
-            first.fleet.rename(*first.fleet.robotAt(address(other)), "Blue, \"the\" second; [x]");
-            first.fleet.choose(first.fleet.robotAt(address(other)));
+            LayoutWindow first(file_, {one.address(), other.address()});
+            QTRY_VERIFY(first.fleet.robotAt(one.address()) && first.fleet.robotAt(other.address()));
+            first.fleet.rename(*first.fleet.robotAt(other.address()), "Blue, \"the\" second; [x]");
+            first.fleet.choose(first.fleet.robotAt(other.address()));
             first.saveAs("desk");
             QTRY_COMPARE(Layouts(file_).robots().names.size(), 1); // before it is closed
         }
         LayoutWindow next(file_);
-        QTRY_VERIFY(next.fleet.robotAt(address(other)) && next.fleet.robotAt(address(one)));
-        QCOMPARE(next.fleet.robot(), next.fleet.robotAt(address(other)));
+        QTRY_VERIFY(next.fleet.robotAt(other.address()) && next.fleet.robotAt(one.address()));
+        QCOMPARE(next.fleet.robot(), next.fleet.robotAt(other.address()));
         QCOMPARE(next.fleet.robot()->name(), QString("Blue, \"the\" second; [x]"));
         next.pick("layout Usual");
         QCOMPARE(int(next.fleet.robots().size()), 2); // robots are of no layout

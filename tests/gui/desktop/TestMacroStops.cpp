@@ -117,7 +117,7 @@ private:
         R"({"latched":{"estop":"somebody else"},"control":{"held":false}})";
 
     static MacroStep call(const FakeDaemon &robot, double pause_s = 0) {
-        return {addressOf(robot), "fake", "fake.call", {}, pause_s};
+        return {robot.address(), "fake", "fake.call", {}, pause_s};
     }
     void run(const std::vector<MacroStep> &steps) {
         QTRY_VERIFY(runner_->hindrance({"Tour", steps}).isEmpty());

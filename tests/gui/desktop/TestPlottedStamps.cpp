@@ -48,7 +48,7 @@ private Q_SLOTS:
     void recordedBesideLive() {
         raise();
         FakeDaemon other(drive());
-        const QString address = QString("127.0.0.1:%1").arg(other.port());
+        const QString address = other.address();
         QVERIFY(window_->fleet.add(address).ok());
         QVERIFY(panel_->board().add(field("vx")));
         QVERIFY(panel_->board().add({address, "drive", "vx"}));

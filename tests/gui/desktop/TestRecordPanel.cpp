@@ -199,7 +199,7 @@ private Q_SLOTS:
         supervisor.isEverywhere = true;
         supervisor.topics["processes"] = R"({"robot":"blue","processes":[]})";
         const FakeDaemon blue(supervisor);
-        const QString address = QString("127.0.0.2:%1").arg(blue.port());
+        const QString address = blue.address("127.0.0.2");
         QVERIFY(open_->fleet.add(address).ok());
         QTRY_VERIFY(open_->fleet.robotAt(address));
         QVERIFY(!find("startRecorder")->isVisible());
@@ -225,10 +225,10 @@ private Q_SLOTS:
     void sessionsAreSortedByTheHeader() {
         const double today = QDateTime::currentMSecsSinceEpoch() * 1e-3;
         std::vector<SessionSummary> list{
-            {"run10", "a", today, today + 100, 900, {}, {}},
-            {"run2", "b", today - 90000, today - 89000, 6.3 * 1024 * 1024 * 1024, {}, {}},
-            {"run1", "c", 1e300, -1e300, std::nan(""), {}, {}},
-            {"run3", "d", std::nan(""), std::nan(""), 2048, {}, {}}};
+            {"run10", "a", today, today + 100, 900, {}, {}, 100},
+            {"run2", "b", today - 90000, today - 89000, 6.3 * 1024 * 1024 * 1024, {}, {}, 1000},
+            {"run1", "c", 1e300, -1e300, std::nan(""), {}, {}, -1e300},
+            {"run3", "d", std::nan(""), std::nan(""), 2048, {}, {}, std::nan("")}};
         SessionTable table;
         table.tell(list);
         table.resize(500, 200);

@@ -88,7 +88,7 @@ private Q_SLOTS:
         MapPanel panel(fleet);
         panel.resize(1280, 720);
         panel.show();
-        fleet.add(QString("127.0.0.1:%1").arg(daemon.port()));
+        fleet.add(daemon.address());
         for (const char *const topic : {"map", "graph", "pose"})
             QTRY_VERIFY(daemon.subscriptions(topic) > 0);
         const auto sayAll = [&](const std::vector<QByteArray> &map, const std::vector<QByteArray> &graph,

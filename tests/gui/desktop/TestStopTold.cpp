@@ -25,7 +25,7 @@ private Q_SLOTS:
         motors.isMotors = true;
         FakeDaemon daemon(motors);
         OpenWindow open;
-        QVERIFY(open.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QVERIFY(open.fleet.add(daemon.address()).ok());
         QVERIFY(open.show());
         QTRY_VERIFY(open.drive.isPossible());
         const auto *const button = open.window.findChild<QPushButton *>("stop");

@@ -78,7 +78,7 @@ private Q_SLOTS:
                                         ",\"text\":\"" + QByteArray(50000, 'W') + "\"}",
                                     -1);
         const FakeDaemon daemon(mischief);
-        QVERIFY(window_->fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+        QVERIFY(window_->fleet.add(daemon.address()).ok());
         QTRY_VERIFY(row("free"));
         chooseMessage("free");
         QTRY_COMPARE_WITH_TIMEOUT(at({"long"}).value(0), QString("15000 in a list"), 20000);

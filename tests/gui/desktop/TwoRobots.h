@@ -16,7 +16,7 @@ protected:
         window_ = std::make_unique<OpenWindow>();
         QVERIFY(window_->show());
         for (const FakeDaemon *const one : {red_.get(), blue_.get()})
-            QVERIFY(window_->fleet.add(addressOf(*one)));
+            QVERIFY(window_->fleet.add(one->address()));
         QTRY_VERIFY(robot(*red_) && robot(*blue_));
     }
     void close() {
@@ -24,10 +24,7 @@ protected:
         blue_.reset();
         red_.reset();
     }
-    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
-    desktop::Robot *robot(const FakeDaemon &daemon) const {
-        return window_->fleet.robotAt(addressOf(daemon));
-    }
+    desktop::Robot *robot(const FakeDaemon &daemon) const { return window_->fleet.robotAt(daemon.address()); }
 
     std::unique_ptr<FakeDaemon> red_, blue_;
     std::unique_ptr<OpenWindow> window_;
