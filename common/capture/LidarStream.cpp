@@ -33,6 +33,7 @@ bool SensorChoice::takes(const Datagram &packet) {
             return false;
     }
     taken_ = found;
+    sensors_[found].wasTaken = true;
     lastTaken_ns_ = packet.stamp_ns;
     return true;
 }
@@ -55,7 +56,7 @@ std::size_t SensorChoice::find(const Datagram &packet) {
         sensors_.emplace_back();
     const std::size_t last = sensors_.size() - 1;
     const std::size_t place = taken_ == last ? last - 1 : last;
-    sensors_[place] = {packet.source, packet.sourcePort, packet.destinationPort, 0};
+    sensors_[place] = {packet.source, packet.sourcePort, packet.destinationPort};
     return place;
 }
 
@@ -133,17 +134,17 @@ bool LidarStream::usesHost() const {
     return options_.clock == ClockChoice::Host || (options_.clock == ClockChoice::Auto && !isSet_);
 }
 
-/// Of a data packet, when the receiver's clock counts. A sensor whose clock jumps was started anew: what a
+/// Of a data packet, when the receiver's clock counts. Of one that was started anew all that a
 /// GPS has told it is gone.
 std::optional<HostClock::Time> LidarStream::hostTime(const Datagram &datagram) {
     const velodyne::DataPacket packet(datagram.payload);
     const bool isNamed = packet.model() != velodyne::Model::Blank;
     const velodyne::SensorModel *const model =
         velodyne::findSensorModel(isNamed ? packet.model() : options_.model);
-    const std::uint64_t jumps = host_.jumps();
+    const std::uint64_t restarts = host_.restarts();
     const HostClock::Time time =
         host_.take(packet.stamp_us(), datagram.stamp_ns, packet.groups() * model->blockPeriod_ns());
-    if (host_.jumps() != jumps) {
+    if (host_.restarts() != restarts) {
         isSet_ = false;
         gps_.forget();
     }

@@ -27,6 +27,7 @@ public:
         std::uint16_t from = 0; ///< the port that it sends from
         std::uint16_t port = 0; ///< that it sends to
         std::uint64_t packets = 0;
+        bool wasTaken = false;
     };
 
     SensorChoice() = default;

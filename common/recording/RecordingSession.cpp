@@ -158,6 +158,8 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     result = reserve(ownReserve());
     if (!result)
         return refused(result.error());
+    const auto files = [&] { return QDir(*folder).entryList({options.logger + "-*"}, QDir::Files); };
+    const QStringList before = files();
     if (!plan_.earlier.isEmpty()) { // should the power be cut now, the next start looks at all files
         QJsonObject open = plan_.earlier;
         open.insert("ended", QJsonValue());
@@ -173,19 +175,11 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     if (result)
         return {};
     writer_.end();
-    if (!plan_.earlier.isEmpty()) { // of the files only the one that was new goes
-        const QFileInfo file(writer_.state().path);
-        const QJsonArray files = plan_.earlier.value("files").toArray();
-        const auto isIt = [&file](const QJsonValue &one) {
-            return one["name"].toString() == file.fileName();
-        };
-        if (file.isFile() && std::none_of(files.begin(), files.end(), isIt))
-            QFile::remove(file.filePath());
+    for (const QString &file : files())
+        if (!before.contains(file)) // it is of this moment
+            QFile::remove(*folder + '/' + file);
+    if (!plan_.earlier.isEmpty())
         Sidecar::write(sidecarPath(), plan_.earlier, true);
-        return refused(result.error());
-    }
-    for (const QString &file : QDir(*folder).entryList({options.logger + "-*"}, QDir::Files))
-        QFile::remove(*folder + '/' + file); // of this moment: the folder had none before
     return refused(result.error());
 }
 

@@ -88,7 +88,7 @@ void SessionControl::start(const QString &name, const QStringList &what, const D
     what_ = what;
     forget(full);
     Q_EMIT changed();
-    const QString id = QUuid::createUuid().toString(QUuid::WithoutBraces);
+    const QString id = now_.session = QUuid::createUuid().toString(QUuid::WithoutBraces);
     startSession(members(), full, id, this, [this, id, done](const Result<SessionReplies> &begin) {
         if (begin) {
             phase_ = Phase::Recording;
@@ -99,6 +99,7 @@ void SessionControl::start(const QString &name, const QStringList &what, const D
         ended_.insert(id);
         Q_EMIT sessionEnded(id);
         now_.name.clear();
+        now_.session.clear();
         Q_EMIT changed();
         done(begin.error());
     });
@@ -132,10 +133,8 @@ void SessionControl::askHowTheyAre(const std::function<void()> &done) {
 void SessionControl::begun(const SessionReplies &replies) {
     startMono_ = monotonicNow();
     now_.start = stampNow();
-    for (const SessionReply &reply : replies) {
-        now_.session = reply.status().session.value_or(QString());
+    for (const SessionReply &reply : replies)
         keep(reply);
-    }
     logInfo("session", QString("\"%1\" is recorded by %2 daemons").arg(now_.name).arg(parts_.size()));
     second_.start(std::chrono::seconds(1));
     for (const auto &[address, daemon] : daemons_.all()) // who came in between

@@ -41,7 +41,7 @@ public:
     /// A session is being recorded, or about to be.
     bool isBusy() const { return phase_ != Phase::Idle; }
     bool isOf(const RecordedSession &session) const;
-    /// Goes on with a session that nobody stopped: it is recorded in new files, by all loggers. status: what
+    /// Goes on with a session that nobody stopped: all loggers record it again. status: what
     /// is known of it.
     void resume(const RecordingStatus &status);
     /// Ids of sessions that have ended before this program began.

@@ -48,6 +48,7 @@ void SessionControl::resume(const RecordingStatus &status) {
     phase_ = Phase::Starting;
     what_.clear();
     forget(name);
+    now_.session = session;
     callAll(
         {{own_, {{"name", name}, {"session", session}}}}, "record.start", Client::defaultTimeout, this,
         [=](const SessionReplies &replies) {
@@ -58,7 +59,6 @@ void SessionControl::resume(const RecordingStatus &status) {
                             .arg(name, replies.front().complaint()));
             if (phase_ == Phase::Idle)
                 return;
-            now_.session = session;
             begun(isOwn ? replies : SessionReplies()); // else the loggers record alone, and can be stopped
             now_.start = status.start.value_or(0);
             const double own_s = replies.front().status().duration_s.value_or(0);
@@ -75,7 +75,7 @@ void SessionControl::resume(const RecordingStatus &status) {
 void SessionControl::tellLate() {
     if (late_.isEmpty())
         return second_.stop();
-    for (const SessionMember &member : daemons_.loggers().all)
+    for (const SessionMember &member : allMembers().all)
         if (late_.contains(member.name))
             callAll({{member, {}}}, "record.status", std::chrono::seconds(3), this,
                     [this, member](const SessionReplies &replies) {

@@ -16,8 +16,17 @@ namespace {
 constexpr double longestGap_s = 1; // between scans of a replay that follow each other
 
 QString toText(PlaceState place) {
-    static constexpr const char *texts[] = {"known", "found", "told", "sought"};
-    return QString(texts[int(place)]); // in the order of the enumeration
+    switch (place) {
+    case PlaceState::Found:
+        return "found";
+    case PlaceState::Told:
+        return "told";
+    case PlaceState::Sought:
+        return "sought";
+    case PlaceState::Known:
+        break;
+    }
+    return "known";
 }
 
 } // namespace

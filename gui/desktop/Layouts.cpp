@@ -3,6 +3,7 @@
 #include "common/files/SavedFile.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/Quantities.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QCryptographicHash>
 #include <QDir>
@@ -113,9 +114,7 @@ QJsonObject fromIni(const QString &path, const QByteArray &text) {
 } // namespace
 
 QString compactText(const QJsonValue &objectOrList) {
-    const QJsonDocument document = objectOrList.isArray() ? QJsonDocument(objectOrList.toArray())
-                                                          : QJsonDocument(objectOrList.toObject());
-    return QString::fromUtf8(document.toJson(QJsonDocument::Compact));
+    return QString::fromUtf8(compactJson(objectOrList));
 }
 
 QJsonObject objectOf(const QVariant &text) {

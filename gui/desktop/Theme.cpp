@@ -106,16 +106,26 @@ QPalette lightPalette() {
     return palette;
 }
 
-/// By the conditions in their order.
 struct Look {
     const char *icon;
     QRgb light, dark;
 };
-constexpr Look looks[]{{"ready", 0x177531, 0x4cc36a},
-                       {"busy", 0x0b63c4, 0x58a6ff},
-                       {"warning", 0x8f5600, 0xe8a317},
-                       {"fault", 0xc4201d, 0xff6b62},
-                       {"unreachable", 0x5c636a, 0x8b9299}};
+
+constexpr Look lookOf(Condition condition) {
+    switch (condition) {
+    case Condition::Ready:
+        return {"ready", 0x177531, 0x4cc36a};
+    case Condition::Busy:
+        return {"busy", 0x0b63c4, 0x58a6ff};
+    case Condition::Warning:
+        return {"warning", 0x8f5600, 0xe8a317};
+    case Condition::Fault:
+        return {"fault", 0xc4201d, 0xff6b62};
+    case Condition::Unreachable:
+        break;
+    }
+    return {"unreachable", 0x5c636a, 0x8b9299};
+}
 
 } // namespace
 
@@ -132,7 +142,7 @@ bool isDark() {
 }
 
 QColor colour(Condition condition) {
-    const Look &look = looks[int(condition)];
+    const Look look = lookOf(condition);
     return isDark() ? look.dark : look.light;
 }
 
@@ -155,7 +165,7 @@ QFont fixedFont() {
 }
 
 QIcon icon(Condition condition) {
-    return drawn(looks[int(condition)].icon, colour(condition));
+    return drawn(lookOf(condition).icon, colour(condition));
 }
 
 QIcon icon(const QString &name) {

@@ -23,11 +23,11 @@ std::string withCount(const SensorChoice::Sensor &sensor) {
     return toText(sensor) + " (" + std::to_string(sensor.packets) + " packets)";
 }
 
-/// Lists all but the one that is taken.
-std::string listOthers(const SensorChoice &choice) {
+/// Lists those that were taken, or all others. One that was started anew may send from another port.
+std::string listSensors(const SensorChoice &choice, bool wereTaken) {
     std::string text;
     for (const SensorChoice::Sensor &sensor : choice.sensors()) {
-        if (&sensor != choice.taken())
+        if (sensor.wasTaken == wereTaken)
             text += (text.empty() ? "" : ", ") + withCount(sensor);
     }
     return text;
@@ -91,12 +91,13 @@ void LidarCapture::feed(PcapReader &reader, velodyne::TurnAssembler &assembler) 
 
 std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
     const SensorChoice &choice = stream_.sensors();
-    if (const SensorChoice::Sensor *taken = choice.taken())
-        return choice.sensors().size() == 1 ? std::string()
-                                            : name_ + ": read " + withCount(*taken) + ", not " +
-                                                  listOthers(choice) + "; --port and --sender choose";
+    const std::string others = listSensors(choice, false);
+    if (choice.taken())
+        return others.empty() ? others
+                              : name_ + ": read " + listSensors(choice, true) + ", not " + others +
+                                    "; --port and --sender choose";
     if (!choice.sensors().empty())
-        throw Failure(name_ + ": found data packets of " + listOthers(choice) + " only, expected some" +
+        throw Failure(name_ + ": found data packets of " + others + " only, expected some" +
                       (options_.port ? " to port " + std::to_string(*options_.port) : "") +
                       (options_.sender.empty() ? "" : " from " + options_.sender));
     const std::string leftOut = counts_.leftOut(true);

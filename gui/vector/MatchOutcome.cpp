@@ -33,9 +33,10 @@ MatchOutcome outcomeOf(GlobalPairVerdict verdict) {
     case GlobalPairVerdict::NothingFixed:
     case GlobalPairVerdict::NothingMoving:
         return MatchOutcome::TooLittle;
-    default:
-        return MatchOutcome::Nowhere;
+    case GlobalPairVerdict::TooUnlike:
+        break;
     }
+    return MatchOutcome::Nowhere;
 }
 
 MatchOutcome outcomeOf(RelationOutcome outcome) {

@@ -22,7 +22,6 @@ ClockChoice clockChoiceFromText(std::string_view text) {
 }
 
 HostClock::Time HostClock::begin(std::int64_t measured_ns) {
-    jumps_ += started_;
     started_ = true;
     sensor_ns_ = 0;
     seconds_ = 0;
@@ -45,8 +44,10 @@ HostClock::Time HostClock::take(std::uint32_t stamp_us, std::int64_t receive_ns,
     const std::int64_t passed_ns =
         nearestHour(stamp_us, last_us * std::int64_t(1000)) - last_us * std::int64_t(1000);
     const std::int64_t measured_ns = receive_ns - duration_ns;
-    if (!started_ || std::abs(measured_ns - (sensor_ns_ + passed_ns) - offset_ns_) > parted_ns)
+    if (!started_ || std::abs(measured_ns - (sensor_ns_ + passed_ns) - offset_ns_) > parted_ns) {
+        restarts_ += started_ && std::abs(passed_ns) > parted_ns;
         return begin(measured_ns);
+    }
     sensor_ns_ += passed_ns;
     if (passed_ns > 0 && last_us_ / second_us != last_us / second_us)
         endSecond();

@@ -29,9 +29,9 @@ public:
     /// When the first laser of a packet fired. receive_ns: when the packet came in, since the Unix epoch.
     /// duration_ns: of its firings, after which the sensor sends it.
     Time take(std::uint32_t stamp_us, std::int64_t receive_ns, std::int64_t duration_ns);
-    /// One of the clocks was set, by more than a second.
-    std::uint64_t jumps() const { return jumps_; }
-    /// By less, which the earliest packets tell.
+    /// The clocks parted by more than a second, as the sensor's stamps did not go on: it was started anew.
+    std::uint64_t restarts() const { return restarts_; }
+    /// A clock was set by less, which the earliest packets tell.
     std::uint64_t steps() const { return steps_; }
 
 private:
@@ -48,7 +48,7 @@ private:
     std::int64_t earliest_ns_ = none; ///< the least offset of this second
     std::int64_t before_ns_ = none;   ///< of the second before
     std::int64_t spread_ns_ = none;   ///< between the last two
-    std::uint64_t jumps_ = 0, steps_ = 0;
+    std::uint64_t restarts_ = 0, steps_ = 0;
 };
 
 } // namespace hermes::velodyne

@@ -1,5 +1,4 @@
 // Loggers that record and replay as one.
-#include "daemons/recorder/McapRecorder.h"
 #include "daemons/recorder/SessionCommands.h"
 #include "daemons/recorder/SessionPlayer.h"
 #include "tests/daemons/FakeLogger.h"
@@ -55,38 +54,6 @@ private Q_SLOTS:
         const auto ended = stop();
         QVERIFY(ended.ok());
         QCOMPARE(ended->problems, QStringList({"a: lost: lines 3", "b: failed"}));
-    }
-
-    void topicsWithoutRoomAreLost() {
-        QTemporaryDir folder;
-        McapRecorder recorder;
-        QVERIFY(recorder.begin({folder.path(), "recorder"}).ok());
-        const int large = recorder.addTopic({"a/large", QByteArray(17 << 20, ' '), {}});
-        const int small = recorder.addTopic({"a/small", "{}", {}});
-        for (const int topic : {large, small, large, small})
-            recorder.write({topic, 1, 1, Moment::now(), "1"});
-        recorder.end();
-        const RecordingState state = recorder.state();
-        QVERIFY(!state.error);
-        QCOMPARE(state.counts["messages"], 2.0);
-        QCOMPARE(state.losses, (NamedCounts{{"a/large", 2}}));
-    }
-
-    void aFileCutInItsHeaderIsCompleted() {
-        QTemporaryDir folder;
-        const RecordingPlan plan{folder.path(), "recorder"};
-        for (const char *name : {"recorder-0001.mcap", "recorder-0002.mcap"}) {
-            QFile file(folder.filePath(name));
-            QVERIFY(file.open(QIODevice::WriteOnly));
-            if (QString(name).contains('2'))
-                file.write("\x89MCAP0\r\n\x01");
-        }
-        QJsonObject sidecar;
-        QVERIFY(McapRecorder().repair(plan, sidecar).ok());
-        QCOMPARE(sidecar["files"].toArray().size(), 2);
-        QCOMPARE(sidecar["counts"].toObject()["messages"].toInt(-1), 0);
-        for (const QJsonValue &file : sidecar["files"].toArray())
-            QCOMPARE(QFileInfo(folder.filePath(file["name"].toString())).size(), file["bytes"].toInt());
     }
 
     void whatIsInTheWayIsTold() {

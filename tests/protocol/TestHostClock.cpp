@@ -84,7 +84,7 @@ private Q_SLOTS:
             QVERIFY2(wrong.isEmpty(), wrong);
             const bool jumps = std::abs(line.step_s) > 1;
             QCOMPARE(clock.steps() > 0, !jumps && line.step_s != 0);
-            QVERIFY(clock.jumps() >= std::uint64_t(jumps));
+            QVERIFY(clock.restarts() <= std::uint64_t(line.ownStep_s != 0)); // whatever the host's clock does
         }
     }
 
@@ -99,7 +99,7 @@ private Q_SLOTS:
             if (t > 10)
                 QVERIFY(std::abs(time.stamp_ns - truth_ns) < 5000000);
         });
-        QCOMPARE(clock.jumps(), std::uint64_t(0));
+        QCOMPARE(clock.restarts(), std::uint64_t(0));
     }
 
     /// So a replay, and a map of a recording, have the stamps of the drive.

@@ -13,8 +13,8 @@ private Q_SLOTS:
                          "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() +
                              "\"}}");
         open();
+        QTRY_VERIFY(robot(*red_)->withMethod("motor.drive") && robot(*blue_)->withMethod("motor.drive"));
         choose(*red_);
-        QTRY_VERIFY(window_->drive.isPossible());
     }
 
     void cleanup() { close(); }
@@ -42,8 +42,7 @@ private Q_SLOTS:
         askRed(takesOver);
         choose(*blue_);
         blue_->holdBack("control.acquire");
-        holdAnew();
-        QTRY_COMPARE(blue_->calls("control.acquire"), 1);
+        QVERIFY(holdUntil([&] { return blue_->calls("control.acquire") == 1; }));
         letRedAnswer();
         letCommandsGo();
         QVERIFY(!window_->drive.isDriving());
@@ -59,8 +58,7 @@ private Q_SLOTS:
         red_->setResult("control.acquire", R"(null,"error":{"code":-32003,"message":"red says no"})");
         askRed(false);
         choose(*blue_);
-        holdAnew();
-        QTRY_VERIFY(blue_->calls("motor.drive") > 0);
+        QVERIFY(holdUntil([&] { return blue_->calls("motor.drive") > 0; }));
         letRedAnswer();
         const int driven = blue_->calls("motor.drive");
         letCommandsGo();
@@ -77,9 +75,7 @@ private Q_SLOTS:
                             "\"}}");
         choose(*red_);
         QTRY_VERIFY(window_->drive.isPossible());
-        QTRY_VERIFY(!window_->drive.mustLetGo());
-        hold(true);
-        QTRY_VERIFY(red_->calls("motor.drive") > 5);
+        QVERIFY(holdUntil([&] { return red_->calls("motor.drive") > 5; }));
         for (int i = 0; i < 5; ++i) {
             QThread::msleep(400);
             const int before = red_->calls("motor.drive");
@@ -92,9 +88,7 @@ private Q_SLOTS:
             QTRY_VERIFY(isLetGo && !window_->drive.isDriving());
             QTest::qWait(100);
             QCOMPARE(red_->calls("motor.drive"), before);
-            QTRY_VERIFY(!window_->drive.mustLetGo());
-            hold(true);
-            QTRY_VERIFY(red_->calls("motor.drive") > before + 5);
+            QVERIFY(holdUntil([&] { return red_->calls("motor.drive") > before + 5; }));
         }
         hold(false);
     }
@@ -103,22 +97,28 @@ private:
     void choose(const FakeDaemon &daemon) {
         window_->fleet.choose(robot(daemon));
         QCOMPARE(window_->fleet.robot(), robot(daemon));
+        QTRY_VERIFY(window_->drive.stateAge().isFresh()); // it is the one that is driven
     }
     void hold(bool isHeld) { window_->drive.steer("test", isHeld ? Twist2D{1, 0, 0} : Twist2D(), isHeld); }
-    /// As an operator must after another robot was chosen.
-    void holdAnew() {
-        hold(false);
-        QTRY_VERIFY(!window_->drive.mustLetGo());
-        hold(true);
+    /// As an operator: lets go where what is held does not count, as after another robot was chosen or when
+    /// the window stood still, and presses again.
+    template <typename Done>
+    bool holdUntil(const Done &done) {
+        return QTest::qWaitFor(
+            [&] {
+                const bool mustLetGo = window_->drive.mustLetGo();
+                hold(!mustLetGo);
+                return !mustLetGo && done();
+            },
+            slowness * 20000);
     }
     /// Asks for the control of red, by driving or by hand; the answer is held back.
     void askRed(bool takesOver) {
         red_->holdBack("control.acquire");
+        const auto isAsked = [&] { return red_->calls("control.acquire") == 1; };
         if (takesOver)
             window_->drive.takeOver();
-        else
-            hold(true);
-        QTRY_COMPARE(red_->calls("control.acquire"), 1);
+        QVERIFY(takesOver ? QTest::qWaitFor(isAsked, slowness * 5000) : holdUntil(isAsked));
     }
     /// Sends what red has held back, and waits until it was read.
     void letRedAnswer() {
