@@ -153,6 +153,8 @@ private Q_SLOTS:
         for (const auto &[clock, off_ns] : begun)
             QVERIFY(off_ns > ahead_ns - second_ns);
         QVERIFY(begun[0].first == velodyne::StampSource::Gps);
+        turnOnce(ahead_ns + 600 * second_ns); // the host's clock was set: the GPS knows better
+        QVERIFY(begun.back().first == velodyne::StampSource::Gps);
         sensor.start_ns += 5000 * second_ns;
         turnOnce(ahead_ns - 4000 * second_ns);
         QVERIFY(begun.back().first == velodyne::StampSource::Host);

@@ -12,6 +12,19 @@ static QString copyUnfinished(const QString &folder, const QString &root) {
     return copy;
 }
 
+/// Goes on with an earlier recording in a new file, and fails then.
+class TornWriter : public TextWriter {
+public:
+    bool goesOn() const override { return true; }
+    Result<void> begin(const RecordingPlan &plan) override {
+        const bool isNew = plan.earlier.isEmpty();
+        QFile file(plan.folder + '/' + plan.prefix + (isNew ? "-0001.txt" : "-0002.txt"));
+        if (file.open(QIODevice::WriteOnly | QIODevice::NewOnly) && isNew)
+            return {};
+        return Error(ErrorCode::InputOutput, "torn");
+    }
+};
+
 class TestRecordingEnds : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -23,6 +36,21 @@ private Q_SLOTS:
         QVERIFY(!QFile::exists(root.path() + "/a"));
         logger.writer.refuse = false;
         QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    }
+
+    void aResumeThatFailsRemovesWhatItMadeAlone() {
+        QTemporaryDir root;
+        TornWriter writer;
+        RecordingSession session(writer);
+        RecordingSession::Options options;
+        options.logger = "l";
+        options.root = root.path();
+        QVERIFY(session.begin(options, {"run", "id"}).ok());
+        QVERIFY(session.finish(RecordingEnd::Stopped, {}).ok());
+        QVERIFY(QFile(root.filePath("run/l-0003.txt")).open(QIODevice::WriteOnly)); // of whomever
+        QCOMPARE(session.begin(options, {"run", "id"}).error().message, QString("torn"));
+        QCOMPARE(QDir(root.filePath("run")).entryList({"l-*"}), QStringList({"l-0001.txt", "l-0003.txt"}));
+        QCOMPARE(Sidecar::read(root.filePath("run/l.json"))->value("ended").toString(), QString("stopped"));
     }
 
     void lowSpaceIsToldAndEndsTheRecording() {
