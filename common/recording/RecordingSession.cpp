@@ -46,6 +46,11 @@ QString toUtc(double stamp) {
     return QDateTime::fromMSecsSinceEpoch(qint64(stamp * 1e3), Qt::UTC).toString(Qt::ISODateWithMs);
 }
 
+/// The wall clock as the sidecar was renewed last, however often it was set before.
+double seen(const QJsonObject &sidecar) {
+    return sidecar["seen"].toDouble(sidecar["end"].toDouble()); // an older version tells the end alone
+}
+
 /// Goes on with a recording that was interrupted. After a restart of the system the wall clock tells how long
 /// that took; where it is behind, as without a battery of its own, no time has passed.
 void resume(RecordingPlan &plan) {
@@ -53,8 +58,8 @@ void resume(RecordingPlan &plan) {
     const auto mono_ns = qint64(plan.earlier.value("start_mono").toDouble() * 1e9);
     const bool isSameRun = plan.earlier.value("boot").toString() == bootIdentity();
     const Moment now = plan.start;
-    const auto lasted_ns = qint64(Sidecar::duration(plan.earlier) * 1e9);
-    const qint64 since_ns = isSameRun ? now.mono_ns - mono_ns : std::max(now.stamp_ns - stamp_ns, lasted_ns);
+    const double since_s = Sidecar::duration(plan.earlier) + std::max(0.0, now.stamp() - seen(plan.earlier));
+    const qint64 since_ns = isSameRun ? now.mono_ns - mono_ns : qint64(since_s * 1e9);
     plan.start = {stamp_ns, now.mono_ns - since_ns};
     plan.toItsClock_ns = mono_ns - plan.start.mono_ns;
 }
@@ -74,7 +79,7 @@ double endOf(const QJsonObject &sidecar) {
 double secondsSince(const QJsonObject &sidecar) {
     if (sidecar["boot"].toString() == bootIdentity() && sidecar["end_mono"].isDouble())
         return monotonicNow() - sidecar["end_mono"].toDouble();
-    return std::abs(stampNow() - sidecar["end"].toDouble());
+    return std::abs(stampNow() - seen(sidecar));
 }
 
 /// Room that stays taken until the recording ends. Not every file system can; then there is none. Error: the
@@ -193,6 +198,7 @@ QJsonObject RecordingSession::describe() const {
     const RecordingState state = writer_.state();
     QJsonObject content = head_;
     content.insert("end", QJsonValue());
+    content.insert("seen", stampNow());
     content.insert("end_mono", itsMono(Moment::now())); // when it was renewed
     content.insert("ended", QJsonValue());
     content.insert("complete", false);
