@@ -89,7 +89,7 @@ std::string toText(const SensorChoice::Sensor &sensor) {
 }
 
 using velodyne::ClockChoice;
-using velodyne::HostClock;
+using scan::HostClock;
 using velodyne::PacketFault;
 using velodyne::TurnAssembler;
 
@@ -143,7 +143,7 @@ std::optional<HostClock::Time> LidarStream::hostTime(const Datagram &datagram) {
         velodyne::findSensorModel(isNamed ? packet.model() : options_.model);
     const std::uint64_t restarts = host_.restarts();
     const HostClock::Time time =
-        host_.take(packet.stamp_us(), datagram.stamp_ns, packet.groups() * model->blockPeriod_ns());
+        host_.take(packet.stamp_us() * std::int64_t(1000), datagram.stamp_ns, packet.groups() * model->blockPeriod_ns());
     if (host_.restarts() != restarts) {
         isSet_ = false;
         gps_.forget();

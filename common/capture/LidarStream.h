@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/capture/Frame.h"
+#include "protocol/velodyne/ClockChoice.h"
 #include "protocol/velodyne/PositionPacket.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
@@ -95,7 +96,7 @@ public:
     void jump() {
         choice_.jump();
         steps_ = clockSteps();
-        host_ = velodyne::HostClock();
+        host_ = scan::HostClock(velodyne::stampPeriod_ns);
         isSet_ = false;
         gps_.forget();
     }
@@ -110,13 +111,13 @@ public:
 private:
     bool isDamaged(const Datagram &datagram, velodyne::PacketFault fault) const;
     bool usesHost() const;
-    std::optional<velodyne::HostClock::Time> hostTime(const Datagram &datagram);
+    std::optional<scan::HostClock::Time> hostTime(const Datagram &datagram);
     void follow(std::initializer_list<velodyne::TurnAssembler *> assemblers, bool usedHost);
 
     Options options_;
     SensorChoice choice_;
     velodyne::GpsReader gps_;
-    velodyne::HostClock host_;
+    scan::HostClock host_{velodyne::stampPeriod_ns};
     std::uint64_t steps_ = 0; ///< before the last jump
     bool isSet_ = false;      ///< a GPS has set the sensor's clock
     std::uint64_t other_ = 0, otherSensors_ = 0;

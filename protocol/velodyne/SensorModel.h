@@ -23,6 +23,7 @@ constexpr int slotsPerBlock = 32;                    ///< returns in a block
 constexpr std::uint16_t blockFlag = 0xEEFF;          ///< little endian: FF EE on the wire
 constexpr std::uint16_t azimuthSteps = 36000;        ///< a turn, in hundredths of a degree
 constexpr std::uint32_t stampPeriod_us = 3600000000; ///< the stamp counts microseconds of the hour
+constexpr std::int64_t stampPeriod_ns = stampPeriod_us * std::int64_t(1000);
 
 /// Byte 1204 of a packet. Blank in firmware before 2.2.20.0 (2016), then zero.
 enum class ReturnMode : std::uint8_t { Blank = 0, Strongest = 0x37, Last = 0x38, Dual = 0x39 };

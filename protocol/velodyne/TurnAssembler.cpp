@@ -23,7 +23,7 @@ void count(PacketCounts &counts, PacketFault fault) {
 } // namespace
 
 PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns,
-                                const std::optional<HostClock::Time> &host) {
+                                const std::optional<scan::HostClock::Time> &host) {
     PacketFault fault = DataPacket::check(bytes, size, options_.model);
     if (fault == PacketFault::None && !isOfModel(DataPacket(bytes), receive_ns))
         fault = PacketFault::Model;
@@ -64,7 +64,7 @@ bool TurnAssembler::isOfModel(const DataPacket &packet, std::int64_t receive_ns)
 }
 
 void TurnAssembler::addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns,
-                             const std::optional<HostClock::Time> &host) {
+                             const std::optional<scan::HostClock::Time> &host) {
     const SensorModel &model = decoder_->model();
     const int azimuth = packet.azimuth(group * packet.returns());
     const bool wraps = turn_.firings > 0 && lastAzimuth_ - azimuth > azimuthSteps / 2;

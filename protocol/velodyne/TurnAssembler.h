@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/velodyne/HostClock.h"
+#include "protocol/scan/HostClock.h"
 #include "protocol/velodyne/PacketDecoder.h"
 
 #include <cstdlib>
@@ -77,7 +77,7 @@ public:
     /// Takes the payload of a data packet and the time at which it came in, nanoseconds since the Unix epoch.
     /// host: when it was measured by the receiver's clock, if that counts.
     PacketFault feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns,
-                     const std::optional<HostClock::Time> &host = {});
+                     const std::optional<scan::HostClock::Time> &host = {});
     /// A GPS tells the time, or nothing more: the hour of the stamps that follow.
     void follow(std::optional<std::int64_t> utc_ns);
     /// Delivers what has been collected of the current turn, as a partial one.
@@ -100,7 +100,7 @@ public:
 private:
     bool isOfModel(const DataPacket &packet, std::int64_t receive_ns);
     void addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns,
-                  const std::optional<HostClock::Time> &host);
+                  const std::optional<scan::HostClock::Time> &host);
     bool isInOrder(const DataPacket &packet, std::int64_t stamp_ns, std::int64_t receive_ns);
     void noteGap(std::int64_t gap_ns, std::int64_t period_ns);
     void beginTurn(bool partial);

@@ -1,12 +1,13 @@
 // A sensor without GPS tells the time by the receiver's clock: drawn clocks, delays, losses and steps.
+#include "protocol/scan/HostClock.h"
 #include "protocol/velodyne/Hdl32e.h"
-#include "protocol/velodyne/HostClock.h"
 #include "protocol/velodyne/Vlp16.h"
 #include "tests/support/Seed.h"
 
 #include <random>
 
 using namespace hermes::velodyne;
+using hermes::scan::HostClock;
 
 static constexpr std::int64_t second_ns = 1000000000;
 static constexpr std::int64_t start_ns = 1700000000 * second_ns;
@@ -64,12 +65,13 @@ private Q_SLOTS:
             line.stepAt_s = 15;
             line.ownStep_s = i % 3 == 0 ? 3600 * line.drawn() : 0;
             line.ownStepAt_s = 30;
-            HostClock clock;
+            HostClock clock(stampPeriod_ns);
             std::int64_t last_ns = 0;
             QByteArray wrong;
             line.run(45, [&](double t, std::int64_t truth_ns, std::uint32_t stamp_us,
                              std::int64_t receive_ns) {
-                const HostClock::Time time = clock.take(stamp_us, receive_ns, line.period_ns);
+                const HostClock::Time time =
+                    clock.take(stamp_us * std::int64_t(1000), receive_ns, line.period_ns);
                 const bool hasSettled = (t > 10 && t < 14.8) || (t > 25 && t < 29.8) || t > 40;
                 const double off_s = std::abs(double(time.stamp_ns - truth_ns)) * 1e-9;
                 const bool isOff =
@@ -93,9 +95,10 @@ private Q_SLOTS:
         line.period_ns = second_ns / 20; // a thinned stream
         line.drift_ppm = 100;
         line.offset_s = 3599;
-        HostClock clock;
+        HostClock clock(stampPeriod_ns);
         line.run(8000, [&](double t, std::int64_t truth_ns, std::uint32_t stamp_us, std::int64_t receive_ns) {
-            const HostClock::Time time = clock.take(stamp_us, receive_ns, line.period_ns);
+            const HostClock::Time time =
+                clock.take(stamp_us * std::int64_t(1000), receive_ns, line.period_ns);
             if (t > 10)
                 QVERIFY(std::abs(time.stamp_ns - truth_ns) < 5000000);
         });
@@ -107,21 +110,24 @@ private Q_SLOTS:
         Line line{std::mt19937(newSeed())};
         line.drift_ppm = -60;
         line.stall = 0.01;
-        HostClock early, late;
+        HostClock early(stampPeriod_ns), late(stampPeriod_ns);
         line.run(12, [&](double t, std::int64_t, std::uint32_t stamp_us, std::int64_t receive_ns) {
-            const HostClock::Time time = early.take(stamp_us, receive_ns, line.period_ns);
+            const HostClock::Time time =
+                early.take(stamp_us * std::int64_t(1000), receive_ns, line.period_ns);
             if (t < 7.3)
                 return;
-            const HostClock::Time again = late.take(stamp_us, receive_ns, line.period_ns);
+            const HostClock::Time again =
+                late.take(stamp_us * std::int64_t(1000), receive_ns, line.period_ns);
             if (t > 10.3)
                 QCOMPARE(qint64(again.stamp_ns), qint64(time.stamp_ns));
         });
     }
 
     void stampsBeyondTheHourAreOfTheNext() {
-        HostClock clock;
-        clock.take(3599999000, start_ns, 0);
-        QCOMPARE(qint64(clock.take(3600001000, start_ns + 2000000, 0).stamp_ns), qint64(start_ns + 2000000));
-        QCOMPARE(qint64(clock.take(3000, start_ns + 4000000, 0).stamp_ns), qint64(start_ns + 4000000));
+        HostClock clock(stampPeriod_ns);
+        clock.take(3599999000000, start_ns, 0);
+        QCOMPARE(qint64(clock.take(3600001000000, start_ns + 2000000, 0).stamp_ns),
+                 qint64(start_ns + 2000000));
+        QCOMPARE(qint64(clock.take(3000000, start_ns + 4000000, 0).stamp_ns), qint64(start_ns + 4000000));
     }
 };

@@ -1,25 +1,19 @@
-#include "protocol/velodyne/HostClock.h"
-
-#include "protocol/velodyne/PacketDecoder.h"
+#include "protocol/scan/HostClock.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
 
-namespace hermes::velodyne {
+namespace hermes::scan {
 
 namespace {
 
-constexpr std::uint32_t second_us = 1000000;
-constexpr std::int64_t parted_ns = 1000000000; // clocks that part by more were set
+constexpr std::int64_t second_ns = 1000000000;
+constexpr std::int64_t parted_ns = second_ns;  // clocks that part by more were set
 constexpr std::int64_t stepped_ns = 50000000;  // no drift is so fast
 constexpr std::int64_t unknown_ns = 100000000; // the bound as long as little is known
 
 } // namespace
-
-ClockChoice clockChoiceFromText(std::string_view text) {
-    return text == "gps" ? ClockChoice::Gps : text == "host" ? ClockChoice::Host : ClockChoice::Auto;
-}
 
 HostClock::Time HostClock::begin(std::int64_t measured_ns) {
     started_ = true;
@@ -39,17 +33,21 @@ void HostClock::endSecond() {
     before_ns_ = std::exchange(earliest_ns_, none);
 }
 
-HostClock::Time HostClock::take(std::uint32_t stamp_us, std::int64_t receive_ns, std::int64_t duration_ns) {
-    const std::uint32_t last_us = std::exchange(last_us_, stamp_us % stampPeriod_us);
-    const std::int64_t passed_ns =
-        nearestHour(stamp_us, last_us * std::int64_t(1000)) - last_us * std::int64_t(1000);
+HostClock::Time HostClock::take(std::int64_t stamp_ns, std::int64_t receive_ns, std::int64_t duration_ns) {
+    stamp_ns %= period_ns_;
+    const std::int64_t last_ns = std::exchange(last_ns_, stamp_ns);
+    std::int64_t passed_ns = stamp_ns - last_ns;
+    if (passed_ns > period_ns_ / 2)
+        passed_ns -= period_ns_;
+    if (passed_ns < -period_ns_ / 2)
+        passed_ns += period_ns_;
     const std::int64_t measured_ns = receive_ns - duration_ns;
     if (!started_ || std::abs(measured_ns - (sensor_ns_ + passed_ns) - offset_ns_) > parted_ns) {
         restarts_ += started_ && std::abs(passed_ns) > parted_ns;
         return begin(measured_ns);
     }
     sensor_ns_ += passed_ns;
-    if (passed_ns > 0 && last_us_ / second_us != last_us / second_us)
+    if (passed_ns > 0 && stamp_ns / second_ns != last_ns / second_ns)
         endSecond();
     earliest_ns_ = std::min(earliest_ns_, measured_ns - sensor_ns_);
     const std::int64_t reach_ns = std::max<std::int64_t>(passed_ns, 0) / 4;
@@ -58,4 +56,4 @@ HostClock::Time HostClock::take(std::uint32_t stamp_us, std::int64_t receive_ns,
     return {sensor_ns_ + offset_ns_, spread_ns_ == none ? unknown_ns : spread_ns_ + std::abs(left_ns)};
 }
 
-} // namespace hermes::velodyne
+} // namespace hermes::scan

@@ -1,0 +1,119 @@
+#include "protocol/scan/Ldrobot.h"
+
+#include "protocol/scan/LittleEndian.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hermes::scan {
+namespace {
+
+constexpr int beams = 12;
+constexpr int stampPeriod_ms = 30000;
+constexpr std::int64_t silence_ns = 1000000000;
+
+constexpr std::array<std::uint8_t, 256> makeCrcTable() {
+    std::array<std::uint8_t, 256> table{};
+    for (int value = 0; value < 256; ++value) {
+        int crc = value;
+        for (int bit = 0; bit < 8; ++bit)
+            crc = crc & 0x80 ? (crc << 1 ^ 0x4D) & 0xFF : crc << 1;
+        table[std::size_t(value)] = std::uint8_t(crc);
+    }
+    return table;
+}
+
+constexpr auto crcTable = makeCrcTable();
+
+} // namespace
+
+Ldrobot::Ldrobot(int samples_hz, int baud, RevolutionAssembler &revolutions)
+    : ScannerProtocol(revolutions)
+    , sample_ns_(1e9 / samples_hz)
+    , byte_ns_(1e10 / baud)
+    , clock_(stampPeriod_ms * std::int64_t(1000000)) {
+    identity_.model = "LDROBOT";
+}
+
+void Ldrobot::jump() {
+    filled_ = 0;
+    stamp_ms_.reset();
+    clock_ = HostClock(stampPeriod_ms * std::int64_t(1000000));
+    revolutions_.jump();
+}
+
+HostAction Ldrobot::next(std::int64_t mono_ns) {
+    isScanning_ = mono_ns - lastPacket_ns_ < silence_ns;
+    problem_ = isScanning_ ? "" : "no packet of an LDROBOT came for a second";
+    return {};
+}
+
+/// The two bytes of its head may stand within a packet: only the checksum tells where one begins.
+void Ldrobot::feed(std::string_view bytes, const Arrival &arrival) {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        packet_[filled_++] = std::uint8_t(bytes[i]);
+        while (filled_ > 0) {
+            const bool mayBegin = packet_[0] == 0x54 && (filled_ < 2 || packet_[1] == 0x2C);
+            if (mayBegin && filled_ < packetSize)
+                break;
+            if (mayBegin && takePacket(packet_.data(), arrival, bytes.size() - 1 - i)) {
+                filled_ = 0;
+                break;
+            }
+            const auto next = std::find(packet_.begin() + 1, packet_.begin() + std::ptrdiff_t(filled_), 0x54);
+            const auto skipped = std::size_t(next - packet_.begin());
+            counts_.skippedBytes += skipped;
+            std::copy(next, packet_.begin() + std::ptrdiff_t(filled_), packet_.begin());
+            filled_ -= skipped;
+        }
+    }
+}
+
+/// Some packets by the angle between, as the clock counts whole milliseconds; many by the clock.
+void Ldrobot::tellLost(double first_deg, double step_deg, int stamp_ms) {
+    if (!stamp_ms_ || step_deg <= 0)
+        return;
+    const double gap_deg = std::fmod(first_deg - step_deg - head_deg_ + 720 + step_deg, 360) - step_deg;
+    const double passed_ms = (stamp_ms - *stamp_ms_ + stampPeriod_ms) % stampPeriod_ms;
+    const double byAngle = gap_deg / (beams * step_deg), byClock = passed_ms * 1e6 / (beams * sample_ns_) - 1;
+    const double revolution = 360 / (beams * step_deg); // packets
+    const auto lost = std::lround(byClock > revolution / 2 ? byClock : byAngle);
+    if (lost > 0)
+        revolutions_.lose(std::uint64_t(lost));
+}
+
+bool Ldrobot::takePacket(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesBehind) {
+    std::uint8_t crc = 0;
+    for (std::size_t i = 0; i < packetSize - 1; ++i)
+        crc = crcTable[crc ^ bytes[i]];
+    if (crc != bytes[packetSize - 1]) {
+        ++counts_.damaged;
+        return false;
+    }
+    ++counts_.packets;
+    const double speed_degps = word(bytes + 2), first_deg = word(bytes + 4) * 0.01;
+    double width_deg = word(bytes + 42) * 0.01 - first_deg;
+    width_deg += width_deg < 0 ? 360 : 0;
+    const int stamp_ms = word(bytes + 44);
+    lastPacket_ns_ = arrival.mono_ns;
+    if (width_deg > 3 * speed_degps * beams * sample_ns_ * 1e-9) { // as the head begins to turn
+        revolutions_.lose(1);
+        return true;
+    }
+    tellLost(first_deg, width_deg / (beams - 1), stamp_ms);
+    head_deg_ = first_deg + width_deg;
+    stamp_ms_ = stamp_ms;
+    const auto wire_ns = std::int64_t(double(packetSize + bytesBehind) * byte_ns_);
+    const HostClock::Time end = clock_.take(stamp_ms * std::int64_t(1000000), arrival.stamp_ns, wire_ns);
+    revolutions_.setClockBound(end.bound_ns + 1000000);
+    const double sample_ns = speed_degps > 0 ? width_deg / (beams - 1) / speed_degps * 1e9 : sample_ns_;
+    for (int i = 0; i < beams; ++i) {
+        const std::uint8_t *beam = bytes + 6 + 3 * i;
+        const double angle_deg = std::fmod(first_deg + i * width_deg / (beams - 1), 360);
+        revolutions_.addClockwise(angle_deg, angle_deg, float(word(beam)) * 1e-3F, beam[2],
+                                  end.stamp_ns - std::int64_t((beams - 1 - i) * sample_ns));
+    }
+    return true;
+}
+
+} // namespace hermes::scan

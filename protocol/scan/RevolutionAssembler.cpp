@@ -1,0 +1,56 @@
+#include "protocol/scan/RevolutionAssembler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hermes::scan {
+namespace {
+
+constexpr std::size_t maxBeams = 100000; // of a head that does not turn
+
+double counterClockwise(double clockwise_deg) {
+    const double angle_deg = std::fmod(-clockwise_deg, 360);
+    return angle_deg < 0 ? angle_deg + 360 : angle_deg;
+}
+
+} // namespace
+
+void RevolutionAssembler::addClockwise(double head_deg, double angle_deg, float range_m,
+                                       std::uint8_t intensity, std::int64_t stamp_ns) {
+    if (spins_ && (head_deg_ - head_deg > 180 || revolution_.beams.size() >= maxBeams))
+        deliver();
+    revolution_.partial = revolution_.partial || !spins_; // it begins anywhere
+    spins_ = true;
+    head_deg_ = head_deg;
+    revolution_.beams.push_back({counterClockwise(angle_deg), range_m, intensity, stamp_ns});
+}
+
+void RevolutionAssembler::lose(std::uint64_t packets) {
+    revolution_.lostPackets += packets;
+    revolution_.partial = true;
+    counts_.lostPackets += packets;
+}
+
+void RevolutionAssembler::jump() {
+    revolution_.partial = true;
+    deliver();
+    spins_ = false;
+}
+
+void RevolutionAssembler::deliver() {
+    const bool isEmpty = revolution_.beams.empty();
+    if (!isEmpty) {
+        if (spins_)
+            std::sort(revolution_.beams.begin(), revolution_.beams.end(),
+                      [](const Beam &a, const Beam &b) { return a.angle_deg < b.angle_deg; });
+        revolution_.clockBound_ns = bound_ns_;
+        ++(revolution_.partial ? counts_.partial : counts_.revolutions);
+        sink_(revolution_);
+    }
+    revolution_.number += !isEmpty;
+    revolution_.partial = false;
+    revolution_.lostPackets = 0;
+    revolution_.beams.clear();
+}
+
+} // namespace hermes::scan

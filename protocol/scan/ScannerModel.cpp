@@ -1,0 +1,45 @@
+#include "protocol/scan/ScannerModel.h"
+
+#include "protocol/scan/Ldrobot.h"
+#include "protocol/scan/Rplidar.h"
+
+namespace hermes::scan {
+namespace {
+
+using Made = std::unique_ptr<ScannerProtocol>;
+
+Made makeRplidar(const ScannerModel &model, RevolutionAssembler &revolutions) {
+    return std::make_unique<Rplidar>(model.baud, model.motor == Motor::DtrLow, revolutions);
+}
+
+Made makeLdrobot(const ScannerModel &model, RevolutionAssembler &revolutions) {
+    return std::make_unique<Ldrobot>(model.samples_hz, model.baud, revolutions);
+}
+
+} // namespace
+
+const std::vector<ScannerModel> &scannerModels() {
+    static const std::vector<ScannerModel> models{
+        {"ld06", "LDROBOT LD06", 230400, true, 4500, Motor::Itself, makeLdrobot},
+        {"ld19", "LDROBOT LD19", 230400, true, 4500, Motor::Itself, makeLdrobot},
+        {"stl27l", "LDROBOT STL-27L", 921600, true, 21600, Motor::Itself, makeLdrobot},
+        {"rplidar-a1", "Slamtec RPLIDAR A1", 115200, false, 0, Motor::DtrLow, makeRplidar},
+        {"rplidar-a2m8", "Slamtec RPLIDAR A2M8", 115200, false, 0, Motor::DtrLow, makeRplidar},
+        {"rplidar-a2m12", "Slamtec RPLIDAR A2M7, A2M12", 256000, false, 0, Motor::DtrLow, makeRplidar},
+        {"rplidar-a3", "Slamtec RPLIDAR A3", 256000, false, 0, Motor::DtrLow, makeRplidar},
+        {"rplidar-c1", "Slamtec RPLIDAR C1", 460800, false, 0, Motor::Itself, makeRplidar},
+        {"rplidar-s1", "Slamtec RPLIDAR S1", 256000, false, 0, Motor::Itself, makeRplidar},
+        {"rplidar-s2", "Slamtec RPLIDAR S2", 1000000, false, 0, Motor::Itself, makeRplidar},
+        {"rplidar-s3", "Slamtec RPLIDAR S3", 1000000, false, 0, Motor::Itself, makeRplidar},
+    };
+    return models;
+}
+
+const ScannerModel *findScannerModel(std::string_view name) {
+    for (const ScannerModel &model : scannerModels())
+        if (name == model.name)
+            return &model;
+    return nullptr;
+}
+
+} // namespace hermes::scan

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "protocol/scan/ScannerProtocol.h"
+
+#include <memory>
+#include <vector>
+
+namespace hermes::scan {
+
+/// What makes the head turn.
+enum class Motor {
+    Itself,
+    DtrLow, ///< it turns while DTR is low
+    DtrHigh,
+};
+
+/// A scanner that can be bought, as far as models of one family differ. Sources: the makers' manuals and
+/// drivers.
+struct ScannerModel {
+    const char *name;  ///< for settings: "rplidar-a1"
+    const char *title; ///< for people
+    int baud;
+    /// It sends by itself and must not be asked anything.
+    bool isOneWay;
+    int samples_hz; ///< that it measures in a second; 0: it tells
+    Motor motor;
+    std::unique_ptr<ScannerProtocol> (*make)(const ScannerModel &model, RevolutionAssembler &revolutions);
+};
+
+const std::vector<ScannerModel> &scannerModels();
+/// Null: there is none of that name.
+const ScannerModel *findScannerModel(std::string_view name);
+
+} // namespace hermes::scan
