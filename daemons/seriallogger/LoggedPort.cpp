@@ -29,7 +29,8 @@ LoggedPort::LoggedPort(const PortSettings &settings, std::size_t queueBytes, std
     : settings_(settings)
     , recording_(queueBytes)
     , view_(settings)
-    , thread_(settings, recording_, view_.queue(), std::move(viewFilled), std::move(note)) {}
+    , thread_(settings.name, settings.url, recording_, view_.queue(), std::move(viewFilled),
+              std::move(note)) {}
 
 void LoggedPort::start() {
     startedMono_ = monotonicNow();

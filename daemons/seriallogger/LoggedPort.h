@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/daemon/PastFaults.h"
-#include "daemons/seriallogger/PortThread.h"
+#include "common/ports/PortThread.h"
 #include "daemons/seriallogger/PortView.h"
 #include "daemons/seriallogger/SerialMessages.h"
 

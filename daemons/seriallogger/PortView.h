@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/ChunkQueue.h"
+#include "common/ports/ChunkQueue.h"
 #include "daemons/seriallogger/FixTracker.h"
 #include "daemons/seriallogger/LineSplitter.h"
 #include "daemons/seriallogger/PortSettings.h"

@@ -1,10 +1,10 @@
 #include "daemons/seriallogger/SerialExport.h"
 
 #include "common/files/SavedFile.h"
+#include "common/ports/SerialLogReader.h"
 #include "common/recording/DiskError.h"
 #include "daemons/seriallogger/FixTracker.h"
 #include "daemons/seriallogger/LineSplitter.h"
-#include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialMessages.h"
 
 #include <functional>

@@ -149,7 +149,20 @@ void SerialLogger::send(const Call &call, const Reply &reply) {
     }
     if (bytes.isEmpty())
         return reply.error(wrongParameter("bytes", call.text("bytes"), expected));
-    port->thread().send(bytes, reply);
+    const auto write = [this, port, bytes, reply](Interface &carrier) {
+        const QString name = port->settings().name;
+        if (!carrier.write(bytes))
+            return reply.error(
+                Error(ErrorCode::NotReady,
+                      carrier.isOpen()
+                          ? QString("%1: %2 does not take more bytes now").arg(name, port->settings().url)
+                          : QString("%1 is closed: %2").arg(name, port->thread().state().reason)));
+        carrier.flush();
+        recorder_.note("sent", {{"port", name}, {"bytes", QString::fromLatin1(bytes.toHex())}});
+        const auto answer = [bytes, reply](Interface &) { reply.result(asJson(SendAnswer{bytes.size()})); };
+        port->thread().with(answer); // the port's state counts them by then
+    };
+    port->thread().with(write);
 }
 
 void SerialLogger::exportRecording(const Call &call, const Reply &reply) {
@@ -219,8 +232,8 @@ void SerialLogger::processViews() {
         if (const auto wait_ms = port->view().settle(shown))
             next_ms = std::min(*wait_ms, next_ms.value_or(*wait_ms));
     }
-    for (const auto &track : player_.tracks())
-        track->view->process(sinks(track->port));
+    for (auto &[port, view] : replayed_)
+        view.process(sinks(port));
     if (next_ms)
         settleTimer_.start(*next_ms);
     else

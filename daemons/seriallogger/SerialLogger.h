@@ -1,15 +1,16 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "common/ports/SerialPlayer.h"
+#include "common/ports/SerialRecorder.h"
 #include "common/recording/Recording.h"
 #include "common/recording/ReplaySource.h"
 #include "daemons/seriallogger/LoggedPort.h"
-#include "daemons/seriallogger/SerialPlayer.h"
-#include "daemons/seriallogger/SerialRecorder.h"
 
 #include <QElapsedTimer>
 #include <QThreadPool>
 #include <atomic>
+#include <deque>
 
 namespace hermes::seriallogger {
 
@@ -41,6 +42,8 @@ private:
     ReplaySource::Actions sourceActions();
     void openLive();
     Result<void> openRecording(const Call &call, const StoredRecording &stored);
+    /// That of a view in replayed_, which it makes; null: nothing is shown of the port.
+    ChunkQueue *replayedQueue(const QString &port, const QJsonObject &sidecar);
     void replayEnded(const Result<void> &result);
     void updateSourceHealth();
 
@@ -57,6 +60,7 @@ private:
     std::vector<std::unique_ptr<LoggedPort>> ports_; ///< outlive the recorder, which takes from them
     SerialRecorder recorder_;
     Recording recording_;
+    std::deque<std::pair<QString, PortView>> replayed_; ///< ports of the replay; outlive the player
     SerialPlayer player_;
     ReplaySource source_{"lines", identity().name, settings(), player_.playback(), sourceActions()};
     QTimer second_;

@@ -4,6 +4,20 @@
 
 namespace hermes::seriallogger {
 
+namespace {
+
+/// Those of the recording, or what is usual where its sidecar does not tell.
+PortSettings settingsOf(const QJsonObject &sidecar, const QString &port) {
+    for (const PortSettings &settings : PortSettings::read(sidecar.value("settings").toObject()))
+        if (settings.name == port)
+            return settings;
+    PortSettings usual;
+    usual.name = port;
+    return usual;
+}
+
+} // namespace
+
 ReplaySource::Actions SerialLogger::sourceActions() {
     ReplaySource::Actions actions;
     actions.live = [this](const Call &) -> Result<void> {
@@ -21,6 +35,7 @@ ReplaySource::Actions SerialLogger::sourceActions() {
 void SerialLogger::openLive() {
     source_.close();
     player_.stop();
+    replayed_.clear();
     for (const auto &port : ports_)
         port->view().open();
     source_.opened(ReplaySource::State::Live, "the ports");
@@ -29,11 +44,13 @@ void SerialLogger::openLive() {
 Result<void> SerialLogger::openRecording(const Call &call, const StoredRecording &stored) {
     source_.close();
     player_.stop();
+    replayed_.clear();
     for (const auto &port : ports_)
         port->view().close(sinks(port->settings().name));
     const Result<void> begun = player_.start(
-        stored, {call.number("speed"), false, call.flag("paused")}, call.number("delay_s"), viewFilled(),
-        source_.whenEnded([this](const Result<void> &result) { replayEnded(result); }));
+        stored, {call.number("speed"), false, call.flag("paused")}, call.number("delay_s"),
+        [this](const QString &port, const QJsonObject &sidecar) { return replayedQueue(port, sidecar); },
+        viewFilled(), source_.whenEnded([this](const Result<void> &result) { replayEnded(result); }));
     if (begun)
         source_.opened(ReplaySource::State::Replay, stored.folder);
     else
@@ -41,9 +58,18 @@ Result<void> SerialLogger::openRecording(const Call &call, const StoredRecording
     return begun;
 }
 
+ChunkQueue *SerialLogger::replayedQueue(const QString &port, const QJsonObject &sidecar) {
+    const PortSettings settings = settingsOf(sidecar, port);
+    if (settings.view == PortSettings::View::None)
+        return nullptr;
+    PortView &view = replayed_.emplace_back(port, settings).second;
+    view.open();
+    return &view.queue();
+}
+
 void SerialLogger::replayEnded(const Result<void> &result) {
-    for (const auto &track : player_.tracks())
-        track->view->close(sinks(track->port));
+    for (auto &[port, view] : replayed_)
+        view.close(sinks(port));
     source_.end(result);
     publish("serial", [this] { return state(); });
 }

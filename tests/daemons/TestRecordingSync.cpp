@@ -1,6 +1,6 @@
 // What is recorded is on the disk within a second, and nobody waits for it.
+#include "common/ports/SerialRecorder.h"
 #include "common/recording/Recording.h"
-#include "daemons/seriallogger/SerialRecorder.h"
 #include "daemons/velodynelogger/Recorder.h"
 #include "tests/daemons/MachineStalls.h"
 #include "tests/support/Sensor.h"
@@ -8,7 +8,6 @@
 #include <sys/syscall.h>
 
 using namespace hermes;
-using namespace hermes::seriallogger;
 using namespace hermes::velodynelogger;
 using Clock = std::chrono::steady_clock;
 

@@ -1,6 +1,8 @@
-#include "SerialFilesFixture.h"
+#include "daemons/seriallogger/SerialExport.h"
+#include "tests/common/SerialFilesFixture.h"
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 class TestSerialExport : public QObject, SerialFilesFixture {
     Q_OBJECT
@@ -22,9 +24,11 @@ private Q_SLOTS:
         begin();
         push(*queue_, QByteArray("\0\xff\n", 3), after(0));
         push(*queue_, "a", after(1e-9));
+        push(*queue_, "b", {-1, after(3).mono_ns}); // before 1970
         recorder_->end();
         QCOMPARE(exported(ExportRows::Bytes), (QList<QByteArray>{"1700000000.000000000,5.000000000,0,00ff0a",
-                                                                 "1700000000.000000001,5.000000001,3,61"}));
+                                                                 "1700000000.000000001,5.000000001,3,61",
+                                                                 "-0.000000001,8.000000000,4,62"}));
     }
 
     void fixesAreExported() {
@@ -42,6 +46,13 @@ private Q_SLOTS:
         QCOMPARE(cells[4].toDouble(), 48 + 7.038 / 60);
         QCOMPARE(cells[6].toDouble(), 545.4);
         QCOMPARE(cells[8].toDouble(), 8.0);
+    }
+
+    void ofADamagedRecordingNoneIsMade() {
+        put(base() + ".raw", "abc");
+        put(base() + ".index", "another file");
+        VERIFY_CONTAINS(QString(exported(ExportRows::Lines).first()), "HERMESIX");
+        QVERIFY(!QFile::exists(base() + ".csv"));
     }
 
     void exportsFailInOrder() {
@@ -69,5 +80,23 @@ private Q_SLOTS:
             QCOMPARE(job.run(false).error().code, int(ErrorCode::InputOutput));
         }
         QVERIFY(!QFile::exists(job.target));
+    }
+
+private:
+    /// The CSV without its header.
+    QList<QByteArray> exported(ExportRows rows) {
+        SerialExport job;
+        job.base = base();
+        job.target = base() + ".csv";
+        job.rows = rows;
+        const auto count = job.run(false);
+        if (!count)
+            return {count.error().message.toUtf8()};
+        QList<QByteArray> lines = contentOf(job.target).split('\n');
+        lines.removeFirst();
+        lines.removeLast();
+        if (quint64(lines.size()) != *count)
+            return {"another number of rows was told"};
+        return lines;
     }
 };

@@ -1,8 +1,8 @@
-#include "daemons/seriallogger/PortFile.h"
+#include "common/ports/PortFile.h"
 
-#include "daemons/seriallogger/SerialIndex.h"
+#include "common/ports/SerialIndex.h"
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 using namespace serialindex;
 
@@ -62,4 +62,4 @@ bool PortFile::fail(const AppendFile &file) {
     return false;
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

@@ -1,12 +1,9 @@
 #pragma once
 
-#include "daemons/seriallogger/SerialExport.h"
-#include "daemons/seriallogger/SerialLogReader.h"
-#include "daemons/seriallogger/SerialRecorder.h"
+#include "common/ports/SerialLogReader.h"
+#include "common/ports/SerialRecorder.h"
 
 namespace hermes {
-
-using namespace seriallogger;
 
 inline const Moment first{1700000000000000000, 5000000000};
 
@@ -57,28 +54,10 @@ protected:
         recorder_->setPorts({{"a", "u", queue_.get()}});
         QVERIFY(recorder_->begin(plan()).ok());
     }
-    /// The CSV without its header.
-    QList<QByteArray> exported(ExportRows rows);
 
     std::unique_ptr<QTemporaryDir> folder_;
     std::unique_ptr<ChunkQueue> queue_;
     std::unique_ptr<SerialRecorder> recorder_;
 };
-
-inline QList<QByteArray> SerialFilesFixture::exported(ExportRows rows) {
-    SerialExport job;
-    job.base = base();
-    job.target = base() + ".csv";
-    job.rows = rows;
-    const auto count = job.run(false);
-    if (!count)
-        return {count.error().message.toUtf8()};
-    QList<QByteArray> lines = contentOf(job.target).split('\n');
-    lines.removeFirst();
-    lines.removeLast();
-    if (quint64(lines.size()) != *count)
-        return {"another number of rows was told"};
-    return lines;
-}
 
 } // namespace hermes

@@ -1,14 +1,11 @@
-#include "daemons/seriallogger/PortThread.h"
+#include "common/ports/PortThread.h"
 
 #include "common/Realtime.h"
 #include "common/interface/InterfaceRegistry.h"
-#include "daemons/seriallogger/SerialMessages.h"
-#include "protocol/wire/Fields.h"
 
 #include <QFileInfo>
-#include <QJsonObject>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 namespace {
 
@@ -18,14 +15,14 @@ constexpr int realtimePriority = 5; // below the loops that drive motors
 
 } // namespace
 
-PortThread::PortThread(const PortSettings &settings, ChunkQueue &recording, ChunkQueue &view,
+PortThread::PortThread(const QString &name, const QString &url, ChunkQueue &recording, ChunkQueue &view,
                        std::function<void()> viewFilled, Note note)
-    : settings_(settings)
+    : url_(url)
     , recording_(recording)
     , view_(view)
     , viewFilled_(std::move(viewFilled))
     , note_(std::move(note)) {
-    setObjectName("port " + settings.name);
+    setObjectName("port " + name);
     context_.moveToThread(this);
 }
 
@@ -40,9 +37,9 @@ PortThread::State PortThread::state() const {
 }
 
 void PortThread::run() {
-    if (settings_.url.startsWith("serial:")) // a driver keeps 4 KiB: 44 ms of 921,600 baud
-        becomeRealtime(realtimePriority);    // where it may
-    InterfaceUrl url = *InterfaceUrl::parse(settings_.url);
+    if (url_.startsWith("serial:"))       // a driver keeps 4 KiB: 44 ms of 921,600 baud
+        becomeRealtime(realtimePriority); // where it may
+    InterfaceUrl url = *InterfaceUrl::parse(url_);
     if (url.scheme == QStringLiteral("udp") && url.option("from").isEmpty())
         url.options.insert("from", "first"); // not two devices mixed into one
     const Result<Interface *> made = makeInterface(url, nullptr);
@@ -77,8 +74,8 @@ void PortThread::changed(const QString &reason) {
     const bool isOpen = carrier_->isOpen();
     bool wasOpen;
     QString device;
-    if (isOpen && settings_.url.startsWith("serial:"))
-        device = QFileInfo(InterfaceUrl::parse(settings_.url)->path).canonicalFilePath();
+    if (isOpen && url_.startsWith("serial:"))
+        device = QFileInfo(InterfaceUrl::parse(url_)->path).canonicalFilePath();
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         wasOpen = state_.carrier == Interface::State::Open;
@@ -120,24 +117,13 @@ void PortThread::checkErrors() {
     state_.systemErrors = sum;
 }
 
-void PortThread::send(const QByteArray &bytes, const Reply &reply) {
-    const auto write = [this, bytes, reply] {
-        if (carrier_ && carrier_->write(bytes)) {
-            carrier_->flush();
-            note_("sent", {{"bytes", QString::fromLatin1(bytes.toHex())}});
-            {
-                const std::lock_guard<std::mutex> lock(mutex_);
-                state_.counters = carrier_->counters();
-            }
-            return reply.result(asJson(SendAnswer{bytes.size()}));
-        }
-        reply.error(
-            Error(ErrorCode::NotReady,
-                  state().carrier == Interface::State::Open
-                      ? QString("%1: %2 does not take more bytes now").arg(settings_.name, settings_.url)
-                      : QString("%1 is closed: %2").arg(settings_.name, state().reason)));
+void PortThread::with(std::function<void(Interface &)> job) {
+    const auto run = [this, job = std::move(job)] {
+        job(*carrier_);
+        const std::lock_guard<std::mutex> lock(mutex_);
+        state_.counters = carrier_->counters();
     };
-    QMetaObject::invokeMethod(&context_, write, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(&context_, run, Qt::QueuedConnection);
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

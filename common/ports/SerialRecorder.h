@@ -1,13 +1,14 @@
 #pragma once
 
+#include "common/ports/PortFile.h"
 #include "common/recording/RecordingWriter.h"
-#include "daemons/seriallogger/PortFile.h"
 
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <thread>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 /// Writes what ports receive, in a thread of its own: PREFIX-PORT.raw and PREFIX-PORT.index of each port, and
 /// PREFIX-events.jsonl with marks and what happened to the ports.
@@ -17,6 +18,9 @@ public:
         QString name;
         QString url;
         ChunkQueue *queue; ///< not owned; open while a recording is under way
+        /// Gives members to be added to the port's entry in the files of the state. Called by state(), in any
+        /// thread; may be empty, and must not call the recorder.
+        std::function<QJsonObject()> about = {};
     };
 
     ~SerialRecorder() override { end(); }
@@ -68,4 +72,4 @@ private:
     std::optional<Error> error_;
 };
 
-} // namespace hermes::seriallogger
+} // namespace hermes

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 /// Bytes that came in together, in the order of their arrival.
 struct ChunkBatch {
@@ -58,4 +58,4 @@ private:
     bool jumps_ = false; ///< since the last chunk
 };
 
-} // namespace hermes::seriallogger
+} // namespace hermes

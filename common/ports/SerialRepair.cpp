@@ -1,15 +1,15 @@
-// How the serial logger mends a recording that was cut off.
+// How a recording of ports that was cut off is mended.
 #include "common/files/NamedFile.h"
+#include "common/ports/SerialIndex.h"
+#include "common/ports/SerialRecorder.h"
 #include "common/recording/DiskError.h"
-#include "daemons/seriallogger/SerialIndex.h"
-#include "daemons/seriallogger/SerialRecorder.h"
 
 #include <QDir>
 #include <QFile>
 
 #include <algorithm>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 using namespace serialindex;
 
@@ -122,4 +122,4 @@ Result<void> SerialRecorder::repair(const RecordingPlan &plan, QJsonObject &side
     return {};
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

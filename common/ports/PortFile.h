@@ -1,11 +1,11 @@
 #pragma once
 
 #include "common/files/AppendFile.h"
-#include "daemons/seriallogger/ChunkQueue.h"
+#include "common/ports/ChunkQueue.h"
 
 #include <optional>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 /// The recording of one port: its bytes as they came (BASE.raw), and beside them when they came (BASE.index,
 /// see SerialIndex.h).
@@ -37,4 +37,4 @@ private:
     QString error_, failedPath_;
 };
 
-} // namespace hermes::seriallogger
+} // namespace hermes

@@ -1,4 +1,4 @@
-#include "daemons/seriallogger/SerialLogReader.h"
+#include "common/ports/SerialLogReader.h"
 
 #include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 using namespace serialindex;
 
@@ -85,4 +85,4 @@ Error SerialLogReader::wrong(const QString &what) const {
     return diskError(index_.fileName() + ": " + what, index_.fileName());
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

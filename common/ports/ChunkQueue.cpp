@@ -1,8 +1,8 @@
-#include "daemons/seriallogger/ChunkQueue.h"
+#include "common/ports/ChunkQueue.h"
 
 #include <utility>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 namespace {
 
@@ -71,4 +71,4 @@ std::uint64_t ChunkQueue::lost() const {
     return lost_;
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

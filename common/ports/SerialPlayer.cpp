@@ -1,4 +1,4 @@
-#include "daemons/seriallogger/SerialPlayer.h"
+#include "common/ports/SerialPlayer.h"
 
 #include "common/recording/DiskError.h"
 
@@ -8,28 +8,18 @@
 
 #include <algorithm>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 namespace {
 
 constexpr double slack_s = 60;
-constexpr double latest_s = 4e9; // of a clock
+constexpr double farthest_s = 4e9; // of a clock
 constexpr std::chrono::milliseconds roomPeriod{5};
-
-/// Those of the recording, or what is usual where its sidecar does not tell.
-PortSettings settingsOf(const StoredRecording &recording, const QString &port) {
-    for (const PortSettings &settings : PortSettings::read(recording.sidecar.value("settings").toObject()))
-        if (settings.name == port)
-            return settings;
-    PortSettings usual;
-    usual.name = port;
-    return usual;
-}
 
 } // namespace
 
 Result<void> SerialPlayer::start(const StoredRecording &recording, const Playback::Options &options,
-                                 double delay_s, Filled filled, End end) {
+                                 double delay_s, const QueueOf &queueOf, Filled filled, End end) {
     stop();
     delay_s_ = delay_s;
     startMono_s_ = recording.sidecar.value("start_mono").toDouble();
@@ -43,7 +33,8 @@ Result<void> SerialPlayer::start(const StoredRecording &recording, const Playbac
     const QJsonArray entries = recording.sidecar.value("files").toArray();
     for (int i = 0; i < entries.size(); ++i) {
         const QString port = entries[i].toObject().value("port").toString();
-        const Result<void> added = addTrack(files->at(i), settingsOf(recording, port));
+        ChunkQueue *const queue = queueOf(port, recording.sidecar);
+        const Result<void> added = queue ? addTrack(files->at(i), queue) : Result<void>();
         if (!added) {
             tracks_.clear();
             return added;
@@ -53,16 +44,12 @@ Result<void> SerialPlayer::start(const StoredRecording &recording, const Playbac
     return {};
 }
 
-Result<void> SerialPlayer::addTrack(const QString &path, const PortSettings &settings) {
-    if (settings.view == PortSettings::View::None)
-        return {};
+Result<void> SerialPlayer::addTrack(const QString &path, ChunkQueue *queue) {
     auto track = std::make_unique<Track>();
-    track->port = settings.name;
-    track->view = std::make_unique<PortView>(settings);
+    track->queue = queue;
     Result<void> result = track->reader.open(QString(path).remove(QRegularExpression("\\.raw$")));
     if (result)
         result = advance(*track);
-    track->view->open();
     tracks_.push_back(std::move(track));
     return result;
 }
@@ -111,7 +98,7 @@ void SerialPlayer::run() {
 Playback::Turn SerialPlayer::wait(const Track &track) {
     for (;;) {
         const Playback::Turn turn = playback_.waitFor(track.time_ns);
-        if (turn != Playback::Turn::Due || track.view->queue().hasRoom(std::size_t(track.piece.bytes.size())))
+        if (turn != Playback::Turn::Due || track.queue->hasRoom(std::size_t(track.piece.bytes.size())))
             return turn;
         if (!playback_.rest(roomPeriod))
             return Playback::Turn::End;
@@ -120,17 +107,17 @@ Playback::Turn SerialPlayer::wait(const Track &track) {
 
 Result<void> SerialPlayer::play(Track &track) {
     const QByteArray &bytes = track.piece.bytes;
-    track.view->queue().push(bytes.constData(), std::size_t(bytes.size()), track.piece.arrival);
+    track.queue->push(bytes.constData(), std::size_t(bytes.size()), track.piece.arrival);
     filled_();
     return advance(track);
 }
 
 Result<void> SerialPlayer::goTo(std::int64_t time_ns) {
     const double begin_s =
-        std::clamp(startMono_s_ - delay_s_, -latest_s, latest_s); // whatever the sidecar says
+        std::clamp(startMono_s_ - delay_s_, -farthest_s, farthest_s); // whatever the sidecar says
     playback_.jump(time_ns);
     for (const auto &track : tracks_) {
-        track->view->queue().jump();
+        track->queue->jump();
         track->time_ns = 0;
         Result<void> found = track->reader.seek(time_ns + std::int64_t(begin_s * 1e9));
         if (found)
@@ -141,4 +128,4 @@ Result<void> SerialPlayer::goTo(std::int64_t time_ns) {
     return {};
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

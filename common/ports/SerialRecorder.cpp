@@ -1,4 +1,4 @@
-#include "daemons/seriallogger/SerialRecorder.h"
+#include "common/ports/SerialRecorder.h"
 
 #include "common/recording/DiskError.h"
 
@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 namespace {
 
@@ -196,6 +196,9 @@ RecordingState SerialRecorder::state() const {
         earlier[file["port"].toString()] = file.toObject();
     for (const auto &entry : entries_) {
         QJsonObject file = earlier.take(entry->port.name);
+        const QJsonObject about = entry->port.about ? entry->port.about() : QJsonObject();
+        for (auto member = about.begin(); member != about.end(); ++member)
+            file[member.key()] = *member;
         file["name"] = plan_.prefix + '-' + entry->port.name + ".raw";
         file["port"] = entry->port.name;
         file["url"] = entry->port.url;
@@ -226,4 +229,4 @@ RecordingState SerialRecorder::state() const {
     return state;
 }
 
-} // namespace hermes::seriallogger
+} // namespace hermes

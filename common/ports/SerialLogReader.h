@@ -1,12 +1,12 @@
 #pragma once
 
 #include "common/Result.h"
-#include "daemons/seriallogger/SerialIndex.h"
+#include "common/ports/SerialIndex.h"
 
 #include <QFile>
 #include <optional>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 /// Reads the recording of one port from its beginning; of one being written, what was there when it was
 /// opened. Blocks.
@@ -39,4 +39,4 @@ private:
     quint64 offset_ = 0;
 };
 
-} // namespace hermes::seriallogger
+} // namespace hermes

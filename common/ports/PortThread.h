@@ -1,15 +1,14 @@
 #pragma once
 
-#include "common/daemon/Reply.h"
 #include "common/interface/Interface.h"
-#include "daemons/seriallogger/ChunkQueue.h"
-#include "daemons/seriallogger/PortSettings.h"
+#include "common/ports/ChunkQueue.h"
 
+#include <QJsonObject>
 #include <QThread>
 #include <functional>
 #include <optional>
 
-namespace hermes::seriallogger {
+namespace hermes {
 
 /// Receives from one port in a thread of its own, so that nothing else holds it up: stamps what comes in and
 /// puts it into the queues of the recording and of the view. Opens the port again when it closes.
@@ -28,15 +27,15 @@ public:
     using Note = std::function<void(const QString &event, const QJsonObject &details)>;
 
     /// viewFilled: called in the thread when something waits for the view again.
-    PortThread(const PortSettings &settings, ChunkQueue &recording, ChunkQueue &view,
+    PortThread(const QString &name, const QString &url, ChunkQueue &recording, ChunkQueue &view,
                std::function<void()> viewFilled, Note note);
     ~PortThread() override { end(); }
 
     /// Ends the thread and waits for it.
     void end();
     State state() const;
-    /// Answers when the bytes are with the system, or with what keeps them from it.
-    void send(const QByteArray &bytes, const Reply &reply);
+    /// Runs the job with the carrier, in the thread: later, or never if that ends before. Any thread.
+    void with(std::function<void(Interface &)> job);
 
 protected:
     void run() override;
@@ -46,7 +45,7 @@ private:
     void changed(const QString &reason);
     void checkErrors();
 
-    const PortSettings settings_;
+    const QString url_;
     ChunkQueue &recording_, &view_;
     const std::function<void()> viewFilled_;
     const Note note_;
@@ -60,4 +59,4 @@ private:
     State state_;
 };
 
-} // namespace hermes::seriallogger
+} // namespace hermes

@@ -11,7 +11,7 @@
 /// of bytes that came in together. A chunk ends where the next begins, the last with the file of bytes. A
 /// record is written before its bytes: records that begin at or behind the end of the bytes count for
 /// nothing.
-namespace hermes::seriallogger::serialindex {
+namespace hermes::serialindex {
 
 constexpr std::size_t headerSize = 16;
 /// "HERMESIX", then the version and the size of a record, little endian.
@@ -36,4 +36,4 @@ inline Record decode(const unsigned char *bytes) {
             {qFromLittleEndian<qint64>(bytes + 8), qFromLittleEndian<qint64>(bytes + 16)}};
 }
 
-} // namespace hermes::seriallogger::serialindex
+} // namespace hermes::serialindex
