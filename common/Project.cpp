@@ -12,8 +12,9 @@ struct KnownDaemon {
 
 // docs/protocol.md, default ports.
 const KnownDaemon knownDaemons[] = {
-    {"supervisor", 7400},      {"motorcontrol", 7410}, {"velodynelogger", 7420}, {"seriallogger", 7430},
-    {"softwaretrigger", 7440}, {"scanmatcher", 7450},  {"recorder", 7460},       {"simulator", 7490},
+    {"supervisor", 7400},   {"motorcontrol", 7410},    {"velodynelogger", 7420},
+    {"seriallogger", 7430}, {"softwaretrigger", 7440}, {"scanmatcher", 7450},
+    {"recorder", 7460},     {"scanner", 7470},         {"simulator", 7490},
 };
 
 } // namespace

@@ -10,7 +10,7 @@ constexpr std::size_t maxBeams = 100000; // of a head that does not turn
 
 double counterClockwise(double clockwise_deg) {
     const double angle_deg = std::fmod(-clockwise_deg, 360);
-    return angle_deg < 0 ? angle_deg + 360 : angle_deg;
+    return angle_deg <= 0 ? angle_deg + 360 : angle_deg;
 }
 
 } // namespace
@@ -40,6 +40,8 @@ void RevolutionAssembler::jump() {
 void RevolutionAssembler::deliver() {
     const bool isEmpty = revolution_.beams.empty();
     if (!isEmpty) {
+        revolution_.begin_ns = revolution_.beams.front().stamp_ns;
+        revolution_.end_ns = revolution_.beams.back().stamp_ns;
         if (spins_)
             std::sort(revolution_.beams.begin(), revolution_.beams.end(),
                       [](const Beam &a, const Beam &b) { return a.angle_deg < b.angle_deg; });

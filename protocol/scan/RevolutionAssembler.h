@@ -8,7 +8,7 @@ namespace hermes::scan {
 
 /// One measurement of a scanner.
 struct Beam {
-    double angle_deg = 0; ///< seen from above, counter-clockwise from ahead, 0 to 360
+    double angle_deg = 0; ///< seen from above, counter-clockwise from ahead: above 0, up to 360
     float range_m = 0;    ///< 0: nothing came back
     std::uint8_t intensity = 0;
     std::int64_t stamp_ns = 0; ///< when it was measured, since the Unix epoch, by the host's clock
@@ -20,6 +20,8 @@ struct Revolution {
     std::uint64_t number = 0;       ///< counts from 0
     bool partial = false;           ///< the first, the last, or one of which something is missing
     std::uint64_t lostPackets = 0;  ///< of it, as far as that can be known
+    std::int64_t begin_ns = 0;      ///< stamp of the beam that was measured first
+    std::int64_t end_ns = 0;        ///< and last
     std::int64_t clockBound_ns = 0; ///< how far the stamps may be off
     std::vector<Beam> beams;        ///< those without return, too
 };

@@ -17,6 +17,7 @@ ALLOWED = {
     "daemons/velodynelogger": {"common", "protocol"},
     "daemons/recorder": {"common", "protocol"},
     "daemons/seriallogger": {"common", "protocol"},
+    "daemons/scanner": {"common", "protocol"},
     "daemons/softwaretrigger": {"common", "protocol"},
     "daemons/supervisor": {"common", "protocol"},
     "daemons/scanmatcher": {"common", "protocol", "vectorlib"},

@@ -14,7 +14,7 @@ from support import BINARIES, Process, free_port, wait_for
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 SKIPPED = 77
-DAEMONS = ("supervisor", "motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "simulator")
+DAEMONS = ("supervisor", "motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "scanner", "simulator")
 WAYS = 6
 
 PAGE = """<!DOCTYPE html><title>A harmless page</title><script>

@@ -9,7 +9,7 @@ import tempfile
 
 from support import BINARIES, DaemonError, Process, free_port
 
-DAEMONS = ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "supervisor", "simulator")
+DAEMONS = ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "scanner", "supervisor", "simulator")
 COMMON = {"rpc.discover", "daemon.info", "daemon.status", "daemon.shutdown", "settings.schema", "settings.get",
           "settings.set", "settings.reset", "settings.save", "topics.list", "topics.subscribe", "topics.unsubscribe",
           "topics.replay", "log.tail"}

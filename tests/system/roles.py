@@ -198,7 +198,7 @@ def check_other_user_moves_nothing(folder):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "supervisor", "simulator"):
+        for name in ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "scanner", "supervisor", "simulator"):
             settings = {"velodynelogger": {"source.port": free_port(0, socket.SOCK_DGRAM), "source.position_port": 0},
                         "motorcontrol": {"controllers": json.dumps({n: {"url": "serial://" + os.path.join(folder, "line")} for n in ("1", "2")})}}.get(name, {})
             with Process(BINARIES, name, free_port(0), folder, {"audit.folder": folder, **settings}) as process:

@@ -14,7 +14,7 @@ import unittest
 from support import BINARIES, BUILD, EXPERIMENTS, SLOWNESS, vector_commands, put, text_of
 
 DAEMONS = [f"hermes-{name}" for name in ("supervisor", "motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger",
-                                         "scanmatcher", "simulator")]
+                                         "scanmatcher", "scanner", "simulator")]
 WINDOW = ["hermes-gui"] if os.path.exists(os.path.join(BINARIES, "hermes-gui")) else []  # not every build has it
 ENVIRONMENT = {**os.environ, "PATH": f"{BINARIES}:{os.environ['PATH']}", "QT_QPA_PLATFORM": "offscreen", "LC_ALL": "C.UTF-8"}
 # As bash calls the function of a program; the words follow as arguments.

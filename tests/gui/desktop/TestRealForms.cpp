@@ -25,8 +25,8 @@ private:
     OpenForm open_;
 };
 
-static const QStringList daemons{"motorcontrol", "scanmatcher",     "seriallogger",  "simulator",
-                                 "supervisor",   "softwaretrigger", "velodynelogger"};
+static const QStringList daemons{"motorcontrol", "scanmatcher", "scanner",         "seriallogger",
+                                 "simulator",    "supervisor",  "softwaretrigger", "velodynelogger"};
 
 void TestRealForms::initTestCase() {
     robot_ = std::make_unique<RobotProcesses>();

@@ -1,0 +1,135 @@
+#include "daemons/scanner/LiveScanner.h"
+
+#include "common/interface/InterfaceUrl.h"
+#include "common/interface/SerialInterface.h"
+
+#include <algorithm>
+
+namespace hermes::scanner {
+namespace {
+
+constexpr int period_ms = 10;
+constexpr double listening_s = 1, asking_s = 1.5; // until another scanner is tried
+constexpr quint64 enoughPackets = 10;
+
+/// One of each that differ in what is said on the line. Those that must not be asked come first: they are
+/// heard before anything is sent.
+std::vector<const scan::ScannerModel *> candidates(const scan::ScannerModel *model) {
+    if (model)
+        return {model};
+    std::vector<const scan::ScannerModel *> all;
+    for (const bool isOneWay : {true, false})
+        for (const scan::ScannerModel &row : scan::scannerModels()) {
+            const auto isSame = [&](const scan::ScannerModel *other) {
+                return other->make == row.make && other->baud == row.baud;
+            };
+            if (row.isOneWay == isOneWay && std::none_of(all.begin(), all.end(), isSame))
+                all.push_back(&row);
+        }
+    return all;
+}
+
+} // namespace
+
+LiveScanner::LiveScanner(const QString &url, const scan::ScannerModel *model, ChunkQueue &recording,
+                         scan::RevolutionAssembler::Sink sink, PortThread::Note note)
+    : address_(url)
+    , recording_(recording)
+    , sink_(std::move(sink))
+    , note_(std::move(note))
+    , candidates_(candidates(model))
+    , isFound_(model) {
+    connect(&timer_, &QTimer::timeout, this, &LiveScanner::step);
+    open(*candidates_.front());
+}
+
+LiveScanner::~LiveScanner() {
+    stop();
+}
+
+void LiveScanner::start() {
+    reader_->queue().open();
+    port_->start();
+    timer_.start(period_ms);
+}
+
+void LiveScanner::stop() {
+    timer_.stop();
+    port_->end();
+}
+
+void LiveScanner::open(const scan::ScannerModel &model) {
+    port_.reset();
+    reader_ = std::make_unique<ScanReader>(model, sink_);
+    openedMono_ = 0;
+    InterfaceUrl url = *InterfaceUrl::parse(address_);
+    if (url.scheme == QStringLiteral("serial") && url.option("baud").isEmpty())
+        url.options.insert("baud", QString::number(model.baud));
+    url_ = url.toString();
+    const auto filled = [this] {
+        QMetaObject::invokeMethod(
+            this, [this] { this->filled(); }, Qt::QueuedConnection);
+    };
+    port_ = std::make_unique<PortThread>("scanner", url_, recording_, reader_->queue(), filled,
+                                         [this](const QString &event, const QJsonObject &details) {
+                                             if (isFound_) // each try opens it
+                                                 note_(event, details);
+                                         });
+}
+
+void LiveScanner::tryNext() {
+    if (tried_.size() >= int(candidates_.size()))
+        tried_.clear();
+    tried_.append(QString("%1 at %2 baud").arg(reader_->model().title).arg(reader_->model().baud));
+    candidate_ = (candidate_ + 1) % candidates_.size();
+    stop();
+    open(*candidates_[candidate_]);
+    start();
+}
+
+void LiveScanner::filled() {
+    reader_->process();
+    step();
+}
+
+void LiveScanner::step() {
+    const PortThread::State state = port_->state();
+    const Moment now = Moment::now();
+    scan::ScannerProtocol &protocol = reader_->protocol();
+    if (state.carrier != Interface::State::Open) {
+        openedMono_ = 0;
+        return;
+    }
+    if (openedMono_ == 0) {
+        openedMono_ = now.mono();
+        protocol.opened(now.mono_ns);
+    }
+    act(protocol.next(now.mono_ns));
+    if (isFound_)
+        return;
+    const bool isOneWay = reader_->model().isOneWay;
+    if (isOneWay ? protocol.counts().packets >= enoughPackets : !protocol.identity().serial.empty()) {
+        isFound_ = true;
+        tried_.clear();
+    } else if (now.mono() - openedMono_ > (isOneWay ? listening_s : asking_s)) {
+        tryNext();
+    }
+}
+
+void LiveScanner::act(const scan::HostAction &action) {
+    if (action.send.empty() && !action.dtr && !action.reopen)
+        return;
+    port_->with([action](Interface &line) {
+        auto *const serial = qobject_cast<SerialInterface *>(&line);
+        if (serial && action.dtr) // some lines have none
+            (void)serial->setSignal(SerialInterface::Signal::Dtr, *action.dtr);
+        if (action.reopen) {
+            line.close("it is opened anew: the scanner does not answer");
+            return line.open();
+        }
+        line.write(QByteArray::fromStdString(action.send));
+        line.flush();
+    });
+}
+
+} // namespace hermes::scanner

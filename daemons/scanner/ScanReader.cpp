@@ -1,0 +1,74 @@
+#include "daemons/scanner/ScanReader.h"
+
+#include <QtMath>
+
+#include <cmath>
+
+namespace hermes::scanner {
+
+ScanReader::ScanReader(const scan::ScannerModel &model, scan::RevolutionAssembler::Sink sink)
+    : model_(model)
+    , sink_(std::move(sink))
+    , revolutions_([this](const scan::Revolution &revolution) { take(revolution); })
+    , protocol_(model.make(model, revolutions_)) {}
+
+bool ScanReader::process(const std::function<bool()> &mayGoOn) {
+    for (;;) {
+        if (nextChunk_ == batch_.chunks.size()) {
+            queue_.take(batch_);
+            nextChunk_ = nextByte_ = 0;
+            if (batch_.chunks.empty())
+                return true;
+        }
+        for (; nextChunk_ < batch_.chunks.size(); ++nextChunk_) {
+            if (!mayGoOn())
+                return false;
+            const ChunkBatch::Chunk &chunk = batch_.chunks[nextChunk_];
+            if (chunk.lostBefore > 0 || chunk.isJump)
+                protocol_->jump();
+            protocol_->feed({batch_.bytes.data() + nextByte_, chunk.size},
+                            {chunk.arrival.stamp_ns, chunk.arrival.mono_ns});
+            nextByte_ += chunk.size;
+        }
+    }
+}
+
+void ScanReader::take(const scan::Revolution &revolution) {
+    lastMono_ = monotonicNow();
+    clockBound_ns_ = revolution.clockBound_ns;
+    if (!revolution.partial) {
+        beams_ = revolution.beams.size();
+        duration_s_ = double(revolution.end_ns - revolution.begin_ns) * 1e-9;
+    }
+    sink_(revolution);
+}
+
+ScanMessage toScanMessage(const scan::Revolution &revolution, bool replayed) {
+    ScanMessage message;
+    message.header.turn = revolution.number;
+    message.header.stamp = double(revolution.begin_ns) * 1e-9;
+    message.header.duration_s = double(revolution.end_ns - revolution.begin_ns) * 1e-9;
+    message.header.partial = revolution.partial;
+    message.header.rays = revolution.beams.size();
+    message.header.lostPackets = revolution.lostPackets;
+    message.header.frame = "scanner";
+    message.header.replayed = replayed;
+    message.header.clock = "host";
+    message.header.clockError_s = double(revolution.clockBound_ns) * 1e-9;
+    std::vector<float> &t = message.t.emplace();
+    for (std::vector<float> *values : {&message.x, &message.y, &t})
+        values->reserve(revolution.beams.size());
+    message.intensity.reserve(revolution.beams.size());
+    for (const scan::Beam &beam : revolution.beams) {
+        if (beam.range_m <= 0)
+            continue;
+        const double angle = qDegreesToRadians(beam.angle_deg);
+        message.x.push_back(float(beam.range_m * std::cos(angle)));
+        message.y.push_back(float(beam.range_m * std::sin(angle)));
+        t.push_back(float(double(beam.stamp_ns - revolution.begin_ns) * 1e-9));
+        message.intensity.push_back(beam.intensity);
+    }
+    return message;
+}
+
+} // namespace hermes::scanner

@@ -1,0 +1,270 @@
+#include "daemons/scanner/Scanner.h"
+
+#include "common/Log.h"
+#include "common/recording/DiskError.h"
+#include "protocol/wire/Fields.h"
+
+#include <QJsonArray>
+
+namespace hermes::scanner {
+namespace {
+
+using State = ReplaySource::State;
+
+const QString portName = "scan"; // of its file
+constexpr double stale_s = 1.5;  // no revolution is so slow
+constexpr int retry_ms = 2;
+constexpr qint64 roomTimeout_ms = 5000; // for a reader that reads no more
+
+QString toText(Interface::State state) {
+    return state == Interface::State::Open      ? "open"
+           : state == Interface::State::Opening ? "opening"
+                                                : "closed";
+}
+
+std::optional<QString> known(const std::string &text) {
+    return text.empty() ? std::nullopt : std::optional(QString::fromStdString(text));
+}
+
+} // namespace
+
+Scanner::Scanner()
+    : Daemon(
+          {"scanner", "Scanner",
+           "Reads a laser scanner of one plane (RPLIDAR, LDROBOT) or replays a recording of one, publishes "
+           "each revolution, records its bytes"}) {
+    declareSettings();
+    declareTopics();
+    declareCommands();
+    connect(&second_, &QTimer::timeout, this, &Scanner::tick);
+    retry_.setSingleShot(true);
+    connect(&retry_, &QTimer::timeout, this, &Scanner::processReplay);
+    connect(this, &Daemon::clientGone, this, [this](quint64 client) { source_.clientGone(client); });
+}
+
+Result<void> Scanner::start() {
+    const QString url = settings().text("scanner.url");
+    if (!url.isEmpty()) {
+        const auto note = [this](const QString &event, const QJsonObject &details) {
+            if (event == "opened")
+                logInfo("scanner", "the line is open");
+            else if (event == "closed")
+                logWarning("scanner", details.value("reason").toString());
+            recorder_.note(event, details);
+        };
+        live_ = std::make_unique<LiveScanner>(
+            url, scan::findScannerModel(settings().text("scanner.model").toStdString()), recordingQueue_,
+            [this](const scan::Revolution &revolution) {
+                if (!replayed_)
+                    publishScan(revolution, false);
+            },
+            note);
+    }
+    recorder_.setPorts({{portName, url, &recordingQueue_, [this] {
+                             const std::lock_guard<std::mutex> lock(mutex_);
+                             return prerequisite_;
+                         }}});
+    recording_.open();
+    if (live_)
+        live_->start();
+    openLive();
+    second_.start(1000);
+    setState(live_ ? DaemonState::Running : DaemonState::Ready);
+    updateHealth();
+    return {};
+}
+
+void Scanner::stop() {
+    second_.stop();
+    retry_.stop();
+    source_.close();
+    player_.stop();
+    if (live_)
+        live_->stop();
+    recording_.close();
+}
+
+ReplaySource::Actions Scanner::sourceActions() {
+    ReplaySource::Actions actions;
+    actions.live = [this](const Call &) -> Result<void> {
+        openLive();
+        return {};
+    };
+    actions.recording = [this](const Call &call, const StoredRecording &stored) {
+        return openRecording(call, stored);
+    };
+    actions.duration_s = [this] { return std::optional<double>(player_.duration_s()); };
+    actions.changed = [this] { updateHealth(); };
+    return actions;
+}
+
+void Scanner::openLive() {
+    source_.close();
+    player_.stop();
+    replayed_.reset();
+    replayEnd_.reset();
+    if (live_)
+        source_.opened(State::Live, live_->url());
+}
+
+Result<void> Scanner::openRecording(const Call &call, const StoredRecording &stored) {
+    openLive();
+    source_.close();
+    sinceRoom_.start();
+    Result<void> begun = player_.start(
+        stored, {call.number("speed"), false, call.flag("paused")}, call.number("delay_s"),
+        [this](const QString &port, const QJsonObject &sidecar) { return replayedQueue(port, sidecar); },
+        [this] { QMetaObject::invokeMethod(this, &Scanner::processReplay, Qt::QueuedConnection); },
+        source_.whenEnded([this](const Result<void> &result) {
+            replayEnd_ = result;
+            processReplay();
+        }));
+    if (begun && !replayed_)
+        begun = diskError(stored.folder + ": it does not tell which scanner was recorded", stored.folder);
+    if (begun)
+        source_.opened(State::Replay, stored.folder);
+    else
+        openLive();
+    return begun;
+}
+
+ChunkQueue *Scanner::replayedQueue(const QString &port, const QJsonObject &sidecar) {
+    for (const QJsonValue &file : sidecar.value("files").toArray()) {
+        const scan::ScannerModel *const model =
+            scan::findScannerModel(file["scanner"].toString().toStdString());
+        if (file["port"] != port || !model)
+            continue;
+        replayed_ = std::make_unique<ScanReader>(
+            *model, [this](const scan::Revolution &revolution) { publishScan(revolution, true); });
+        replayed_->protocol().prepare(file["prerequisite"].toString().toStdString());
+        replayed_->queue().open();
+        return &replayed_->queue();
+    }
+    return nullptr;
+}
+
+/// A replay without loss waits for readers who are behind, but not for one that reads no more.
+bool Scanner::mayPublish() {
+    const bool hasRoomNow = player_.playback().options().speed != 0 || hasRoom("scan2d");
+    if (hasRoomNow)
+        sinceRoom_.start();
+    return hasRoomNow || sinceRoom_.elapsed() >= roomTimeout_ms;
+}
+
+void Scanner::processReplay() {
+    if (!replayed_)
+        return;
+    if (!replayed_->process([this] { return mayPublish(); })) {
+        retry_.start(retry_ms);
+    } else if (replayEnd_) {
+        replayed_->finish();
+        source_.end(*std::exchange(replayEnd_, std::nullopt));
+        publish("scanner", [this] { return state(); });
+    }
+}
+
+void Scanner::publishScan(const scan::Revolution &revolution, bool replayed) {
+    if (hasSubscribers("scan2d")) {
+        const ScanMessage message = toScanMessage(revolution, replayed);
+        publish(
+            "scan2d", [&] { return message; }, message.header.stamp);
+    }
+}
+
+void Scanner::tick() {
+    if (live_ && live_->isFound()) {
+        const ScanReader &reader = live_->reader();
+        const std::lock_guard<std::mutex> lock(mutex_);
+        prerequisite_ = {{"scanner", reader.model().name},
+                         {"prerequisite", QString::fromStdString(reader.protocol().prerequisite())}};
+    }
+    updateHealth();
+    publish("scanner", [this] { return state(); });
+}
+
+ScannerMessage Scanner::state() const {
+    ScannerMessage state;
+    state.source = source_.status();
+    state.recording = recording_.status();
+    state.line = "closed";
+    if (live_) {
+        const PortThread::State port = live_->port();
+        state.url = live_->url();
+        state.line = toText(port.carrier);
+        state.bytes = port.counters.bytesIn;
+    }
+    if (!live_ && !replayed_)
+        return state;
+    const ScanReader &reader = shown();
+    const scan::ScannerIdentity &identity = reader.protocol().identity();
+    if (replayed_ || live_->isFound()) {
+        state.model = reader.model().name;
+        state.device = known(identity.model);
+        state.firmware = known(identity.firmware);
+        state.serial = known(identity.serial);
+    }
+    state.rpm = reader.duration_s() > 0 ? 60 / reader.duration_s() : 0;
+    state.beams = reader.beams();
+    state.revolutions = reader.counts().revolutions;
+    state.partial = reader.counts().partial;
+    state.packets = reader.protocol().counts().packets;
+    state.damaged = reader.protocol().counts().damaged;
+    state.lost = reader.counts().lostPackets;
+    state.skippedBytes = reader.protocol().counts().skippedBytes;
+    state.unreadBytes = reader.queue().lost();
+    return state;
+}
+
+void Scanner::updateHealth() {
+    const auto [level, message] = sensorHealth();
+    const ScannerMessage now = state();
+    health().set("scanner", level, message,
+                 {{"rpm", now.rpm},
+                  {"beams", double(now.beams)},
+                  {"revolutions", double(now.revolutions)},
+                  {"damaged", double(now.damaged)},
+                  {"lost", double(now.lost)}});
+}
+
+std::pair<HealthLevel, QString> Scanner::sensorHealth() {
+    if (!source_.error().isEmpty())
+        return {HealthLevel::Failed, source_.error()};
+    if (replayed_)
+        return {HealthLevel::Ok, "scans come from " + source_.name() +
+                                     ", not from the scanner; that is read and recorded all the same"};
+    if (!live_)
+        return {HealthLevel::Warn, "scanner.url does not tell where a scanner is"};
+    const PortThread::State port = live_->port();
+    const ScanReader &reader = live_->reader();
+    const QString name = QString("%1 on %2").arg(reader.model().title, live_->url());
+    if (port.carrier != Interface::State::Open && port.reason.isEmpty())
+        return {HealthLevel::Warn, live_->url() + ": it is being opened"};
+    if (port.carrier != Interface::State::Open)
+        return {HealthLevel::Failed, port.reason};
+    if (!live_->isFound())
+        return {live_->tried().isEmpty() ? HealthLevel::Warn : HealthLevel::Failed,
+                QString("looking for a scanner on %1, now for a %2%3")
+                    .arg(live_->url(), reader.model().title,
+                         live_->tried().isEmpty() ? QString()
+                                                  : "; there was none of: " + live_->tried().join(", "))};
+    const double silent_s = monotonicNow() - reader.lastMono();
+    if (const std::string &problem = reader.protocol().problem(); !problem.empty())
+        return {HealthLevel::Failed, name + ": " + QString::fromStdString(problem)};
+    if (reader.lastMono() == 0)
+        return {HealthLevel::Warn, name + ": it has not measured a revolution yet"};
+    if (silent_s > stale_s)
+        return {HealthLevel::Stale, QString("%1: no revolution for %2 s").arg(name).arg(silent_s, 0, 'f', 1)};
+    const scan::RevolutionAssembler::Counts &counts = reader.counts();
+    QString text = QString("%1: %2 revolutions a minute of %3 beams, stamps to %4 ms")
+                       .arg(name)
+                       .arg(60 / std::max(reader.duration_s(), 1e-3), 0, 'f', 0)
+                       .arg(reader.beams())
+                       .arg(double(reader.clockBound_ns()) * 1e-6, 0, 'f', 1);
+    if (counts.lostPackets > 0)
+        text += QString("; %1 packets were lost or damaged").arg(counts.lostPackets);
+    if (reader.queue().lost() > 0)
+        text += QString("; %1 bytes came too fast to be read").arg(reader.queue().lost());
+    return {faults_.level(double(counts.lostPackets + reader.queue().lost())), text};
+}
+
+} // namespace hermes::scanner
