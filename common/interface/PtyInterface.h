@@ -26,6 +26,9 @@ public:
     qint64 bytesInSystem() const override { return unread(); }
     /// Bytes that were written and that no program has read yet; 0 while closed.
     qint64 unread() const;
+    /// Of the near end, as a program or setBaud() has set it last; bits a second. 115200 at first.
+    int baud() const;
+    void setBaud(int baud);
     /// Loses them; gives their number.
     qint64 discardUnread();
 

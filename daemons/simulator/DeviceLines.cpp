@@ -22,31 +22,55 @@ Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link) {
     return pty;
 }
 
-Result<void> GpsLine::open(const QString &link) {
+Result<void> SensorLine::open(const QString &link, int baud, double patience_s,
+                              const std::function<void(const QByteArray &)> &received) {
     auto opened = openDeviceLine(link);
     if (!opened)
         return opened.error();
     pty_ = *opened;
+    pty_->setBaud(baud);
+    QObject::connect(pty_.get(), &Interface::received, [this, received](const QByteArray &bytes) {
+        if (!isGarbled())
+            received(bytes);
+    });
     state_.line.link = link;
+    baud_ = baud;
+    patience_s_ = patience_s;
     return {};
 }
 
-void GpsLine::send(const QByteArray &sentences) {
+void SensorLine::send(QByteArray bytes) {
     if (!pty_ || !pty_->isOpen())
         return;
-    if (pty_->unread() > maxUnread)
-        state_.unreadLost += pty_->discardUnread();
-    (pty_->write(sentences) ? state_.bytes : state_.unreadLost) += sentences.size();
+    const qint64 unread = pty_->unread(); // of which the system does not tell more than some thousand
+    const double now = monotonicNow();
+    if (unread > maxUnread && now - behindSince_ > patience_s_) {
+        pty_->discardUnread();
+        state_.unreadLost += behind_;
+    }
+    if (unread <= maxUnread || now - behindSince_ > patience_s_) {
+        behindSince_ = now;
+        behind_ = unread <= maxUnread ? unread : 0;
+    }
+    if (isGarbled()) {
+        for (char &byte : bytes)
+            byte = char(garbage_() >> 8);
+    }
+    const bool taken = pty_->write(bytes);
+    (taken ? state_.bytes : state_.unreadLost) += bytes.size();
+    behind_ += taken ? bytes.size() : 0;
 }
 
-void GpsLine::setPulled(bool pulled) {
+void SensorLine::setPulled(bool pulled) {
     if (pulled)
-        pty_->close();
-    else
-        pty_->open();
+        return pty_->close();
+    if (pty_->isOpen())
+        return;
+    pty_->open();
+    pty_->setBaud(baud_);
 }
 
-const GpsLineState &GpsLine::state() {
+const SensorLineState &SensorLine::state() {
     state_.line.device = pty_ ? pty_->device() : QString();
     return state_;
 }

@@ -7,6 +7,7 @@
 #include <QStringList>
 
 #include <functional>
+#include <random>
 #include <vector>
 
 namespace hermes::simulator {
@@ -20,31 +21,41 @@ struct LineState {
 /// Error names what cannot be made.
 Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link);
 
-/// The line of the GPS receiver; bytes sent, and those that no program has read in time.
-struct GpsLineState {
+/// The line of a sensor; bytes sent, and those that no program has read in time.
+struct SensorLineState {
     LineState line;
     qint64 bytes = 0, unreadLost = 0;
 };
 
-/// The serial line of the simulated GPS receiver: a pseudo-terminal under a link that stays the same.
-class GpsLine {
+/// The serial line of a simulated sensor: a pseudo-terminal under a link that stays the same.
+class SensorLine {
 public:
-    /// Error names what cannot be made.
-    Result<void> open(const QString &link);
+    /// baud: a program that sets another one gets garbage, and its bytes do not arrive; 0: any will do.
+    /// patience_s: so long a program may be behind. received: what comes from the program.
+    Result<void> open(
+        const QString &link, int baud = 0, double patience_s = 0,
+        const std::function<void(const QByteArray &)> &received = [](const QByteArray &) {});
     void close() { pty_.reset(); }
 
-    /// Sends it. What no program has read is lost when a later message finds more than some seconds of it.
-    void send(const QByteArray &sentences);
+    /// Sends it. What no program has read is lost when a program is behind for too long.
+    void send(QByteArray bytes);
     /// As when the cable is pulled: device and link vanish. Put back, there is a new device under the link.
     void setPulled(bool pulled);
-    const GpsLineState &state();
+    const SensorLineState &state();
 
 private:
-    /// At 10 Hz it is 1.4 s, at 1 Hz it is 14 s.
+    /// More than so many bytes: a program is behind. Of a GPS receiver at 10 Hz it is 1.4 s.
     static constexpr qint64 maxUnread = 2048;
 
+    bool isGarbled() const { return baud_ > 0 && pty_->baud() != baud_; }
+
     std::shared_ptr<PtyInterface> pty_;
-    GpsLineState state_;
+    SensorLineState state_;
+    int baud_ = 0;
+    double patience_s_ = 0;
+    double behindSince_ = 0; ///< monotonic; of bytes that no program has read:
+    qint64 behind_ = 0;
+    std::minstd_rand garbage_;
 };
 
 /// The serial lines of the simulated motor controllers: pseudo-terminals under links that stay the same.

@@ -15,6 +15,7 @@ constexpr std::uint8_t floorIntensity = 40;
 constexpr std::uint8_t personIntensity = 60;
 constexpr int normalBits = 12; // a table that stays in the first cache
 constexpr std::size_t normals = 1 << normalBits;
+constexpr double halfSector = 0.05; // radians; single rays that follow one another lie in one
 
 struct Beam {
     double cosine;
@@ -136,14 +137,40 @@ void LidarModel::measure(int laser, Vector direction, velodyne::DataPacketWriter
     } else if (!meetsPerson && height + wall * beam.tangent > options_.wallHeight) {
         horizontal = vectorlib::noHit;
     }
-    double range = horizontal / beam.cosine;
+    const double range = measured(horizontal / beam.cosine);
+    packet.setReturn(block, laser, range > 0 ? velodyne::toDistanceCounts(range) : 0,
+                     range > 0 ? intensity : 0);
+}
+
+/// What the sensor tells of a range, 0 when nothing returns.
+double LidarModel::measured(double range) {
     if (range <= options_.maxRange)
         range += options_.sigma * noise();
     if (chance(options_.outliers))
         range *= std::uniform_real_distribution<double>(0, 2)(random_);
     const bool returns =
         range >= options_.minRange && range <= options_.maxRange && !chance(options_.dropouts);
-    packet.setReturn(block, laser, returns ? velodyne::toDistanceCounts(range) : 0, returns ? intensity : 0);
+    return returns ? range : 0;
+}
+
+void LidarModel::stand(const vectorlib::Pose2D &pose, const People &people) {
+    pose_ = pose;
+    people_ = &people;
+    sector_ = {0, 0};
+}
+
+double LidarModel::range(double direction) {
+    const double angle = pose_.theta + direction;
+    const Vector ray(std::cos(angle), std::sin(angle));
+    if (ray.dot(sector_) < std::cos(halfSector)) {
+        sector_ = ray;
+        const Vector aside = Vector(-ray.y, ray.x) * std::tan(halfSector);
+        selectWalls({pose_.x, pose_.y}, ray + aside, ray - aside);
+        selectPeople(*people_, {pose_.x, pose_.y}, ray + aside, ray - aside);
+    }
+    const double wall = options_.sensorHeight <= options_.wallHeight ? wallDistance(ray) : vectorlib::noHit;
+    const double person = options_.sensorHeight <= People::height ? personDistance(ray) : vectorlib::noHit;
+    return measured(std::min(wall, person));
 }
 
 } // namespace hermes::simulator

@@ -55,6 +55,11 @@ public:
     void fire(const vectorlib::Pose2D &pose, const People &people, double azimuth, double gap,
               velodyne::DataPacketWriter &packet, int block);
 
+    /// A level ray from the sensor's height: range() looks from here, as the people stand now.
+    void stand(const vectorlib::Pose2D &pose, const People &people);
+    /// With the noise; direction: radians from the heading, counter-clockwise. 0: nothing returns.
+    double range(double direction);
+
 private:
     using Vector = vectorlib::Vector2D<double>;
     struct Wall {
@@ -68,6 +73,7 @@ private:
     double personDistance(Vector direction) const;
     bool chance(double share);
     double noise();
+    double measured(double range);
     void measure(int laser, Vector direction, velodyne::DataPacketWriter &packet, int block);
 
     std::vector<vectorlib::LineSegment2D<double>> walls_;
@@ -78,6 +84,9 @@ private:
     int bitsLeft_ = 0;
     std::vector<Wall> inReach_;         ///< of the current firing
     std::vector<Vector> peopleInReach_; ///< relative to the sensor
+    vectorlib::Pose2D pose_;            ///< from which range() looks
+    const People *people_ = nullptr;
+    Vector sector_{0, 0}; ///< its middle, for which those in reach were selected
 };
 
 } // namespace hermes::simulator

@@ -62,9 +62,10 @@ std::int64_t utcNow_ns() {
 
 } // namespace
 
-PacketPump::PacketPump(TruthSink truth, SentenceSink gps)
+PacketPump::PacketPump(TruthSink truth, LineSink gps, LineSink scanner)
     : truth_(std::move(truth))
-    , gps_(std::move(gps)) {}
+    , gps_(std::move(gps))
+    , scanner_(std::move(scanner)) {}
 
 PacketPump::~PacketPump() {
     stop();
@@ -73,8 +74,10 @@ PacketPump::~PacketPump() {
 Outcome<void> PacketPump::start(const World &world, const Simulation::Options &options,
                                 const std::string &host, std::uint16_t port, std::uint16_t positionPort) {
     stop();
-    Outcome<void> opened = data_.open(host, port);
-    if (opened && positionPort > 0)
+    Outcome<void> opened;
+    if (port > 0)
+        opened = data_.open(host, port);
+    if (opened && port > 0 && positionPort > 0)
         opened = position_.open(host, positionPort);
     if (!opened)
         return opened;
@@ -82,7 +85,8 @@ Outcome<void> PacketPump::start(const World &world, const Simulation::Options &o
     random_.seed(std::minstd_rand::result_type(options.seed));
     counts_ = Counts();
     nextTruth_ns_ = simulation_.now_ns();
-    sincePosition_ = 0;
+    sincePosition_ = sinceScanner_ = 0;
+    scannerBytes_.clear();
     running_ = true;
     thread_ = std::thread([this] { run(); });
     return {};
@@ -130,6 +134,14 @@ void PacketPump::step() {
     }
     if (const std::string_view sentences = simulation_.sentences(); !sentences.empty())
         gps_(std::string(sentences));
+    scannerBytes_ += simulation_.scannerBytes();
+    if (++sinceScanner_ >= packetsPerScannerBytes && !scannerBytes_.empty()) {
+        scanner_(scannerBytes_);
+        scannerBytes_.clear();
+        sinceScanner_ = 0;
+    }
+    if (!data_.isOpen())
+        return simulation_.skip(1);
     const auto &packet = simulation_.nextPacket();
     send(data_, packet.data(), packet.size(), counts_.sent);
     if (++sincePosition_ < packetsPerPosition)

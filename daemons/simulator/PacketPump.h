@@ -49,18 +49,22 @@ public:
     };
     using TruthSink = std::function<void(const Simulation::Truth &)>;
 
-    using SentenceSink = std::function<void(const std::string &)>;
+    using LineSink = std::function<void(const std::string &)>;
 
-    /// Both are called in the pump's thread: truth each 20 ms of simulated time, gps with what the GPS
-    /// receiver sends.
+    /// All are called in the pump's thread: truth each 20 ms of simulated time, the others with what GPS
+    /// receiver and scanner send.
     explicit PacketPump(
-        TruthSink truth, SentenceSink gps = [](const std::string &) {});
+        TruthSink truth, LineSink gps = [](const std::string &) {},
+        LineSink scanner = [](const std::string &) {});
     ~PacketPump();
 
     /// As of the VLP-16 and VLS-128; the manual of the HDL-32E does not tell.
     static constexpr int packetsPerPosition = 14;
+    /// Times of packets after which the scanner's bytes go on: 2.2 ms.
+    static constexpr int packetsPerScannerBytes = 4;
 
-    /// Opens the sockets and starts. host is an IPv4 address; positionPort 0: no position packets.
+    /// Opens the sockets and starts. host is an IPv4 address; port 0: the lidar is off; positionPort 0: no
+    /// position packets.
     Outcome<void> start(const World &world, const Simulation::Options &options, const std::string &host,
                         std::uint16_t port, std::uint16_t positionPort = 0);
     void stop();
@@ -77,7 +81,7 @@ private:
     void send(UdpSender &sender, const std::uint8_t *bytes, std::size_t size, std::uint64_t &sent);
 
     TruthSink truth_;
-    SentenceSink gps_;
+    LineSink gps_, scanner_;
     UdpSender data_, position_;
     std::thread thread_;
     std::atomic<bool> running_{false};
@@ -88,7 +92,8 @@ private:
     std::minstd_rand random_;
     Counts counts_;
     std::int64_t nextTruth_ns_ = 0;
-    int sincePosition_ = 0; ///< packets
+    int sincePosition_ = 0, sinceScanner_ = 0; ///< packets
+    std::string scannerBytes_;
 };
 
 } // namespace hermes::simulator

@@ -25,6 +25,9 @@ Simulation::Simulation(const World &world, const Options &options, std::int64_t 
     , people_(world.people, options.radius)
     , lidar_(wallsOf(world), options.lidar, options.seed)
     , gps_(options.gps)
+    , scannerRays_(wallsOf(world), options.lidar, options.seed + 1)
+    , scanner_(makeScanner(options.scannerModel, options.scanner))
+    , scannerPose_(options.scannerPose)
     , gap_(options.rpm / 60 * 360 * firingPeriod)
     , lidarGps_(options.lidarGps)
     , lidarClock_s_(options.lidarClock_s)
@@ -84,6 +87,13 @@ std::array<std::uint8_t, velodyne::positionPacketSize> Simulation::positionPacke
     position_.pps = lidarGps_ ? gps_.pps() : velodyne::Pps::Absent;
     position_.nmea = lidarGps_ ? gps_.lidarSentence() : std::string();
     return encodePosition(position_);
+}
+
+std::string_view Simulation::scannerBytes() {
+    if (!scanner_)
+        return {};
+    scannerRays_.stand(pose() * scannerPose_, people_);
+    return scanner_->take(now_ns(), [this](double angle) { return scannerRays_.range(angle); });
 }
 
 void Simulation::skip(std::uint64_t packets) {

@@ -4,6 +4,7 @@
 #include "daemons/simulator/GpsModel.h"
 #include "daemons/simulator/LidarModel.h"
 #include "daemons/simulator/PosePath.h"
+#include "daemons/simulator/ScannerEmulator.h"
 
 namespace hermes::simulator {
 
@@ -24,6 +25,9 @@ public:
         LidarModel::Options lidar;
         GpsModel::Options gps;
         Drivetrain::Options drivetrain;
+        std::string scannerModel; ///< of a 2D scanner besides; empty: none
+        Pose2D scannerPose;       ///< on the robot
+        ScannerOptions scanner;
         std::uint64_t seed = 1;
     };
     /// Where the robot truly is.
@@ -58,6 +62,13 @@ public:
     }
     LidarModel &lidar() { return lidar_; }
     GpsModel &gps() { return gps_; }
+    /// None where there is none.
+    ScannerEmulator *scanner() { return scanner_.get(); }
+    /// Changes what lidar and scanner measure.
+    void changeLidars(const std::function<void(LidarModel &)> &change) {
+        change(lidar_);
+        change(scannerRays_);
+    }
 
     /// The packet of the next twelve firings, each measured from where the robot is at its own time.
     const std::array<std::uint8_t, velodyne::packetSize> &nextPacket();
@@ -69,6 +80,8 @@ public:
             return {};
         return gps_.take(now_ns(), pose(), placed_ ? rolling_ : follower_.twist());
     }
+    /// What the scanner has sent since it was last asked; valid until the next call.
+    std::string_view scannerBytes();
     /// Time passes without packets being made.
     void skip(std::uint64_t packets);
 
@@ -95,6 +108,9 @@ private:
     People people_;
     LidarModel lidar_;
     GpsModel gps_;
+    LidarModel scannerRays_;
+    std::unique_ptr<ScannerEmulator> scanner_;
+    Pose2D scannerPose_;
     velodyne::PositionPacket position_;
     velodyne::DataPacketWriter packet_;
     double gap_ = 0; ///< degrees a firing

@@ -14,8 +14,8 @@ namespace hermes::simulator {
 namespace {
 
 constexpr auto healthItem = "lidar";
-const QStringList takenAtTheStart{"listen",      "insecure",     "files.folders", "world",
-                                  "motors.link", "motors.link2", "gps.link"};
+const QStringList takenAtTheStart{"listen",       "insecure", "files.folders", "world",       "motors.link",
+                                  "motors.link2", "gps.link", "scanner.model", "scanner.link"};
 constexpr qint64 largestWorldFile = 16 << 20; // some 300,000 edges
 
 TruthMessage messageOf(const Simulation::Truth &truth) {
@@ -38,7 +38,7 @@ QString toText(LidarFault::Kind kind) {
 Simulator::Simulator()
     : Daemon({"simulator", "Simulator",
               "A simulated robot in a world of line segments: an HDL-32E that sends real packets over UDP, "
-              "two RoboClaws that drive it and a GPS receiver on pseudo-terminals"})
+              "two RoboClaws that drive it, a GPS receiver and a 2D laser scanner on pseudo-terminals"})
     , pump_(
           [this](const Simulation::Truth &truth) {
               QMetaObject::invokeMethod(
@@ -47,6 +47,11 @@ Simulator::Simulator()
           [this](const std::string &sentences) {
               QMetaObject::invokeMethod(
                   this, [this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); },
+                  Qt::QueuedConnection);
+          },
+          [this](const std::string &bytes) {
+              QMetaObject::invokeMethod(
+                  this, [this, bytes] { scannerLine_.send(QByteArray::fromStdString(bytes)); },
                   Qt::QueuedConnection);
           })
     , lines_([this](int line, const QByteArray &bytes, double now) {
@@ -145,7 +150,8 @@ Result<void> Simulator::start() {
     QStringList links{wanted.link};
     if (!wanted.link2.isEmpty())
         links.append(wanted.link2);
-    for (const Result<void> &opened : {lines_.open(links), gpsLine_.open(wanted.gpsLink)}) {
+    for (const Result<void> &opened :
+         {lines_.open(links), gpsLine_.open(wanted.gpsLink), openScanner(wanted)}) {
         if (!opened)
             return opened;
     }
@@ -164,11 +170,11 @@ void Simulator::settingsChanged(const QStringList &paths) {
         for (const QString &path : paths) {
             const auto value = [&] { return settings().number(path); };
             if (path == "lidar.sigma_m")
-                simulation.lidar().setSigma(value());
+                simulation.changeLidars([&](LidarModel &lidar) { lidar.setSigma(value()); });
             else if (path == "lidar.dropouts")
-                simulation.lidar().setDropouts(value());
+                simulation.changeLidars([&](LidarModel &lidar) { lidar.setDropouts(value()); });
             else if (path == "lidar.outliers")
-                simulation.lidar().setOutliers(value());
+                simulation.changeLidars([&](LidarModel &lidar) { lidar.setOutliers(value()); });
             else if (path == "gps.sigma_m")
                 simulation.gps().setSigma(value());
         }
@@ -238,12 +244,14 @@ Result<void> Simulator::setNoise(const Call &call) {
     if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
     pump_.with([&](Simulation &simulation) {
-        if (call.has("sigma_m"))
-            simulation.lidar().setSigma(call.number("sigma_m"));
-        if (call.has("dropouts"))
-            simulation.lidar().setDropouts(call.number("dropouts"));
-        if (call.has("outliers"))
-            simulation.lidar().setOutliers(call.number("outliers"));
+        simulation.changeLidars([&](LidarModel &lidar) {
+            if (call.has("sigma_m"))
+                lidar.setSigma(call.number("sigma_m"));
+            if (call.has("dropouts"))
+                lidar.setDropouts(call.number("dropouts"));
+            if (call.has("outliers"))
+                lidar.setOutliers(call.number("outliers"));
+        });
         if (call.has("gps_sigma_m"))
             simulation.gps().setSigma(call.number("gps_sigma_m"));
     });
@@ -255,6 +263,8 @@ Result<void> Simulator::setFault(const Call &call) {
         return invalidParams({{"kind", call.value("kind"), "a fault of this device"}}, wrong);
     if (call.text("device") == "gps")
         return setGpsFault(call);
+    if (call.text("device") == "scanner")
+        return setScannerFault(call);
     if (call.text("device") != "lidar")
         return setMotorFault(call);
     LidarFault fault;
@@ -283,9 +293,12 @@ SimulatorState Simulator::state() {
         state.touching = truth.touching;
         state.motors = motorState(simulation.drivetrain());
         state.lidar = simulation.lidar().options();
+        state.scanner.revolutions = simulation.scanner() ? simulation.scanner()->revolutions() : 0;
     });
     state.motors.lines = lines_.state();
     state.gps = gpsLine_.state();
+    state.scanner.model = scannerModel_;
+    state.scanner.line = scannerLine_.state();
     const LidarFault fault = pump_.fault();
     state.fault = {toText(fault.kind), fault.share};
     state.packets = pump_.counts();

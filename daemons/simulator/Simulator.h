@@ -8,7 +8,9 @@
 namespace hermes::simulator {
 
 /// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, two
-/// RoboClaws that drive it and a GPS receiver on pseudo-terminals.
+/// RoboClaws that drive it, a GPS receiver and a 2D laser scanner on pseudo-terminals.
+struct SimulatorSettings;
+
 class Simulator : public Daemon {
 public:
     Simulator();
@@ -19,6 +21,7 @@ protected:
         lines_.close();
         pump_.stop();
         gpsLine_.close();
+        scannerLine_.close();
     }
     void settingsChanged(const QStringList &paths) override;
 
@@ -35,6 +38,8 @@ private:
     Result<void> setFault(const Call &call);
     Result<void> setMotorFault(const Call &call);
     Result<void> setGpsFault(const Call &call);
+    Result<void> openScanner(const SimulatorSettings &wanted);
+    Result<void> setScannerFault(const Call &call);
     DrivetrainState motorState(Drivetrain &drivetrain) const;
     SimulatorState state();
     void publishTruth(const Simulation::Truth &truth);
@@ -43,7 +48,8 @@ private:
     PacketPump pump_;
     PastFaults faults_;
     MotorLines lines_;
-    GpsLine gpsLine_;
+    SensorLine gpsLine_, scannerLine_;
+    QString scannerModel_ = "none";
     World world_;
     QString worldPath_;
 };

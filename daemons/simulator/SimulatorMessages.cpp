@@ -5,6 +5,10 @@
 
 namespace hermes::simulator {
 
+QStringList scannerFaultKinds() {
+    return {"silence", "corrupt", "loss", "stalled", "health", "held", "pulled"};
+}
+
 namespace {
 
 constexpr std::array<const char *, 4> wheels{"front_left", "front_right", "rear_left", "rear_right"};
@@ -20,6 +24,7 @@ struct Device {
 };
 const QList<Device> devices{{"lidar", {"silence", "loss"}},
                             {"gps", {"silence", "no_fix", "corrupt", "pulled"}},
+                            {"scanner", scannerFaultKinds()},
                             {"line1", {"pulled", "adapter"}},
                             {"line2", {"pulled", "adapter"}},
                             {"controller1", ofController},
@@ -97,12 +102,20 @@ Fields<LineState> fieldsOf(Of<LineState>) {
         .add("device", &LineState::device, "Empty while it is pulled");
 }
 
-Fields<GpsLineState> fieldsOf(Of<GpsLineState>) {
-    using G = GpsLineState;
+Fields<SensorLineState> fieldsOf(Of<SensorLineState>) {
+    using G = SensorLineState;
     return Fields<G>()
         .include(&G::line)
         .add("bytes", &G::bytes, "Sent", "byte")
         .add("unread_lost", &G::unreadLost, "That no program has read in time", "byte");
+}
+
+Fields<ScannerState> fieldsOf(Of<ScannerState>) {
+    using S = ScannerState;
+    return Fields<S>()
+        .add("model", &S::model, "none, or its model")
+        .include(&S::line)
+        .add("revolutions", &S::revolutions, "Of its head");
 }
 
 Fields<DrivetrainState> fieldsOf(Of<DrivetrainState>) {
@@ -155,6 +168,7 @@ Fields<SimulatorState> fieldsOf(Of<SimulatorState>) {
         .add("touching", &S::touching, "A wall or a person holds it")
         .add("motors", &S::motors, "What drives it")
         .add("gps", &S::gps, "Line of the GPS receiver")
+        .add("scanner", &S::scanner, "The 2D laser scanner and its line")
         .include(&S::lidar)
         .add("fault", &S::fault, "Of the lidar")
         .include(&S::packets);

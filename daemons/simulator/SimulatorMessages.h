@@ -10,12 +10,15 @@
 
 namespace hermes::simulator {
 
-/// What sim.fault can make fail: the lidar, the lines and controllers of the motors, the battery, the wheels.
+/// What sim.fault can make fail: the lidar, the other sensors, the lines and controllers of the motors, the
+/// battery, the wheels.
 QStringList faultDevices();
 /// All that any of them can do wrong, with "none".
 QStringList faultKinds();
 /// Why the device has no such fault, or an empty text.
 QString faultMismatch(const QString &device, const QString &kind);
+/// Of the scanner: those of ScannerEmulator::Fault in their order, without None, and "pulled".
+QStringList scannerFaultKinds();
 /// Of a wheel by its name, in the order of WheelBase; -1 for other devices.
 int wheelNumber(const QString &device);
 
@@ -46,6 +49,13 @@ struct FaultState {
     double share = 0;
 };
 
+/// The simulated 2D scanner.
+struct ScannerState {
+    QString model = "none";
+    SensorLineState line;
+    quint64 revolutions = 0;
+};
+
 /// What sim.state gives.
 struct SimulatorState {
     QString world;
@@ -55,7 +65,8 @@ struct SimulatorState {
     double progress = 0;
     bool driving = false, finished = false, placed = false, touching = false;
     DrivetrainState motors;
-    GpsLineState gps;
+    SensorLineState gps;
+    ScannerState scanner;
     LidarModel::Options lidar;
     FaultState fault;
     PacketPump::Counts packets;

@@ -19,7 +19,7 @@ SimulatorSettings::SimulatorSettings() {
     add("robot.autostart", autostart, "Follow the path at once, without sim.drive");
     group("Lidar", Applies::OnRestart);
     add("lidar.host", lidarHost, "IPv4 address that packets are sent to");
-    add("lidar.port", lidarPort, "UDP port that packets are sent to").range(1, 65535);
+    add("lidar.port", lidarPort, "UDP port that packets are sent to; 0: the lidar is off").range(0, 65535);
     add("lidar.position_port", positionPort, "UDP port that position packets are sent to; 0: none are")
         .range(0, 65535);
     add("lidar.rpm", robot.rpm, "Turns of the head a minute", "1/min", 300, 1200);
@@ -38,6 +38,7 @@ SimulatorSettings::SimulatorSettings() {
         .range(0, 1);
     addMotors();
     addGps();
+    addScanner();
 }
 
 void SimulatorSettings::addMotors() {
@@ -90,13 +91,30 @@ void SimulatorSettings::addGps() {
     add("gps.sigma_m", gps.sigma, "Standard deviation of each coordinate of a fix", "m", 0, 1000);
 }
 
+void SimulatorSettings::addScanner() {
+    QStringList models{"none"};
+    for (const ScannerModel &model : scannerModels())
+        models.append(model.name);
+    group("Scanner", Applies::OnRestart);
+    add("scanner.model", scannerModel, "A 2D laser scanner besides, on a pseudo-terminal").choices(models);
+    add("scanner.link", scannerLink,
+        "Link to the pseudo-terminal of the scanner; none: sim.state tells its name");
+    add("scanner.x_m", simulation.scannerPose.x, "Where it is on the robot, forward", "m", -10, 10);
+    add("scanner.y_m", simulation.scannerPose.y, "Where it is on the robot, to the left", "m", -10, 10);
+    add("scanner.theta_rad", simulation.scannerPose.theta, "Direction of its zero, counter-clockwise", "rad",
+        -6.3, 6.3);
+    add("scanner.drift_ppm", simulation.scanner.drift_ppm, "How much faster its clock goes, if it has one",
+        "ppm", -1000, 1000);
+}
+
 SimulatorSettings::SimulatorSettings(const QJsonObject &settings)
     : SimulatorSettings() {
     read(settings);
     Drivetrain::Options &drivetrain = simulation.drivetrain;
     if (layout == "differential")
         drivetrain.base.kind = WheelBase::Kind::Differential;
-    drivetrain.seed = simulation.gps.seed = simulation.seed;
+    drivetrain.seed = simulation.gps.seed = simulation.scanner.seed = simulation.seed;
+    simulation.scannerModel = scannerModel.toStdString();
     drivetrain.controller[1].motor = drivetrain.controller[0].motor;
     for (std::size_t i = 0; i < drivetrain.controller.size(); ++i) {
         drivetrain.controller[i].setFirmware(firmware.toStdString());

@@ -12,8 +12,9 @@ struct SimulatorSettings : SettingsTable {
     bool autostart = false;
     QString lidarHost = "127.0.0.1";
     std::uint16_t lidarPort = velodyne::dataPort, positionPort = velodyne::positionPort;
-    QString link, link2, gpsLink; ///< to pseudo-terminals; empty: none
-    QString firmware = "4.2.8";   ///< of both motor controllers
+    QString link, link2, gpsLink, scannerLink; ///< to pseudo-terminals; empty: none
+    QString scannerModel = "none";
+    QString firmware = "4.2.8"; ///< of both motor controllers
     QString layout = "mecanum";
 
     SimulatorSettings();
@@ -23,6 +24,7 @@ struct SimulatorSettings : SettingsTable {
 private:
     void addMotors();
     void addGps();
+    void addScanner();
 };
 
 } // namespace hermes::simulator

@@ -156,7 +156,7 @@ private Q_SLOTS:
     }
 
     void sentencesThatNobodyReadsAreLost() {
-        GpsLine line;
+        SensorLine line;
         QVERIFY(line.open("").ok());
         QFile near(line.state().line.device);
         QVERIFY(near.open(QIODevice::ReadOnly | QIODevice::Unbuffered));
@@ -178,7 +178,7 @@ private Q_SLOTS:
     }
 
     void claimOfAKilledProgramIsDropped() {
-        GpsLine line;
+        SensorLine line;
         QVERIFY(line.open("").ok());
         const QByteArray device = line.state().line.device.toLocal8Bit();
         const int claimed = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);

@@ -1,0 +1,249 @@
+#include "daemons/simulator/RplidarCapsules.h"
+#include "daemons/simulator/ScannerEmulator.h"
+#include "vectorlib/geometry/Angle.h"
+
+#include <cmath>
+
+namespace hermes::simulator {
+
+namespace {
+
+struct Mode {
+    std::uint8_t packet; ///< type of its answer
+    double sample_us;
+    const char *name;
+};
+
+struct Type {
+    const char *name;
+    std::uint8_t model;
+    bool motorByPwm; ///< its motor stands until A5 F0
+    bool motorByRpm; ///< A5 A8
+    unsigned typicalMode;
+    std::vector<Mode> modes; ///< 0 is what 20 starts; 1 is the one of the legacy express request
+};
+
+// As fast as the line carries them. The A1's motor hangs on DTR, which a pseudo-terminal has not: it turns.
+const std::vector<Type> types{
+    {"rplidar-a1",
+     0x18,
+     false,
+     false,
+     2,
+     {{0x81, 508, "Standard"}, {0x82, 254, "Express"}, {0x84, 125, "Sensitivity"}}},
+    {"rplidar-a3",
+     0x31,
+     true,
+     false,
+     2,
+     {{0x81, 252, "Standard"}, {0x82, 125, "Express"}, {0x84, 62.5, "Sensitivity"}}},
+    {"rplidar-c1", 0x41, true, false, 0, {{0x81, 200, "Standard"}, {0x85, 200, "DenseBoost"}}},
+    {"rplidar-s2",
+     0x71,
+     false,
+     true,
+     1,
+     {{0x81, 100, "Standard"}, {0x85, 31.25, "DenseBoost"}, {0x86, 31.25, "UltraDense"}}},
+};
+
+constexpr double fullPwm = 660, fullRpm = 600;
+
+class RplidarEmulator : public ScannerEmulator {
+public:
+    RplidarEmulator(const ScannerModel &model, const ScannerOptions &options)
+        : ScannerEmulator(model, options) {
+        for (const Type &type : types) {
+            if (model.name == std::string_view(type.name))
+                type_ = &type;
+        }
+        setSpeed(type_->motorByPwm ? 0 : model.turns_hz);
+    }
+
+protected:
+    void hear(std::uint8_t byte, std::int64_t now_ns) override;
+    bool isScanning() const override { return packet_ != 0 && (turns() || forced_) && !isBroken(); }
+    void sample(std::int64_t time_ns, const Measure &measure) override;
+    void resume() override { scan(type_->modes[0]); }
+
+private:
+    void obey(std::uint8_t request, std::string_view payload);
+    void answer(std::uint8_t type, std::string_view bytes, bool goesOn = false);
+    void tellConf(std::string_view payload);
+    void scan(const Mode &mode);
+    RplidarPoint look(const Measure &measure) const;
+    void sendCapsule(std::int64_t time_ns);
+
+    const Type *type_ = nullptr;
+    std::string request_;
+    std::int64_t heard_ns_ = 0;
+    std::uint8_t packet_ = 0; ///< type of the packets that it sends
+    RplidarCapsule capsule_{};
+    bool forced_ = false; ///< scans even if the head stands
+    bool begins_ = false; ///< no capsule was sent yet
+    double start_ = 0;    ///< turn of the first sample of the capsule
+    double slant_ = 0;    ///< of the sample before; degrees
+    std::vector<RplidarPoint> points_;
+};
+
+unsigned number(std::string_view bytes, std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = 0; i < 2 && at + i < bytes.size(); ++i)
+        value |= unsigned(std::uint8_t(bytes[at + i])) << 8 * i;
+    return value;
+}
+
+void RplidarEmulator::hear(std::uint8_t byte, std::int64_t now_ns) {
+    heard_ns_ = now_ns;
+    request_.push_back(char(byte));
+    if (request_[0] != '\xA5')
+        return request_.clear();
+    if (request_.size() < 2)
+        return;
+    const std::uint8_t request = std::uint8_t(request_[1]);
+    if (request < 0x80) {
+        request_.clear();
+        return obey(request, {});
+    }
+    if (request_.size() < 3 || request_.size() < 4 + std::size_t(std::uint8_t(request_[2])))
+        return;
+    std::uint8_t sum = 0;
+    for (const char each : request_)
+        sum = std::uint8_t(sum ^ std::uint8_t(each));
+    const std::string whole = std::move(request_);
+    request_.clear();
+    if (sum == 0)
+        obey(request, std::string_view(whole).substr(3, whole.size() - 4));
+}
+
+void RplidarEmulator::obey(std::uint8_t request, std::string_view payload) {
+    const std::vector<Mode> &modes = type_->modes;
+    if (request == 0xF0 && type_->motorByPwm)
+        return setSpeed(model().turns_hz * number(payload, 0) / fullPwm);
+    if (request == 0xA8 && type_->motorByRpm)
+        return setSpeed(model().turns_hz * number(payload, 0) / fullRpm);
+    if (request == 0xF0 || request == 0xA8)
+        return;
+    packet_ = 0;
+    std::string value;
+    if (request == 0x40) {
+        mend();
+        unsend();
+        send("RP LIDAR System.\r\nFirmware Ver 1.29, HW Ver 7\r\n", heard_ns_);
+    } else if (request == 0x50) {
+        value = {char(type_->model), 29, 1, 7}; // model, firmware 1.29, hardware
+        answer(0x04, value + "0123456789ABCDEF");
+    } else if (request == 0x52) {
+        value = {char(isBroken() ? 2 : 0), char(isBroken() ? 4 : 0), 0};
+        answer(0x06, value);
+    } else if (request == 0x59) {
+        putU16(value, unsigned(std::lround(modes[0].sample_us)));
+        putU16(value, unsigned(std::lround(modes[1].sample_us)));
+        answer(0x15, value);
+    } else if (request == 0x84) {
+        tellConf(payload);
+    } else if (request == 0xFF) {
+        putU32(value, type_->motorByPwm);
+        answer(0xFF, value);
+    } else if ((request == 0x20 || request == 0x21) && !isBroken()) {
+        answer(0x81, {}, true);
+        scan(modes[0]);
+        forced_ = request == 0x21;
+    } else if (request == 0x82 && payload.size() == 5 && !isBroken()) {
+        const std::size_t mode = std::uint8_t(payload[0]);
+        if (mode < modes.size()) {
+            answer(modes[mode > 0 ? mode : 1].packet, {}, true);
+            scan(modes[mode > 0 ? mode : 1]);
+        }
+    }
+}
+
+void RplidarEmulator::answer(std::uint8_t type, std::string_view bytes, bool goesOn) {
+    std::string head = "\xA5\x5A";
+    putU32(head, std::uint32_t(goesOn ? rplidarCapsule(type).bytes | 1U << 30 : bytes.size()));
+    head.push_back(char(type));
+    send(head.append(bytes), heard_ns_);
+}
+
+void RplidarEmulator::tellConf(std::string_view payload) {
+    const unsigned type = number(payload, 0), wanted = number(payload, 4);
+    std::string value(payload.substr(0, 4));
+    const bool ofMode = type == 0x71 || type == 0x74 || type == 0x75 || type == 0x7F;
+    if (payload.size() < 4 || (ofMode && wanted >= type_->modes.size()))
+        return;
+    const Mode &mode = type_->modes[ofMode ? wanted : 0];
+    if (type == 0x70)
+        putU16(value, unsigned(type_->modes.size()));
+    else if (type == 0x7C)
+        putU16(value, type_->typicalMode);
+    else if (type == 0x71)
+        putU32(value, std::uint32_t(std::lround(mode.sample_us * 256)));
+    else if (type == 0x74)
+        putU32(value, std::uint32_t(std::lround(model().range_m * 256)));
+    else if (type == 0x75)
+        value.push_back(char(mode.packet));
+    else if (type == 0x7F)
+        value.append(mode.name).push_back('\0');
+    else if (type == 0x01) {
+        putU16(value, unsigned(fullRpm));
+        putU16(value, unsigned(fullPwm));
+    }
+    answer(0x20, value);
+}
+
+void RplidarEmulator::scan(const Mode &mode) {
+    packet_ = mode.packet;
+    capsule_ = rplidarCapsule(packet_);
+    setPeriod(mode.sample_us * 1000);
+    begins_ = true;
+    forced_ = false;
+    points_.clear();
+}
+
+/// Where the ray goes depends on the range that it finds: on that of the sample before.
+RplidarPoint RplidarEmulator::look(const Measure &measure) const {
+    RplidarPoint point;
+    point.before_deg = slant_;
+    const double angle_deg = 360 * turn() - point.before_deg;
+    point.mm = range_mm(measure, -angle_deg * vectorlib::pi / 180, packet_ == 0x82 ? 0x3FFF : 65535);
+    return point;
+}
+
+void RplidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
+    // The last ranges of a packet 84 begin from the first one of the next.
+    const bool needsNext = packet_ == 0x84;
+    // A packet leaves one and a half samples after its last one.
+    const std::int64_t ready_ns = time_ns + std::int64_t((needsNext ? 0.5 : 1.5) * period_ns());
+    if (packet_ == 0x81) {
+        const int mm = range_mm(measure, -2 * vectorlib::pi * turn(), 0x3FFF);
+        std::string packet(1, char((mm > 0 ? rplidarQuality : 0) << 2 | (isFirst() ? 1 : 2)));
+        putU16(packet, unsigned(std::lround(turn() * 360 * 64) % (360 * 64)) << 1 | 1);
+        putU16(packet, unsigned(mm) * 4);
+        return send(packet, ready_ns);
+    }
+    if (points_.empty())
+        start_ = turn();
+    points_.push_back(look(measure));
+    const int mm = points_.back().mm;
+    slant_ = rplidarSlant_deg(packet_, mm);
+    if (points_.size() < capsule_.samples + needsNext)
+        return;
+    sendCapsule(ready_ns);
+    points_.erase(points_.begin(), points_.begin() + std::ptrdiff_t(capsule_.samples));
+    start_ = turn(); // of the next one, where its first sample was taken
+}
+
+void RplidarEmulator::sendCapsule(std::int64_t time_ns) {
+    const unsigned angle = unsigned(std::lround(start_ * 360 * 64) % (360 * 64)); // 1/64 degree
+    send(encodeRplidar(packet_, angle | (begins_ ? 0x8000 : 0), std::uint32_t(clock_ms(time_ns) * 1000),
+                       points_),
+         time_ns);
+    begins_ = false;
+}
+
+} // namespace
+
+std::unique_ptr<ScannerEmulator> makeRplidar(const ScannerModel &model, const ScannerOptions &options) {
+    return std::make_unique<RplidarEmulator>(model, options);
+}
+
+} // namespace hermes::simulator
