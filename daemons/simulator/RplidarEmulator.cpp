@@ -63,7 +63,10 @@ protected:
     void hear(std::uint8_t byte, std::int64_t now_ns) override;
     bool isScanning() const override { return packet_ != 0 && (turns() || forced_) && !isBroken(); }
     void sample(std::int64_t time_ns, const Measure &measure) override;
-    void resume() override { scan(type_->modes[0]); }
+    void resume() override {
+        setSpeed(model().turns_hz);
+        scan(type_->modes[0]);
+    }
 
 private:
     void obey(std::uint8_t request, std::string_view payload);

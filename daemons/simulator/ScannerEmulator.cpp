@@ -18,13 +18,19 @@ constexpr int heldBytes = 7; // no packet has so few, but those of 5: it ends in
 const std::vector<ScannerModel> &scannerModels() {
     // name, family, baud, points a second, turns a second, range
     static const std::vector<ScannerModel> models{
-        {"rplidar-a1", makeRplidar, 115200, 8000, 10, 12},
+        {"rplidar-a1", makeRplidar, 115200, 8000, 10, 12}, //
         {"rplidar-a3", makeRplidar, 256000, 16000, 10, 25},
         {"rplidar-c1", makeRplidar, 460800, 5000, 10, 12},
         {"rplidar-s2", makeRplidar, 1000000, 32000, 10, 30},
         {"ld06", makeLdrobot, 230400, 4500, 10, 12},
         {"ld19", makeLdrobot, 230400, 4500, 10, 12},
         {"stl27l", makeLdrobot, 921600, 21600, 10, 25},
+        {"ydlidar-x2", makeYdlidar, 115200, 3000, 7, 8},
+        {"ydlidar-x4", makeYdlidar, 128000, 5000, 7, 10},
+        {"ydlidar-tmini", makeYdlidar, 230400, 4000, 10, 12},
+        {"ydlidar-tg30", makeYdlidar, 512000, 20000, 10, 30},
+        {"hokuyo-urg04lx", makeHokuyo, 0, 10240, 10, 5.6},
+        {"hokuyo-ust10lx", makeHokuyo, 0, 57600, 40, 10},
     };
     return models;
 }

@@ -121,5 +121,7 @@ void putU32(std::string &bytes, std::uint32_t value);
 // The families.
 std::unique_ptr<ScannerEmulator> makeRplidar(const ScannerModel &model, const ScannerOptions &options);
 std::unique_ptr<ScannerEmulator> makeLdrobot(const ScannerModel &model, const ScannerOptions &options);
+std::unique_ptr<ScannerEmulator> makeYdlidar(const ScannerModel &model, const ScannerOptions &options);
+std::unique_ptr<ScannerEmulator> makeHokuyo(const ScannerModel &model, const ScannerOptions &options);
 
 } // namespace hermes::simulator
