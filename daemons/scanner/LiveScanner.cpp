@@ -62,10 +62,10 @@ void LiveScanner::open(const scan::ScannerModel &model) {
     port_.reset();
     reader_ = std::make_unique<ScanReader>(model, sink_);
     openedMono_ = 0;
-    InterfaceUrl url = *InterfaceUrl::parse(address_);
+    const InterfaceUrl url = *InterfaceUrl::parse(address_);
+    url_ = address_;
     if (url.scheme == QStringLiteral("serial") && url.option("baud").isEmpty())
-        url.options.insert("baud", QString::number(model.baud));
-    url_ = url.toString();
+        url_ += QString(address_.contains('?') ? "&baud=%1" : "?baud=%1").arg(model.baud);
     const auto filled = [this] {
         QMetaObject::invokeMethod(
             this, [this] { this->filled(); }, Qt::QueuedConnection);
@@ -78,10 +78,10 @@ void LiveScanner::open(const scan::ScannerModel &model) {
 }
 
 void LiveScanner::tryNext() {
-    if (tried_.size() >= int(candidates_.size()))
-        tried_.clear();
     tried_.append(QString("%1 at %2 baud").arg(reader_->model().title).arg(reader_->model().baud));
     candidate_ = (candidate_ + 1) % candidates_.size();
+    if (candidate_ == 0)
+        inVain_ = std::exchange(tried_, {});
     stop();
     open(*candidates_[candidate_]);
     start();
@@ -110,7 +110,6 @@ void LiveScanner::step() {
     const bool isOneWay = reader_->model().isOneWay;
     if (isOneWay ? protocol.counts().packets >= enoughPackets : !protocol.identity().serial.empty()) {
         isFound_ = true;
-        tried_.clear();
     } else if (now.mono() - openedMono_ > (isOneWay ? listening_s : asking_s)) {
         tryNext();
     }

@@ -28,8 +28,8 @@ public:
     const ScanReader &reader() const { return *reader_; }
     /// It is known which scanner it is.
     bool isFound() const { return isFound_; }
-    /// Which were tried in vain, in a row.
-    const QStringList &tried() const { return tried_; }
+    /// Which were tried in vain, if that were all.
+    const QStringList &inVain() const { return inVain_; }
     PortThread::State port() const { return port_->state(); }
     QString url() const { return url_; } ///< with the baud rate
 
@@ -52,7 +52,7 @@ private:
     QTimer timer_;
     std::atomic<bool> isFound_{false};
     double openedMono_ = 0; ///< the line was, for this one; 0: it is not open
-    QStringList tried_;
+    QStringList tried_, inVain_;
 };
 
 } // namespace hermes::scanner

@@ -36,6 +36,7 @@ Scanner::Scanner()
     declareSettings();
     declareTopics();
     declareCommands();
+    health().provide("scanner", [this] { updateHealth(); });
     connect(&second_, &QTimer::timeout, this, &Scanner::tick);
     retry_.setSingleShot(true);
     connect(&retry_, &QTimer::timeout, this, &Scanner::processReplay);
@@ -104,7 +105,7 @@ void Scanner::openLive() {
     replayed_.reset();
     replayEnd_.reset();
     if (live_)
-        source_.opened(State::Live, live_->url());
+        source_.opened(State::Live, settings().text("scanner.url"));
 }
 
 Result<void> Scanner::openRecording(const Call &call, const StoredRecording &stored) {
@@ -236,17 +237,17 @@ std::pair<HealthLevel, QString> Scanner::sensorHealth() {
         return {HealthLevel::Warn, "scanner.url does not tell where a scanner is"};
     const PortThread::State port = live_->port();
     const ScanReader &reader = live_->reader();
-    const QString name = QString("%1 on %2").arg(reader.model().title, live_->url());
+    const auto device = known(reader.protocol().identity().model);
+    const QString name = QString("%1 on %2").arg(device.value_or(reader.model().title), live_->url());
     if (port.carrier != Interface::State::Open && port.reason.isEmpty())
         return {HealthLevel::Warn, live_->url() + ": it is being opened"};
     if (port.carrier != Interface::State::Open)
         return {HealthLevel::Failed, port.reason};
+    if (!live_->isFound() && live_->inVain().isEmpty())
+        return {HealthLevel::Warn, "looking for a scanner on " + settings().text("scanner.url")};
     if (!live_->isFound())
-        return {live_->tried().isEmpty() ? HealthLevel::Warn : HealthLevel::Failed,
-                QString("looking for a scanner on %1, now for a %2%3")
-                    .arg(live_->url(), reader.model().title,
-                         live_->tried().isEmpty() ? QString()
-                                                  : "; there was none of: " + live_->tried().join(", "))};
+        return {HealthLevel::Failed, QString("on %1 there is none of: %2; it is looked for on and on")
+                                         .arg(settings().text("scanner.url"), live_->inVain().join(", "))};
     const double silent_s = monotonicNow() - reader.lastMono();
     if (const std::string &problem = reader.protocol().problem(); !problem.empty())
         return {HealthLevel::Failed, name + ": " + QString::fromStdString(problem)};

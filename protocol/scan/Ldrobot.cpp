@@ -31,9 +31,7 @@ Ldrobot::Ldrobot(int samples_hz, int baud, RevolutionAssembler &revolutions)
     : ScannerProtocol(revolutions)
     , sample_ns_(1e9 / samples_hz)
     , byte_ns_(1e10 / baud)
-    , clock_(stampPeriod_ms * std::int64_t(1000000)) {
-    identity_.model = "LDROBOT";
-}
+    , clock_(stampPeriod_ms * std::int64_t(1000000)) {}
 
 void Ldrobot::jump() {
     filled_ = 0;

@@ -8,11 +8,6 @@ namespace {
 
 constexpr std::size_t maxBeams = 100000; // of a head that does not turn
 
-double counterClockwise(double clockwise_deg) {
-    const double angle_deg = std::fmod(-clockwise_deg, 360);
-    return angle_deg <= 0 ? angle_deg + 360 : angle_deg;
-}
-
 } // namespace
 
 void RevolutionAssembler::addClockwise(double head_deg, double angle_deg, float range_m,
@@ -22,7 +17,8 @@ void RevolutionAssembler::addClockwise(double head_deg, double angle_deg, float 
     revolution_.partial = revolution_.partial || !spins_; // it begins anywhere
     spins_ = true;
     head_deg_ = head_deg;
-    revolution_.beams.push_back({counterClockwise(angle_deg), range_m, intensity, stamp_ns});
+    revolution_.beams.push_back(
+        {std::remainder(head_deg - angle_deg, 360) - head_deg, range_m, intensity, stamp_ns});
 }
 
 void RevolutionAssembler::lose(std::uint64_t packets) {

@@ -8,7 +8,7 @@ namespace hermes::scan {
 
 /// One measurement of a scanner.
 struct Beam {
-    double angle_deg = 0; ///< seen from above, counter-clockwise from ahead: above 0, up to 360
+    double angle_deg = 0; ///< seen from above, counter-clockwise from ahead; of any revolution
     float range_m = 0;    ///< 0: nothing came back
     std::uint8_t intensity = 0;
     std::int64_t stamp_ns = 0; ///< when it was measured, since the Unix epoch, by the host's clock

@@ -51,9 +51,7 @@ std::string ask(std::uint32_t what, int mode) {
 Rplidar::Rplidar(int baud, bool turnsByDtr, RevolutionAssembler &revolutions)
     : ScannerProtocol(revolutions)
     , packets_(baud, revolutions)
-    , turnsByDtr_(turnsByDtr) {
-    identity_.model = "RPLIDAR";
-}
+    , turnsByDtr_(turnsByDtr) {}
 
 std::string Rplidar::prerequisite() const {
     char text[32];

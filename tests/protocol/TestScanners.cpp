@@ -76,8 +76,8 @@ private Q_SLOTS:
         const std::vector<Beam> beams = reader.beams();
         QCOMPARE(beams.size(), std::size_t(12));
         // Counter-clockwise: the last comes first.
-        QCOMPARE(beams.back().angle_deg, 360 - 324.27);
-        QVERIFY(std::abs(beams.front().angle_deg - (360 - 334.70)) < 1e-9);
+        QCOMPARE(beams.back().angle_deg, -324.27);
+        QVERIFY(std::abs(beams.front().angle_deg + 334.70) < 1e-9);
         QCOMPARE(beams.back().range_m, 0.224F);
         QCOMPARE(int(beams.back().intensity), 228);
         QCOMPARE(beams.front().range_m, 0.192F);
@@ -138,7 +138,7 @@ private Q_SLOTS:
                 0.001 * i);
         const std::vector<Beam> beams = reader.beams();
         QCOMPARE(beams.size(), std::size_t(8));
-        QCOMPARE(beams.back().angle_deg, 350.0);
+        QCOMPARE(beams.back().angle_deg, -10.0);
         QCOMPARE(beams.back().range_m, 1.234F);
         QCOMPARE(int(beams.back().intensity), 47 << 2);
     }
@@ -168,10 +168,10 @@ private Q_SLOTS:
         std::vector<double> clockwise_deg;
         for (const Beam &beam : reader.revolutions[0].beams)
             if (std::lround(beam.range_m * 1e3F) == 1000)
-                clockwise_deg.push_back(std::fmod(360 - beam.angle_deg, 360));
+                clockwise_deg.push_back(-beam.angle_deg);
         std::sort(clockwise_deg.begin(), clockwise_deg.end());
-        QCOMPARE(clockwise_deg.front(), 1.0); // the first is at 359
-        QCOMPARE(clockwise_deg.back(), 359.0);
+        QCOMPARE(clockwise_deg.front(), -1.0);
+        QCOMPARE(clockwise_deg.back(), 61.0);
     }
 
     /// What no scanner sends is taken for nothing, and kills nobody.
