@@ -2,6 +2,7 @@
 
 #include "protocol/scan/Ldrobot.h"
 #include "protocol/scan/Rplidar.h"
+#include "protocol/scan/Ydlidar.h"
 
 namespace hermes::scan {
 namespace {
@@ -15,6 +16,15 @@ Made makeRplidar(const ScannerModel &model, RevolutionAssembler &revolutions) {
 Made makeLdrobot(const ScannerModel &model, RevolutionAssembler &revolutions) {
     return std::make_unique<Ldrobot>(model.samples_hz, model.baud, revolutions);
 }
+
+template <Ydlidar::Kind kind>
+Made makeYdlidar(const ScannerModel &model, RevolutionAssembler &revolutions) {
+    return std::make_unique<Ydlidar>(kind, model, revolutions);
+}
+
+constexpr auto makeYdlidarX = makeYdlidar<Ydlidar::Kind::Triangulation>;
+constexpr auto makeYdlidarTmini = makeYdlidar<Ydlidar::Kind::Tmini>;
+constexpr auto makeYdlidarTg = makeYdlidar<Ydlidar::Kind::TimeOfFlight>;
 
 } // namespace
 
@@ -31,6 +41,11 @@ const std::vector<ScannerModel> &scannerModels() {
         {"rplidar-s1", "Slamtec RPLIDAR S1", 256000, false, 0, Motor::Itself, makeRplidar},
         {"rplidar-s2", "Slamtec RPLIDAR S2", 1000000, false, 0, Motor::Itself, makeRplidar},
         {"rplidar-s3", "Slamtec RPLIDAR S3", 1000000, false, 0, Motor::Itself, makeRplidar},
+        {"ydlidar-x2", "YDLIDAR X2, X3", 115200, true, 3000, Motor::DtrHigh, makeYdlidarX},
+        {"ydlidar-x4", "YDLIDAR X4", 128000, false, 5000, Motor::DtrHigh, makeYdlidarX},
+        {"ydlidar-g4", "YDLIDAR G4, G5", 230400, false, 9000, Motor::Itself, makeYdlidarX},
+        {"ydlidar-tmini", "YDLIDAR Tmini Pro, Plus", 230400, false, 4000, Motor::Itself, makeYdlidarTmini},
+        {"ydlidar-tg30", "YDLIDAR TG15 to TG50", 512000, false, 20000, Motor::Itself, makeYdlidarTg},
     };
     return models;
 }
