@@ -1,5 +1,6 @@
 #include "protocol/scan/ScannerModel.h"
 
+#include "protocol/scan/Hokuyo.h"
 #include "protocol/scan/Ldrobot.h"
 #include "protocol/scan/Rplidar.h"
 #include "protocol/scan/Ydlidar.h"
@@ -22,6 +23,10 @@ Made makeYdlidar(const ScannerModel &model, RevolutionAssembler &revolutions) {
     return std::make_unique<Ydlidar>(kind, model, revolutions);
 }
 
+Made makeHokuyo(const ScannerModel &, RevolutionAssembler &revolutions) {
+    return std::make_unique<Hokuyo>(revolutions);
+}
+
 constexpr auto makeYdlidarX = makeYdlidar<Ydlidar::Kind::Triangulation>;
 constexpr auto makeYdlidarTmini = makeYdlidar<Ydlidar::Kind::Tmini>;
 constexpr auto makeYdlidarTg = makeYdlidar<Ydlidar::Kind::TimeOfFlight>;
@@ -30,6 +35,9 @@ constexpr auto makeYdlidarTg = makeYdlidar<Ydlidar::Kind::TimeOfFlight>;
 
 const std::vector<ScannerModel> &scannerModels() {
     static const std::vector<ScannerModel> models{
+        {"hokuyo-urg04lx", "Hokuyo URG-04LX", 115200, false, 0, Motor::Itself, makeHokuyo},
+        {"hokuyo-utm30lx", "Hokuyo UTM-30LX", 115200, false, 0, Motor::Itself, makeHokuyo},
+        {"hokuyo-ust10lx", "Hokuyo UST-10LX, UST-20LX", 115200, false, 0, Motor::Itself, makeHokuyo},
         {"ld06", "LDROBOT LD06", 230400, true, 4500, Motor::Itself, makeLdrobot},
         {"ld19", "LDROBOT LD19", 230400, true, 4500, Motor::Itself, makeLdrobot},
         {"stl27l", "LDROBOT STL-27L", 921600, true, 21600, Motor::Itself, makeLdrobot},
