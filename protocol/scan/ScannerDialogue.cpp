@@ -89,7 +89,7 @@ HostAction ScannerDialogue::next(std::int64_t mono_ns) {
     }
     switch (request_->until) {
     case Until::Silence:
-        if (mono_ns - lastBytes_ns_ < quiet_ms * millisecond_ns && since_ms < drain_ms)
+        if (mono_ns - std::max(lastBytes_ns_, since_ns_) < quiet_ms * millisecond_ns && since_ms < drain_ms)
             return {};
         break;
     case Until::Time:

@@ -3,6 +3,7 @@
 #include "protocol/scan/Hokuyo.h"
 #include "protocol/scan/Ldrobot.h"
 #include "protocol/scan/Rplidar.h"
+#include "protocol/scan/SickCola.h"
 #include "protocol/scan/Ydlidar.h"
 
 namespace hermes::scan {
@@ -27,6 +28,10 @@ Made makeHokuyo(const ScannerModel &, RevolutionAssembler &revolutions) {
     return std::make_unique<Hokuyo>(revolutions);
 }
 
+Made makeSick(const ScannerModel &, RevolutionAssembler &revolutions) {
+    return std::make_unique<SickCola>(revolutions);
+}
+
 constexpr auto makeYdlidarX = makeYdlidar<Ydlidar::Kind::Triangulation>;
 constexpr auto makeYdlidarTmini = makeYdlidar<Ydlidar::Kind::Tmini>;
 constexpr auto makeYdlidarTg = makeYdlidar<Ydlidar::Kind::TimeOfFlight>;
@@ -49,6 +54,8 @@ const std::vector<ScannerModel> &scannerModels() {
         {"rplidar-s1", "Slamtec RPLIDAR S1", 256000, false, 0, Motor::Itself, makeRplidar},
         {"rplidar-s2", "Slamtec RPLIDAR S2", 1000000, false, 0, Motor::Itself, makeRplidar},
         {"rplidar-s3", "Slamtec RPLIDAR S3", 1000000, false, 0, Motor::Itself, makeRplidar},
+        {"sick-lms1xx", "SICK LMS1xx", 0, false, 0, Motor::Itself, makeSick},
+        {"sick-tim5xx", "SICK TiM5xx", 0, false, 0, Motor::Itself, makeSick},
         {"ydlidar-x2", "YDLIDAR X2, X3", 115200, true, 3000, Motor::DtrHigh, makeYdlidarX},
         {"ydlidar-x4", "YDLIDAR X4", 128000, false, 5000, Motor::DtrHigh, makeYdlidarX},
         {"ydlidar-g4", "YDLIDAR G4, G5", 230400, false, 9000, Motor::Itself, makeYdlidarX},
