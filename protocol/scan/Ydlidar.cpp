@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::int64_t countPeriod_ns = 3600000000000;
 constexpr std::size_t packetHead = 10, timePacket = 8, answerHead = 7;
-constexpr int maxCount = 80;    // beams of a packet
-constexpr int wrongWidth = 20;  // so many wrong checksums in a row are no noise
-constexpr double tolerance = 5; // beams that packets may lie beside each other
+constexpr double rateWindow_ns = 1e10; // long enough that packets that come late do not matter
+constexpr int maxCount = 80;           // beams of a packet
+constexpr int wrongWidth = 20;         // so many wrong checksums in a row are no noise
+constexpr double tolerance = 5;        // beams that packets may lie beside each other
 
 } // namespace
 
@@ -23,9 +24,9 @@ Ydlidar::Ydlidar(Kind kind, const ScannerModel &model, RevolutionAssembler &revo
     , isOneWay_(model.isOneWay)
     , motor_(model.motor)
     , byte_ns_(1e10 / model.baud)
-    , sample_ns_(1e9 / model.samples_hz)
     , beamSize_(kind == Kind::Tmini ? 3 : 2)
-    , clock_(countPeriod_ns) {
+    , clock_(countPeriod_ns)
+    , sample_ns_(1e9 / model.samples_hz) {
     identity_.model = "YDLIDAR";
 }
 
@@ -38,6 +39,7 @@ void Ydlidar::restart() {
     revolutions_.jump();
     head_deg_.reset();
     clock_ = HostClock(countPeriod_ns);
+    rateSince_ns_ = 0;
     skipped_ = 1; // it may begin within a packet, which is no damage
 }
 
@@ -174,6 +176,20 @@ std::size_t Ydlidar::takePacket(std::string_view bytes, const Arrival &arrival) 
     return size;
 }
 
+/// How many beams it measures is a setting of some models: the host's clock tells, where it is another than
+/// the table has.
+void Ydlidar::followRate(double beams, std::int64_t received_ns) {
+    const double passed_ns = double(received_ns - rateSince_ns_);
+    rateBeams_ += beams;
+    if (passed_ns >= 0 && passed_ns < rateWindow_ns)
+        return;
+    const double measured_ns = passed_ns / rateBeams_, ratio = measured_ns / sample_ns_;
+    if (passed_ns > 0 && passed_ns < 2 * rateWindow_ns && std::abs(ratio - 1) > 0.02 && ratio < 4)
+        sample_ns_ = measured_ns;
+    rateSince_ns_ = received_ns;
+    rateBeams_ = 0;
+}
+
 /// When the last beam of a packet was measured. The scanner has no clock, but its beams are one. The angle
 /// tells how many are missing, but for whole revolutions, which the host's clock tells.
 std::int64_t Ydlidar::endOf(double first_deg, int count, std::int64_t received_ns) {
@@ -193,6 +209,7 @@ std::int64_t Ydlidar::endOf(double first_deg, int count, std::int64_t received_n
         }
     }
     skipped_ = 0;
+    followRate(beams, received_ns);
     sensor_ns_ = std::fmod(sensor_ns_ + beams * sample_ns_, double(countPeriod_ns));
     lastReceived_ns_ = received_ns;
     const HostClock::Time time = clock_.take(std::int64_t(sensor_ns_), received_ns, 0);

@@ -31,18 +31,22 @@ private:
     bool isRight(const std::uint8_t *bytes, int count) const;
     void takeInfo(const std::uint8_t *data);
     void takeHealth(const std::uint8_t *data);
+    void followRate(double beams, std::int64_t received_ns);
     std::int64_t endOf(double first_deg, int count, std::int64_t received_ns);
     void addBeam(const std::uint8_t *beam, double head_deg, std::int64_t stamp_ns);
 
     const Kind kind_;
     const bool isOneWay_;
     const Motor motor_;
-    const double byte_ns_, sample_ns_;
+    const double byte_ns_;
     const std::size_t beamSize_;
     bool needsReset_ = false;
 
     HostClock clock_;
-    double sensor_ns_ = 0; ///< by the beams that came
+    double sample_ns_;              ///< for each beam
+    std::int64_t rateSince_ns_ = 0; ///< that is measured since then
+    double rateBeams_ = 0;          ///< by so many beams
+    double sensor_ns_ = 0;          ///< by the beams that came
     std::int64_t lastReceived_ns_ = 0;
     std::optional<double> head_deg_; ///< of the beam before
     double step_deg_ = 0;            ///< between beams; 0: not known

@@ -207,6 +207,33 @@ private Q_SLOTS:
         QVERIFY2(std::abs(error_s) < 0.001, qPrintable(QString::number(error_s)));
     }
 
+    void rates_data() {
+        QTest::addColumn<double>("samples_hz");
+        QTest::newRow("of the table") << 9000.0;
+        QTest::newRow("of another setting") << 8000.0;
+        QTest::newRow("of a third") << 4000.0;
+    }
+
+    /// A G4 may be set to other numbers of beams in a second.
+    void rates() {
+        QFETCH(double, samples_hz);
+        std::mt19937 random(newSeed());
+        ScannerReader reader("ydlidar-g4");
+        Sender sender(*findScannerModel("ydlidar-g4"));
+        double t_s = 0;
+        while (t_s < 15) {
+            const std::string packet = sender.next();
+            t_s += double(packet[3]) / samples_hz;
+            reader.feed(packet, t_s + double(packet.size()) * 10 / 230400 + double(random() % 2000) * 1e-6);
+        }
+        reader.assembler.jump();
+        std::int64_t latest_ns = 0;
+        for (const Beam &beam : reader.revolutions.back().beams)
+            latest_ns = std::max(latest_ns, beam.stamp_ns);
+        const double error_s = double(latest_ns - ScannerReader::epoch_ns) * 1e-9 - t_s;
+        QVERIFY2(std::abs(error_s) < 0.003, qPrintable(QString::number(error_s)));
+    }
+
     /// Answers and times may come amid the packets.
     void otherPackets() {
         ScannerReader reader("ydlidar-g4");
