@@ -1,7 +1,10 @@
 #include "protocol/scan/ScannerModel.h"
 
+#include "protocol/scan/Hokuyo.h"
 #include "protocol/scan/Ldrobot.h"
 #include "protocol/scan/Rplidar.h"
+#include "protocol/scan/SickCola.h"
+#include "protocol/scan/Ydlidar.h"
 
 namespace hermes::scan {
 namespace {
@@ -16,10 +19,30 @@ Made makeLdrobot(const ScannerModel &model, RevolutionAssembler &revolutions) {
     return std::make_unique<Ldrobot>(model.samples_hz, model.baud, revolutions);
 }
 
+template <Ydlidar::Kind kind>
+Made makeYdlidar(const ScannerModel &model, RevolutionAssembler &revolutions) {
+    return std::make_unique<Ydlidar>(kind, model, revolutions);
+}
+
+Made makeHokuyo(const ScannerModel &, RevolutionAssembler &revolutions) {
+    return std::make_unique<Hokuyo>(revolutions);
+}
+
+Made makeSick(const ScannerModel &, RevolutionAssembler &revolutions) {
+    return std::make_unique<SickCola>(revolutions);
+}
+
+constexpr auto makeYdlidarX = makeYdlidar<Ydlidar::Kind::Triangulation>;
+constexpr auto makeYdlidarTmini = makeYdlidar<Ydlidar::Kind::Tmini>;
+constexpr auto makeYdlidarTg = makeYdlidar<Ydlidar::Kind::TimeOfFlight>;
+
 } // namespace
 
 const std::vector<ScannerModel> &scannerModels() {
     static const std::vector<ScannerModel> models{
+        {"hokuyo-urg04lx", "Hokuyo URG-04LX", 115200, false, 0, Motor::Itself, makeHokuyo},
+        {"hokuyo-utm30lx", "Hokuyo UTM-30LX", 115200, false, 0, Motor::Itself, makeHokuyo},
+        {"hokuyo-ust10lx", "Hokuyo UST-10LX, UST-20LX", 115200, false, 0, Motor::Itself, makeHokuyo},
         {"ld06", "LDROBOT LD06", 230400, true, 4500, Motor::Itself, makeLdrobot},
         {"ld19", "LDROBOT LD19", 230400, true, 4500, Motor::Itself, makeLdrobot},
         {"stl27l", "LDROBOT STL-27L", 921600, true, 21600, Motor::Itself, makeLdrobot},
@@ -31,6 +54,13 @@ const std::vector<ScannerModel> &scannerModels() {
         {"rplidar-s1", "Slamtec RPLIDAR S1", 256000, false, 0, Motor::Itself, makeRplidar},
         {"rplidar-s2", "Slamtec RPLIDAR S2", 1000000, false, 0, Motor::Itself, makeRplidar},
         {"rplidar-s3", "Slamtec RPLIDAR S3", 1000000, false, 0, Motor::Itself, makeRplidar},
+        {"sick-lms1xx", "SICK LMS1xx", 0, false, 0, Motor::Itself, makeSick},
+        {"sick-tim5xx", "SICK TiM5xx", 0, false, 0, Motor::Itself, makeSick},
+        {"ydlidar-x2", "YDLIDAR X2, X3", 115200, true, 3000, Motor::DtrHigh, makeYdlidarX},
+        {"ydlidar-x4", "YDLIDAR X4", 128000, false, 5000, Motor::DtrHigh, makeYdlidarX},
+        {"ydlidar-g4", "YDLIDAR G4, G5", 230400, false, 9000, Motor::Itself, makeYdlidarX},
+        {"ydlidar-tmini", "YDLIDAR Tmini Pro, Plus", 230400, false, 4000, Motor::Itself, makeYdlidarTmini},
+        {"ydlidar-tg30", "YDLIDAR TG15 to TG50", 512000, false, 20000, Motor::Itself, makeYdlidarTg},
     };
     return models;
 }

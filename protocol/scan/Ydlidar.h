@@ -1,0 +1,58 @@
+#pragma once
+
+#include "protocol/scan/HostClock.h"
+#include "protocol/scan/ScannerDialogue.h"
+#include "protocol/scan/ScannerModel.h"
+
+namespace hermes::scan {
+
+/// YDLIDAR: packets of up to 80 beams, with one of a single beam where the head passes its mark. Revolutions
+/// are cut by the angle, as that packet may be lost. Source: the maker's protocol manual and SDK.
+class Ydlidar : public ScannerDialogue {
+public:
+    enum class Kind {
+        Triangulation, ///< X, G
+        Tmini,         ///< the same with an intensity and marks of interference
+        TimeOfFlight,  ///< TG
+    };
+
+    Ydlidar(Kind kind, const ScannerModel &model, RevolutionAssembler &revolutions);
+
+    void jump() override;
+
+private:
+    enum Step { Wake, Stop, Info, Health, Reset, Begin, Scan };
+
+    void restart();
+    std::optional<Request> request(int step) const override;
+    std::size_t take(std::string_view bytes, const Arrival &arrival) override;
+    std::size_t takeAnswer(std::string_view bytes);
+    std::size_t takePacket(std::string_view bytes, const Arrival &arrival);
+    bool isRight(const std::uint8_t *bytes, int count) const;
+    void takeInfo(const std::uint8_t *data);
+    void takeHealth(const std::uint8_t *data);
+    void followRate(double beams, std::int64_t received_ns);
+    std::int64_t endOf(double first_deg, int count, std::int64_t received_ns);
+    void addBeam(const std::uint8_t *beam, double head_deg, std::int64_t stamp_ns);
+
+    const Kind kind_;
+    const bool isOneWay_;
+    const Motor motor_;
+    const double byte_ns_;
+    const std::size_t beamSize_;
+    bool needsReset_ = false;
+
+    HostClock clock_;
+    double sample_ns_;              ///< for each beam
+    std::int64_t rateSince_ns_ = 0; ///< that is measured since then
+    double rateBeams_ = 0;          ///< by so many beams
+    double sensor_ns_ = 0;          ///< by the beams that came
+    std::int64_t lastReceived_ns_ = 0;
+    std::optional<double> head_deg_; ///< of the beam before
+    double step_deg_ = 0;            ///< between beams; 0: not known
+    std::size_t fullCount_ = 40;     ///< beams of the largest packet
+    std::size_t skipped_ = 1;        ///< bytes since the last packet
+    int wrong_ = 0;                  ///< checksums in a row
+};
+
+} // namespace hermes::scan
