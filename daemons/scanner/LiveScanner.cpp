@@ -14,7 +14,7 @@ constexpr quint64 enoughPackets = 10;
 
 /// One of each that differ in what is said on the line. Those that must not be asked come first: they are
 /// heard before anything is sent.
-std::vector<const scan::ScannerModel *> candidates(const scan::ScannerModel *model) {
+std::vector<const scan::ScannerModel *> candidates(const scan::ScannerModel *model, bool isSerial) {
     if (model)
         return {model};
     std::vector<const scan::ScannerModel *> all;
@@ -23,7 +23,8 @@ std::vector<const scan::ScannerModel *> candidates(const scan::ScannerModel *mod
             const auto isSame = [&](const scan::ScannerModel *other) {
                 return other->make == row.make && other->baud == row.baud;
             };
-            if (row.isOneWay == isOneWay && std::none_of(all.begin(), all.end(), isSame))
+            const bool fits = isSerial ? row.baud > 0 : row.isOverTcp;
+            if (fits && row.isOneWay == isOneWay && std::none_of(all.begin(), all.end(), isSame))
                 all.push_back(&row);
         }
     return all;
@@ -37,7 +38,7 @@ LiveScanner::LiveScanner(const QString &url, const scan::ScannerModel *model, Ch
     , recording_(recording)
     , sink_(std::move(sink))
     , note_(std::move(note))
-    , candidates_(candidates(model))
+    , candidates_(candidates(model, url.startsWith("serial:")))
     , isFound_(model) {
     connect(&timer_, &QTimer::timeout, this, &LiveScanner::step);
     open(*candidates_.front());
@@ -78,7 +79,9 @@ void LiveScanner::open(const scan::ScannerModel &model) {
 }
 
 void LiveScanner::tryNext() {
-    tried_.append(QString("%1 at %2 baud").arg(reader_->model().title).arg(reader_->model().baud));
+    tried_.append(QString(address_.startsWith("serial:") ? "%1 at %2 baud" : "%1")
+                      .arg(reader_->model().title)
+                      .arg(reader_->model().baud));
     candidate_ = (candidate_ + 1) % candidates_.size();
     if (candidate_ == 0)
         inVain_ = std::exchange(tried_, {});

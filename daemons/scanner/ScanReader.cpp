@@ -36,10 +36,12 @@ bool ScanReader::process(const std::function<bool()> &mayGoOn) {
 void ScanReader::take(const scan::Revolution &revolution) {
     lastMono_ = monotonicNow();
     clockBound_ns_ = revolution.clockBound_ns;
-    if (!revolution.partial) {
+    const std::int64_t begin_ns = revolution.partial ? 0 : revolution.begin_ns;
+    const std::int64_t before_ns = std::exchange(lastBegin_ns_, begin_ns);
+    if (begin_ns != 0)
         beams_ = revolution.beams.size();
-        duration_s_ = double(revolution.end_ns - revolution.begin_ns) * 1e-9;
-    }
+    if (begin_ns != 0 && before_ns != 0)
+        period_s_ = double(begin_ns - before_ns) * 1e-9;
     sink_(revolution);
 }
 

@@ -204,7 +204,7 @@ ScannerMessage Scanner::state() const {
         state.firmware = known(identity.firmware);
         state.serial = known(identity.serial);
     }
-    state.rpm = reader.duration_s() > 0 ? 60 / reader.duration_s() : 0;
+    state.rpm = reader.period_s() > 0 ? 60 / reader.period_s() : 0;
     state.beams = reader.beams();
     state.revolutions = reader.counts().revolutions;
     state.partial = reader.counts().partial;
@@ -258,7 +258,7 @@ std::pair<HealthLevel, QString> Scanner::sensorHealth() {
     const scan::RevolutionAssembler::Counts &counts = reader.counts();
     QString text = QString("%1: %2 revolutions a minute of %3 beams, stamps to %4 ms")
                        .arg(name)
-                       .arg(60 / std::max(reader.duration_s(), 1e-3), 0, 'f', 0)
+                       .arg(reader.period_s() > 0 ? 60 / reader.period_s() : 0.0, 0, 'f', 0)
                        .arg(reader.beams())
                        .arg(double(reader.clockBound_ns()) * 1e-6, 0, 'f', 1);
     if (counts.lostPackets > 0)

@@ -20,6 +20,7 @@ struct ScannerModel {
     const char *name;  ///< for settings: "rplidar-a1"
     const char *title; ///< for people
     int baud;          ///< 0: it has no serial line
+    bool isOverTcp;    ///< it can be on a network
     /// It sends by itself and must not be asked anything.
     bool isOneWay;
     int samples_hz; ///< that it measures in a second; 0: it tells
