@@ -177,6 +177,46 @@ private Q_SLOTS:
         QCOMPARE(line.state().unreadLost, qint64(3000 - left));
     }
 
+    void otherSpeedMakesGarbage_data() { rowsOf("speed", {"115200", "256000"}); }
+
+    void otherSpeedMakesGarbage() {
+        QFETCH(QString, speed);
+        const int baud = speed.toInt();
+        QByteArray came, heard;
+        SensorLine line;
+        QVERIFY(line.open("", baud, 0.3, [&](const QByteArray &bytes) { came += bytes; }).ok());
+        const QString device = "serial://" + line.state().line.device;
+        for (const int wanted : {baud, 9600, baud}) {
+            SerialInterface near(*InterfaceUrl::parse(QString("%1?baud=%2").arg(device).arg(wanted)),
+                                 nullptr);
+            QObject::connect(&near, &Interface::received, [&](const QByteArray &bytes) { heard += bytes; });
+            near.open();
+            QVERIFY(near.isOpen());
+            came.clear(), heard.clear();
+            const QByteArray text = "a text of 22 characters";
+            line.send(text);
+            near.write(text);
+            QTRY_COMPARE(heard.size(), text.size());
+            QCOMPARE(heard == text, wanted == baud);
+            if (wanted == baud)
+                QTRY_COMPARE(came, text);
+            else
+                QVERIFY(came.isEmpty());
+        }
+    }
+
+    void programMayBeBehindForAWhile() {
+        SensorLine line;
+        QVERIFY(line.open("", 0, 0.2, [](const QByteArray &) {}).ok());
+        for (int i = 0; i < 30; ++i)
+            line.send(QByteArray(100, 'x'));
+        QCOMPARE(line.state().unreadLost, qint64(0));
+        QTest::qWait(250);
+        line.send("x");
+        QCOMPARE(line.state().unreadLost, qint64(3000));
+        QCOMPARE(line.state().bytes, qint64(3001));
+    }
+
     void claimOfAKilledProgramIsDropped() {
         SensorLine line;
         QVERIFY(line.open("").ok());
