@@ -31,6 +31,11 @@ std::string encoded(std::int64_t value, int characters) {
     return text;
 }
 
+/// Four decimal digits.
+std::string digits(int step) {
+    return std::to_string(10000 + step).substr(1);
+}
+
 char sumOf(std::string_view text) {
     unsigned sum = 0;
     for (const char byte : text)
@@ -59,9 +64,7 @@ protected:
     void hear(std::uint8_t byte, std::int64_t now_ns) override;
     bool isScanning() const override { return !scan_.echo.empty() && turns(); }
     void sample(std::int64_t time_ns, const Measure &measure) override;
-    void resume() override {
-        scan_ = {"MD0000000100000", type_.firstStep, type_.lastStep, 1, 0, 0, false, false};
-    }
+    void resume() override { measureAs("MD" + digits(type_.firstStep) + digits(type_.lastStep) + "01000"); }
 
 private:
     /// What was asked for.
