@@ -44,13 +44,12 @@ void SensorLine::send(QByteArray bytes) {
         return;
     const qint64 unread = pty_->unread(); // of which the system does not tell more than some thousand
     const double now = monotonicNow();
-    if (unread > maxUnread && now - behindSince_ > patience_s_) {
-        pty_->discardUnread();
-        state_.unreadLost += behind_;
-    }
-    if (unread <= maxUnread || now - behindSince_ > patience_s_) {
+    const bool tooLate = unread > maxUnread && now - behindSince_ > patience_s_;
+    if (tooLate)
+        state_.unreadLost += std::max(behind_, pty_->discardUnread());
+    if (tooLate || unread <= maxUnread) {
         behindSince_ = now;
-        behind_ = unread <= maxUnread ? unread : 0;
+        behind_ = tooLate ? 0 : unread;
     }
     if (isGarbled()) {
         for (char &byte : bytes)

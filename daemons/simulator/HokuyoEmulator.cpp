@@ -16,9 +16,9 @@ struct Hokuyo {
     const char *speedStatus; ///< answer to SS
 };
 
-constexpr Hokuyo hokuyos[] = {{"hokuyo-urg04lx", "SOKUIKI Sensor URG-04LX", 1024, 44, 725, 384, "00"},
-                              {"hokuyo-ust10lx", "UST-10LX", 1440, 0, 1080, 540, "0F"}};
-constexpr int nearest_mm = 20; // less is a code
+const std::vector<Hokuyo> hokuyos{{"hokuyo-urg04lx", "SOKUIKI Sensor URG-04LX", 1024, 44, 725, 384, "00"},
+                                  {"hokuyo-ust10lx", "UST-10LX", 1440, 0, 1080, 540, "0F"}};
+constexpr int nearest_mm = 20;
 constexpr int stepIntensity = 1000;
 constexpr std::size_t lineLength = 64, longestRequest = 64;
 constexpr std::int64_t clockSize_ms = 1 << 24;
@@ -29,6 +29,11 @@ std::string encoded(std::int64_t value, int characters) {
     for (int i = characters - 1; i >= 0; --i)
         text.push_back(char((value >> 6 * i & 0x3F) + 0x30));
     return text;
+}
+
+/// Four decimal digits.
+std::string digits(int step) {
+    return std::to_string(10000 + step).substr(1);
 }
 
 char sumOf(std::string_view text) {
@@ -52,44 +57,35 @@ std::string property(const char *name, const std::string &value) {
 class HokuyoEmulator : public ScannerEmulator {
 public:
     HokuyoEmulator(const ScannerModel &model, const ScannerOptions &options)
-        : ScannerEmulator(model, options) {
-        for (const Hokuyo &type : hokuyos) {
-            if (model.name == std::string_view(type.name))
-                type_ = &type;
-        }
-    }
+        : ScannerEmulator(model, options)
+        , type_(typeOf(model, hokuyos)) {}
 
 protected:
     void hear(std::uint8_t byte, std::int64_t now_ns) override;
     bool isScanning() const override { return !scan_.echo.empty() && turns(); }
     void sample(std::int64_t time_ns, const Measure &measure) override;
-    void resume() override {
-        scan_ = {"MD0000000100000", type_->firstStep, type_->lastStep, 1, 0, 0, 3, false};
-    }
+    void resume() override { measureAs("MD" + digits(type_.firstStep) + digits(type_.lastStep) + "01000"); }
 
 private:
-    /// What was asked for: MD, MS, ME, GD, GS.
+    /// What was asked for.
     struct Scan {
         std::string echo; ///< empty: nothing
         int first = 0, last = 0, cluster = 1, skip = 0, count = 0;
-        int characters = 3; ///< a step; 6: with its intensity
+        bool intensity = false;
         bool once = false;
     };
 
     void obey(const std::string &request);
-    void measureAs(const std::string &request);
-    void reply(const std::string &request, const std::string &status, const std::string &lines = {}) {
-        send(request + '\n' + line(status) + lines + '\n', now_ns_);
-    }
+    std::string measureAs(const std::string &request);
     std::string stamp(std::int64_t time_ns) const {
         return line(encoded(clock_ms(time_ns) % clockSize_ms, 4));
     }
     std::string version() const;
     std::string parameters() const;
-    std::string state(std::int64_t time_ns) const;
+    std::string state() const;
     void sendScan(std::int64_t time_ns);
 
-    const Hokuyo *type_ = nullptr;
+    const Hokuyo &type_;
     std::string request_;
     std::int64_t now_ns_ = 0;
     bool laser_ = false, timeMode_ = false, reboots_ = false;
@@ -115,72 +111,67 @@ void HokuyoEmulator::hear(std::uint8_t byte, std::int64_t now_ns) {
 void HokuyoEmulator::obey(const std::string &request) {
     const std::string command = request.substr(0, 2);
     const bool again = std::exchange(reboots_, command == "RB");
-    const bool measures =
-        command == "MD" || command == "MS" || command == "ME" || command == "GD" || command == "GS";
+    std::string status = "00", lines;
     if (command == "QT" || command == "RS" || (command == "RB" && again)) {
         scan_ = {};
         laser_ = false;
         timeMode_ = timeMode_ && command == "QT";
-        reply(request, "00");
     } else if (command == "VV") {
-        reply(request, "00", version());
+        lines = version();
     } else if (command == "PP") {
-        reply(request, "00", parameters());
+        lines = parameters();
     } else if (command == "II") {
-        reply(request, "00", state(now_ns_));
+        lines = state();
     } else if (request == "TM0") {
         timeMode_ = scan_.echo.empty();
-        reply(request, timeMode_ ? "00" : "0A");
+        status = timeMode_ ? "00" : "0A";
     } else if (request == "TM1" && timeMode_) {
-        reply(request, "00", stamp(now_ns_));
+        lines = stamp(now_ns_);
     } else if (request == "TM2") {
         timeMode_ = false;
-        reply(request, "00");
     } else if (command == "SS") {
-        reply(request, type_->speedStatus);
-    } else if (command == "RB" || request == "SCIP2.0") {
-        reply(request, "00");
-    } else if (timeMode_) {
-        reply(request, "0E");
-    } else if (command == "BM") {
-        reply(request, laser_ ? "02" : "00");
-        laser_ = true;
-    } else if (measures) {
-        measureAs(request);
-    } else {
-        reply(request, "0A");
+        status = type_.speedStatus;
+    } else if (command != "RB" && request != "SCIP2.0") {
+        if (timeMode_) {
+            status = "0E";
+        } else if (command == "BM") {
+            status = std::exchange(laser_, true) ? "02" : "00";
+        } else {
+            const bool known = command == "MD" || command == "ME" || command == "GD";
+            status = known ? measureAs(request) : "0A";
+        }
     }
+    if (command != "GD" || status != "00") // that answers with its scan
+        send(request + '\n' + line(status) + lines + '\n', now_ns_);
 }
 
-void HokuyoEmulator::measureAs(const std::string &request) {
+/// Gives the status.
+std::string HokuyoEmulator::measureAs(const std::string &request) {
     const bool once = request[0] == 'G';
-    const std::size_t digits = once ? 10 : 13;
     const std::string given = request.substr(2, request.find(';') - 2);
-    if (given.size() < digits || given.find_first_not_of("0123456789") < digits)
-        return reply(request, "01");
+    if (given.size() < (once ? 10 : 13) || given.find_first_not_of("0123456789") != given.npos)
+        return "01";
     const auto number = [&](std::size_t at, std::size_t size) { return std::stoi(given.substr(at, size)); };
-    Scan scan{request, number(0, 4), number(4, 4), std::max(1, number(8, 2)), 0, 1, 3, once};
-    if (scan.last > type_->lastStep || scan.first > scan.last)
-        return reply(request, scan.first > scan.last ? "04" : "02");
+    Scan scan{request, number(0, 4), number(4, 4), std::max(1, number(8, 2)), 0, 1, request[1] == 'E', once};
+    if (scan.last > type_.lastStep || scan.first > scan.last)
+        return scan.last > type_.lastStep ? "02" : "04";
+    if (once && !laser_)
+        return "0A";
     if (!once) {
         scan.skip = number(10, 1);
         scan.count = number(11, 2);
     }
-    scan.characters = request[1] == 'S' ? 2 : request[1] == 'E' ? 6 : 3;
-    if (once && !laser_)
-        return reply(request, "0A");
-    if (!once)
-        reply(request, "00");
     laser_ = true;
     scan_ = scan;
     begun_ = false;
     turns_ = scan.skip;
+    return "00";
 }
 
 void HokuyoEmulator::sample(std::int64_t time_ns, const Measure &measure) {
     // It begins at the rear, where a scan's time is taken.
-    const int passed = int(std::lround(turn() * type_->steps)) % type_->steps;
-    const int step = passed + type_->front - type_->steps / 2;
+    const int passed = int(std::lround(turn() * type_.steps)) % type_.steps;
+    const int step = passed + type_.front - type_.steps / 2;
     if (passed == 0) {
         begun_ = ++turns_ > scan_.skip;
         stamp_ = stamp(time_ns);
@@ -189,15 +180,14 @@ void HokuyoEmulator::sample(std::int64_t time_ns, const Measure &measure) {
     }
     if (!begun_ || step < scan_.first || step > scan_.last)
         return;
-    const bool seen = step >= type_->firstStep;
-    const int mm = seen ? range_mm(measure, 2 * vectorlib::pi * (step - type_->front) / type_->steps) : 0;
-    const int told = mm >= nearest_mm ? mm : 0;
+    const bool seen = step >= type_.firstStep;
+    const int mm = seen ? range_mm(measure, 2 * vectorlib::pi * (step - type_.front) / type_.steps) : 0;
+    const int told = mm >= nearest_mm ? mm : 0; // what is less is a code
     least_ = inCluster_ == 0 ? told : std::min(least_, told);
     if (++inCluster_ == scan_.cluster || step == scan_.last) {
         inCluster_ = 0;
-        values_ +=
-            encoded(std::min(least_, scan_.characters == 2 ? 4095 : least_), scan_.characters == 2 ? 2 : 3);
-        if (scan_.characters == 6)
+        values_ += encoded(least_, 3);
+        if (scan_.intensity)
             values_ += encoded(least_ > 0 ? stepIntensity : 0, 3);
     }
     if (step == scan_.last)
@@ -205,14 +195,13 @@ void HokuyoEmulator::sample(std::int64_t time_ns, const Measure &measure) {
 }
 
 void HokuyoEmulator::sendScan(std::int64_t time_ns) {
-    std::string echo = scan_.echo;
-    const bool last = scan_.once || scan_.count == 1;
+    const bool last = scan_.count == 1;
     if (!scan_.once && scan_.count > 0) {
         --scan_.count;
-        echo[13] = char('0' + scan_.count / 10);
-        echo[14] = char('0' + scan_.count % 10);
+        scan_.echo[13] = char('0' + scan_.count / 10);
+        scan_.echo[14] = char('0' + scan_.count % 10);
     }
-    std::string text = echo + '\n' + line(scan_.once ? "00" : "99") + stamp_;
+    std::string text = scan_.echo + '\n' + line(scan_.once ? "00" : "99") + stamp_;
     for (std::size_t at = 0; at < values_.size(); at += lineLength)
         text += line(values_.substr(at, lineLength));
     send(text + '\n', time_ns);
@@ -223,23 +212,23 @@ void HokuyoEmulator::sendScan(std::int64_t time_ns) {
 }
 
 std::string HokuyoEmulator::version() const {
-    return property("VEND", "Hokuyo Automatic Co.,Ltd.") + property("PROD", type_->product) +
+    return property("VEND", "Hokuyo Automatic Co.,Ltd.") + property("PROD", type_.product) +
            property("FIRM", "3.3.00") + property("PROT", "SCIP 2.0") + property("SERI", "H0000001");
 }
 
 std::string HokuyoEmulator::parameters() const {
     const auto number = [](const char *name, int value) { return property(name, std::to_string(value)); };
-    return property("MODL", type_->product) + number("DMIN", nearest_mm) +
-           number("DMAX", int(std::lround(model().range_m * 1000))) + number("ARES", type_->steps) +
-           number("AMIN", type_->firstStep) + number("AMAX", type_->lastStep) + number("AFRT", type_->front) +
+    return property("MODL", type_.product) + number("DMIN", nearest_mm) +
+           number("DMAX", int(std::lround(model().range_m * 1000))) + number("ARES", type_.steps) +
+           number("AMIN", type_.firstStep) + number("AMAX", type_.lastStep) + number("AFRT", type_.front) +
            number("SCAN", int(std::lround(model().turns_hz * 60)));
 }
 
-std::string HokuyoEmulator::state(std::int64_t time_ns) const {
-    return property("MODL", type_->product) + property("LASR", laser_ ? "ON" : "OFF") +
+std::string HokuyoEmulator::state() const {
+    return property("MODL", type_.product) + property("LASR", laser_ ? "ON" : "OFF") +
            property("SCSP", std::to_string(std::lround(model().turns_hz * 60))) +
            property("MESM", scan_.echo.empty() ? "IDLE" : "Measuring") +
-           property("TIME", encoded(clock_ms(time_ns) % clockSize_ms, 4)) +
+           property("TIME", encoded(clock_ms(now_ns_) % clockSize_ms, 4)) +
            property("STAT", "Sensor works well.");
 }
 

@@ -33,11 +33,11 @@ struct Major {
 
 Major majorOf(int mm) {
     for (const Level &level : levels) {
-        const int code = level.code + ((mm - level.mm) >> level.shift);
+        const int steps = (mm - level.mm) >> level.shift;
+        if (mm >= level.mm && level.code + steps <= 0xFFF)
+            return {unsigned(level.code + steps), level.mm + (steps << level.shift), level.shift};
         if (mm >= level.mm)
-            return code > 0xFFF
-                       ? Major()
-                       : Major{unsigned(code), mm - (mm - level.mm) % (1 << level.shift), level.shift};
+            break; // too far
     }
     return {};
 }
@@ -95,18 +95,21 @@ std::string bodyOf(std::uint8_t packet, const std::vector<RplidarPoint> &points)
 
 } // namespace
 
-RplidarCapsule rplidarCapsule(std::uint8_t packet) {
-    switch (packet) {
-    case 0x84:
-        return {96, 132};
-    case 0x85:
-        return {40, 84};
-    case 0x86:
-        return {64, 170};
-    case 0x82:
-        return {32, 84};
-    }
-    return {1, 5};
+const RplidarPacket &rplidarPacket(std::uint8_t type) {
+    static constexpr std::array<RplidarPacket, 5> packets{{{0x81, 1, 5, "Standard"},
+                                                           {0x82, 32, 84, "Express"},
+                                                           {0x84, 96, 132, "Sensitivity"},
+                                                           {0x85, 40, 84, "DenseBoost"},
+                                                           {0x86, 64, 170, "UltraDense"}}};
+    return *std::find_if(packets.begin(), packets.end() - 1,
+                         [type](const RplidarPacket &p) { return p.type == type; });
+}
+
+std::uint8_t xorOf(std::string_view bytes) {
+    std::uint8_t sum = 0;
+    for (const char byte : bytes)
+        sum = std::uint8_t(sum ^ std::uint8_t(byte));
+    return sum;
 }
 
 double rplidarSlant_deg(std::uint8_t packet, int mm) {
@@ -124,9 +127,7 @@ std::string encodeRplidar(std::uint8_t packet, unsigned start, std::uint32_t sta
     }
     putU16(body, start);
     body += bodyOf(packet, points);
-    std::uint8_t sum = 0;
-    for (const char byte : body)
-        sum = std::uint8_t(sum ^ std::uint8_t(byte));
+    const std::uint8_t sum = xorOf(body);
     return std::string{char(0xA0 | (sum & 15)), char(0x50 | sum >> 4)} + body;
 }
 

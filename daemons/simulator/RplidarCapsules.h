@@ -3,16 +3,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hermes::simulator {
 
-/// What a packet of RPLIDAR holds; those of several samples begin with a checksum and the angle of the head.
-struct RplidarCapsule {
-    std::size_t samples = 1, bytes = 0;
+/// A packet of RPLIDAR; those of several samples begin with a checksum and the angle of the head.
+struct RplidarPacket {
+    std::uint8_t type; ///< 81, 82, 84, 85 or 86, hexadecimal
+    std::size_t samples, bytes;
+    const char *mode; ///< name of the one that sends it
 };
-/// packet: 81, 82, 84, 85 or 86, hexadecimal.
-RplidarCapsule rplidarCapsule(std::uint8_t packet);
+const RplidarPacket &rplidarPacket(std::uint8_t type);
+
+std::uint8_t xorOf(std::string_view bytes);
 
 struct RplidarPoint {
     int mm = 0;            ///< 0: none

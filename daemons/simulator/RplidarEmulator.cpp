@@ -3,6 +3,7 @@
 #include "vectorlib/geometry/Angle.h"
 
 #include <cmath>
+#include <utility>
 
 namespace hermes::simulator {
 
@@ -11,39 +12,28 @@ namespace {
 struct Mode {
     std::uint8_t packet; ///< type of its answer
     double sample_us;
-    const char *name;
+};
+
+enum class Motor {
+    Dtr, ///< which a pseudo-terminal has not: it turns
+    Pwm, ///< it stands until A5 F0
+    Rpm, ///< A5 A8
 };
 
 struct Type {
     const char *name;
     std::uint8_t model;
-    bool motorByPwm; ///< its motor stands until A5 F0
-    bool motorByRpm; ///< A5 A8
+    Motor motor;
     unsigned typicalMode;
-    std::vector<Mode> modes; ///< 0 is what 20 starts; 1 is the one of the legacy express request
+    std::vector<Mode> modes; ///< 0 is what 20 starts
 };
 
-// As fast as the line carries them. The A1's motor hangs on DTR, which a pseudo-terminal has not: it turns.
+// As fast as the line carries them.
 const std::vector<Type> types{
-    {"rplidar-a1",
-     0x18,
-     false,
-     false,
-     2,
-     {{0x81, 508, "Standard"}, {0x82, 254, "Express"}, {0x84, 125, "Sensitivity"}}},
-    {"rplidar-a3",
-     0x31,
-     true,
-     false,
-     2,
-     {{0x81, 252, "Standard"}, {0x82, 125, "Express"}, {0x84, 62.5, "Sensitivity"}}},
-    {"rplidar-c1", 0x41, true, false, 0, {{0x81, 200, "Standard"}, {0x85, 200, "DenseBoost"}}},
-    {"rplidar-s2",
-     0x71,
-     false,
-     true,
-     1,
-     {{0x81, 100, "Standard"}, {0x85, 31.25, "DenseBoost"}, {0x86, 31.25, "UltraDense"}}},
+    {"rplidar-a1", 0x18, Motor::Dtr, 2, {{0x81, 508}, {0x82, 254}, {0x84, 125}}},
+    {"rplidar-a3", 0x31, Motor::Pwm, 2, {{0x81, 252}, {0x82, 125}, {0x84, 62.5}}},
+    {"rplidar-c1", 0x41, Motor::Pwm, 0, {{0x81, 200}, {0x85, 200}}},
+    {"rplidar-s2", 0x71, Motor::Rpm, 1, {{0x81, 100}, {0x85, 31.25}, {0x86, 31.25}}},
 };
 
 constexpr double fullPwm = 660, fullRpm = 600;
@@ -51,12 +41,9 @@ constexpr double fullPwm = 660, fullRpm = 600;
 class RplidarEmulator : public ScannerEmulator {
 public:
     RplidarEmulator(const ScannerModel &model, const ScannerOptions &options)
-        : ScannerEmulator(model, options) {
-        for (const Type &type : types) {
-            if (model.name == std::string_view(type.name))
-                type_ = &type;
-        }
-        setSpeed(type_->motorByPwm ? 0 : model.turns_hz);
+        : ScannerEmulator(model, options)
+        , type_(typeOf(model, types)) {
+        setSpeed(type_.motor == Motor::Pwm ? 0 : model.turns_hz);
     }
 
 protected:
@@ -65,26 +52,24 @@ protected:
     void sample(std::int64_t time_ns, const Measure &measure) override;
     void resume() override {
         setSpeed(model().turns_hz);
-        scan(type_->modes[0]);
+        scan(type_.modes[0]);
+        unsend(); // it was answered long ago
     }
 
 private:
     void obey(std::uint8_t request, std::string_view payload);
-    void answer(std::uint8_t type, std::string_view bytes, bool goesOn = false);
+    void answer(std::uint8_t type, std::string_view bytes) { send(answerOf(type, bytes), heard_ns_); }
     void tellConf(std::string_view payload);
     void scan(const Mode &mode);
-    RplidarPoint look(const Measure &measure) const;
-    void sendCapsule(std::int64_t time_ns);
 
-    const Type *type_ = nullptr;
+    const Type &type_;
     std::string request_;
     std::int64_t heard_ns_ = 0;
-    std::uint8_t packet_ = 0; ///< type of the packets that it sends
-    RplidarCapsule capsule_{};
-    bool forced_ = false; ///< scans even if the head stands
-    bool begins_ = false; ///< no capsule was sent yet
-    double start_ = 0;    ///< turn of the first sample of the capsule
-    double slant_ = 0;    ///< of the sample before; degrees
+    std::uint8_t packet_ = 0; ///< type of the packets that it sends; 0: none
+    bool forced_ = false;     ///< scans even if the head stands
+    bool begins_ = false;     ///< no packet was sent yet
+    unsigned start_ = 0;      ///< angle of the first sample of a packet
+    double slant_ = 0;        ///< of the sample before; degrees
     std::vector<RplidarPoint> points_;
 };
 
@@ -109,20 +94,16 @@ void RplidarEmulator::hear(std::uint8_t byte, std::int64_t now_ns) {
     }
     if (request_.size() < 3 || request_.size() < 4 + std::size_t(std::uint8_t(request_[2])))
         return;
-    std::uint8_t sum = 0;
-    for (const char each : request_)
-        sum = std::uint8_t(sum ^ std::uint8_t(each));
-    const std::string whole = std::move(request_);
-    request_.clear();
-    if (sum == 0)
+    const std::string whole = std::exchange(request_, {});
+    if (xorOf(whole) == 0)
         obey(request, std::string_view(whole).substr(3, whole.size() - 4));
 }
 
 void RplidarEmulator::obey(std::uint8_t request, std::string_view payload) {
-    const std::vector<Mode> &modes = type_->modes;
-    if (request == 0xF0 && type_->motorByPwm)
+    const std::vector<Mode> &modes = type_.modes;
+    if (request == 0xF0 && type_.motor == Motor::Pwm)
         return setSpeed(model().turns_hz * number(payload, 0) / fullPwm);
-    if (request == 0xA8 && type_->motorByRpm)
+    if (request == 0xA8 && type_.motor == Motor::Rpm)
         return setSpeed(model().turns_hz * number(payload, 0) / fullRpm);
     if (request == 0xF0 || request == 0xA8)
         return;
@@ -133,7 +114,7 @@ void RplidarEmulator::obey(std::uint8_t request, std::string_view payload) {
         unsend();
         send("RP LIDAR System.\r\nFirmware Ver 1.29, HW Ver 7\r\n", heard_ns_);
     } else if (request == 0x50) {
-        value = {char(type_->model), 29, 1, 7}; // model, firmware 1.29, hardware
+        value = {char(type_.model), 29, 1, 7}; // model, firmware 1.29, hardware
         answer(0x04, value + "0123456789ABCDEF");
     } else if (request == 0x52) {
         value = {char(isBroken() ? 2 : 0), char(isBroken() ? 4 : 0), 0};
@@ -145,39 +126,30 @@ void RplidarEmulator::obey(std::uint8_t request, std::string_view payload) {
     } else if (request == 0x84) {
         tellConf(payload);
     } else if (request == 0xFF) {
-        putU32(value, type_->motorByPwm);
+        putU32(value, type_.motor == Motor::Pwm);
         answer(0xFF, value);
     } else if ((request == 0x20 || request == 0x21) && !isBroken()) {
-        answer(0x81, {}, true);
         scan(modes[0]);
         forced_ = request == 0x21;
     } else if (request == 0x82 && payload.size() == 5 && !isBroken()) {
-        const std::size_t mode = std::uint8_t(payload[0]);
-        if (mode < modes.size()) {
-            answer(modes[mode > 0 ? mode : 1].packet, {}, true);
-            scan(modes[mode > 0 ? mode : 1]);
-        }
+        const std::size_t number = std::uint8_t(payload[0]);
+        if (number >= modes.size())
+            return;
+        scan(number > 0 ? modes[number] : Mode{0x82, modes[1].sample_us});
     }
-}
-
-void RplidarEmulator::answer(std::uint8_t type, std::string_view bytes, bool goesOn) {
-    std::string head = "\xA5\x5A";
-    putU32(head, std::uint32_t(goesOn ? rplidarCapsule(type).bytes | 1U << 30 : bytes.size()));
-    head.push_back(char(type));
-    send(head.append(bytes), heard_ns_);
 }
 
 void RplidarEmulator::tellConf(std::string_view payload) {
     const unsigned type = number(payload, 0), wanted = number(payload, 4);
     std::string value(payload.substr(0, 4));
     const bool ofMode = type == 0x71 || type == 0x74 || type == 0x75 || type == 0x7F;
-    if (payload.size() < 4 || (ofMode && wanted >= type_->modes.size()))
+    if (payload.size() < 4 || (ofMode && wanted >= type_.modes.size()))
         return;
-    const Mode &mode = type_->modes[ofMode ? wanted : 0];
+    const Mode &mode = type_.modes[ofMode ? wanted : 0];
     if (type == 0x70)
-        putU16(value, unsigned(type_->modes.size()));
+        putU16(value, unsigned(type_.modes.size()));
     else if (type == 0x7C)
-        putU16(value, type_->typicalMode);
+        putU16(value, type_.typicalMode);
     else if (type == 0x71)
         putU32(value, std::uint32_t(std::lround(mode.sample_us * 256)));
     else if (type == 0x74)
@@ -185,7 +157,7 @@ void RplidarEmulator::tellConf(std::string_view payload) {
     else if (type == 0x75)
         value.push_back(char(mode.packet));
     else if (type == 0x7F)
-        value.append(mode.name).push_back('\0');
+        value.append(rplidarPacket(mode.packet).mode).push_back('\0');
     else if (type == 0x01) {
         putU16(value, unsigned(fullRpm));
         putU16(value, unsigned(fullPwm));
@@ -194,53 +166,42 @@ void RplidarEmulator::tellConf(std::string_view payload) {
 }
 
 void RplidarEmulator::scan(const Mode &mode) {
+    send(answerOf(mode.packet, {}, rplidarPacket(mode.packet).bytes), heard_ns_);
     packet_ = mode.packet;
-    capsule_ = rplidarCapsule(packet_);
     setPeriod(mode.sample_us * 1000);
     begins_ = true;
     forced_ = false;
+    slant_ = 0;
     points_.clear();
 }
 
-/// Where the ray goes depends on the range that it finds: on that of the sample before.
-RplidarPoint RplidarEmulator::look(const Measure &measure) const {
-    RplidarPoint point;
-    point.before_deg = slant_;
-    const double angle_deg = 360 * turn() - point.before_deg;
-    point.mm = range_mm(measure, -angle_deg * vectorlib::pi / 180, packet_ == 0x82 ? 0x3FFF : 65535);
-    return point;
-}
-
 void RplidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
-    // The last ranges of a packet 84 begin from the first one of the next.
-    const bool needsNext = packet_ == 0x84;
+    const unsigned angle = unsigned(std::lround(turn() * 360 * 64) % (360 * 64)); // 1/64 degree
+    const bool needsNext = packet_ == 0x84; // its last ranges begin from the first one of the next
     // A packet leaves one and a half samples after its last one.
     const std::int64_t ready_ns = time_ns + std::int64_t((needsNext ? 0.5 : 1.5) * period_ns());
+    // Where a slanting ray goes depends on the range that it finds: on that of the sample before.
+    const double ray = 2 * vectorlib::pi * (turn() - slant_ / 360);
+    const bool fine = packet_ == 0x81 || packet_ == 0x82; // quarters of a millimetre
+    const int mm = range_mm(measure, -ray, fine ? 0x3FFF : 0xFFFF);
     if (packet_ == 0x81) {
-        const int mm = range_mm(measure, -2 * vectorlib::pi * turn(), 0x3FFF);
         std::string packet(1, char((mm > 0 ? rplidarQuality : 0) << 2 | (isFirst() ? 1 : 2)));
-        putU16(packet, unsigned(std::lround(turn() * 360 * 64) % (360 * 64)) << 1 | 1);
+        putU16(packet, angle << 1 | 1);
         putU16(packet, unsigned(mm) * 4);
         return send(packet, ready_ns);
     }
-    if (points_.empty())
-        start_ = turn();
-    points_.push_back(look(measure));
-    const int mm = points_.back().mm;
+    start_ = points_.empty() ? angle : start_;
+    points_.push_back({mm, slant_});
     slant_ = rplidarSlant_deg(packet_, mm);
-    if (points_.size() < capsule_.samples + needsNext)
+    const std::size_t samples = rplidarPacket(packet_).samples;
+    if (points_.size() < samples + needsNext)
         return;
-    sendCapsule(ready_ns);
-    points_.erase(points_.begin(), points_.begin() + std::ptrdiff_t(capsule_.samples));
-    start_ = turn(); // of the next one, where its first sample was taken
-}
-
-void RplidarEmulator::sendCapsule(std::int64_t time_ns) {
-    const unsigned angle = unsigned(std::lround(start_ * 360 * 64) % (360 * 64)); // 1/64 degree
-    send(encodeRplidar(packet_, angle | (begins_ ? 0x8000 : 0), std::uint32_t(clock_ms(time_ns) * 1000),
+    send(encodeRplidar(packet_, start_ | (begins_ ? 0x8000 : 0), std::uint32_t(clock_ms(time_ns) * 1000),
                        points_),
-         time_ns);
+         ready_ns);
     begins_ = false;
+    points_.erase(points_.begin(), points_.begin() + std::ptrdiff_t(samples));
+    start_ = angle;
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 #include "daemons/simulator/ScannerEmulator.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hermes::simulator {
@@ -133,6 +132,13 @@ void putU16(std::string &bytes, unsigned value) {
 void putU32(std::string &bytes, std::uint32_t value) {
     putU16(bytes, value & 0xFFFF);
     putU16(bytes, value >> 16);
+}
+
+std::string answerOf(std::uint8_t type, std::string_view bytes, std::size_t packetSize) {
+    std::string answer = "\xA5\x5A";
+    putU32(answer, std::uint32_t(packetSize > 0 ? packetSize | 1U << 30 : bytes.size()));
+    answer.push_back(char(type));
+    return answer.append(bytes);
 }
 
 } // namespace hermes::simulator

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -117,6 +118,15 @@ private:
 /// Appends a number, little endian.
 void putU16(std::string &bytes, unsigned value);
 void putU32(std::string &bytes, std::uint32_t value);
+/// An answer of RPLIDAR and YDLIDAR. packetSize: of packets that follow until the next request; 0: none do.
+std::string answerOf(std::uint8_t type, std::string_view bytes, std::size_t packetSize = 0);
+
+/// The row of a family's table, whose rows begin with the name.
+template <typename Type>
+const Type &typeOf(const ScannerModel &model, const std::vector<Type> &types) {
+    const auto isNamedSo = [&model](const Type &type) { return type.name == std::string_view(model.name); };
+    return *std::find_if(types.begin(), types.end(), isNamedSo);
+}
 
 // The families.
 std::unique_ptr<ScannerEmulator> makeRplidar(const ScannerModel &model, const ScannerOptions &options);

@@ -37,8 +37,8 @@ QString toText(LidarFault::Kind kind) {
 
 Simulator::Simulator()
     : Daemon({"simulator", "Simulator",
-              "A simulated robot in a world of line segments: an HDL-32E that sends real packets over UDP, "
-              "two RoboClaws that drive it, a GPS receiver and a 2D laser scanner on pseudo-terminals"})
+              "A simulated robot in a world of line segments: an HDL-32E that sends packets over UDP, "
+              "two RoboClaws that drive it, a GPS receiver and a 2D scanner on pseudo-terminals"})
     , pump_(
           [this](const Simulation::Truth &truth) {
               QMetaObject::invokeMethod(
@@ -130,11 +130,12 @@ void Simulator::declareCommands() {
                 "Simulates a fault of a device; none ends its faults. docs/simulator.md tells what each does")
             .param(Field::text("device", "Which device").choices(faultDevices()))
             .param(Field::text("kind", "What it does wrong").choices(faultKinds()))
-            .param(Field::number("share",
-                                 "Of the packets or answers that a loss leaves out or that are corrupt; "
-                                 "of the way that slip loses; of the charge that is left")
-                       .range(0, 1)
-                       .byDefault(0.1))
+            .param(
+                Field::number("share",
+                              "Of the packets, answers or bytes that a loss leaves out or that are corrupt; "
+                              "of the way that slip loses; of the charge that is left")
+                    .range(0, 1)
+                    .byDefault(0.1))
             .param(Field::number("delay_s", "By which slow answers are late; that an adapter waits for more "
                                             "bytes; that a brownout lasts")
                        .unit("s")
@@ -325,7 +326,7 @@ void Simulator::updateHealth() {
     else
         health().set(healthItem, faults_.level(double(failed)),
                      failed == 0
-                         ? QString("sending")
+                         ? QString(settings().number("lidar.port") > 0 ? "sending" : "off: lidar.port is 0")
                          : QString("sending; %1 packets could not be sent, or not in time").arg(failed),
                      values);
 }

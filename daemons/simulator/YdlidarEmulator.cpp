@@ -17,10 +17,10 @@ struct Ydlidar {
     bool triangulating; ///< it looks from beside its axis
 };
 
-constexpr Ydlidar ydlidars[] = {{"ydlidar-x2", 4, true, false, false, true},
-                                {"ydlidar-x4", 6, false, false, false, true},
-                                {"ydlidar-tmini", 150, false, true, false, false},
-                                {"ydlidar-tg30", 101, false, false, true, false}};
+const std::vector<Ydlidar> ydlidars{{"ydlidar-x2", 4, true, false, false, true},
+                                    {"ydlidar-x4", 6, false, false, false, true},
+                                    {"ydlidar-tmini", 150, false, true, false, false},
+                                    {"ydlidar-tg30", 101, false, false, true, false}};
 constexpr int pointsPerPacket = 40, sampleIntensity = 128;
 
 /// What is to be added to the head's angle, which grows clockwise, for that of a ray.
@@ -31,17 +31,13 @@ double correction_rad(int mm) {
 class YdlidarEmulator : public ScannerEmulator {
 public:
     YdlidarEmulator(const ScannerModel &model, const ScannerOptions &options)
-        : ScannerEmulator(model, options) {
-        for (const Ydlidar &type : ydlidars) {
-            if (model.name == std::string_view(type.name))
-                type_ = &type;
-        }
-        scanning_ = type_->oneWay;
-    }
+        : ScannerEmulator(model, options)
+        , type_(typeOf(model, ydlidars))
+        , scanning_(type_.oneWay) {}
 
 protected:
     void hear(std::uint8_t byte, std::int64_t now_ns) override {
-        if (last_ == 0xA5 && !type_->oneWay)
+        if (last_ == 0xA5 && !type_.oneWay)
             obey(byte, now_ns);
         last_ = byte;
     }
@@ -51,14 +47,13 @@ protected:
 
 private:
     void obey(std::uint8_t request, std::int64_t now_ns);
-    void answer(std::uint8_t type, std::string_view bytes, std::int64_t now_ns);
     std::string information() const {
-        return std::string{char(type_->model), 5, 1, 1} + std::string(16, '\1');
+        return std::string{char(type_.model), 5, 1, 1} + std::string(16, '\1');
     }
     void sendPacket(std::int64_t time_ns, bool first);
 
-    const Ydlidar *type_ = nullptr;
-    bool scanning_ = false;
+    const Ydlidar &type_;
+    bool scanning_;
     bool tells_ = false; ///< what it is, once within the data
     std::uint8_t last_ = 0;
     double correction_ = 0; ///< of the ray before
@@ -70,7 +65,7 @@ private:
 
 void YdlidarEmulator::obey(std::uint8_t request, std::int64_t now_ns) {
     if (request == 0x60 && !isBroken()) {
-        answer(0x81, {}, now_ns);
+        send(answerOf(0x81, {}, 5), now_ns);
         scanning_ = tells_ = true;
     } else if (request == 0x65 || request == 0x00 || request == 0x80) {
         scanning_ = false;
@@ -78,21 +73,14 @@ void YdlidarEmulator::obey(std::uint8_t request, std::int64_t now_ns) {
         if (request == 0x80)
             mend();
     } else if (request == 0x90) {
-        answer(0x04, information(), now_ns);
+        send(answerOf(0x04, information()), now_ns);
     } else if (request == 0x92) {
-        answer(0x06, std::string{char(isBroken() ? 2 : 0), char(isBroken() ? 1 : 0), 0}, now_ns);
+        send(answerOf(0x06, std::string{char(isBroken() ? 2 : 0), char(isBroken() ? 1 : 0), 0}), now_ns);
     } else if (request == 0x0D) {
         std::string speed; // hundredths of a turn a second
         putU32(speed, std::uint32_t(std::lround(this->speed() * 100)));
-        answer(0x04, speed, now_ns);
+        send(answerOf(0x04, speed), now_ns);
     }
-}
-
-void YdlidarEmulator::answer(std::uint8_t type, std::string_view bytes, std::int64_t now_ns) {
-    std::string head = "\xA5\x5A";
-    putU32(head, type == 0x81 ? 5 | 1U << 30 : std::uint32_t(bytes.size()));
-    head.push_back(char(type));
-    send(head.append(bytes), now_ns);
 }
 
 void YdlidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
@@ -104,11 +92,11 @@ void YdlidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
         samples_.clear();
         sum_ = 0;
     }
-    const double ray = 2 * vectorlib::pi * turn() + (type_->triangulating ? correction_ : 0);
-    const int mm = range_mm(measure, -ray, type_->timeOfFlight ? 65535 : 0x3FFF);
+    const double ray = 2 * vectorlib::pi * turn() + (type_.triangulating ? correction_ : 0);
+    const int mm = range_mm(measure, -ray, type_.timeOfFlight ? 65535 : 0x3FFF);
     correction_ = correction_rad(mm);
-    const unsigned value = unsigned(type_->timeOfFlight ? mm : mm * 4);
-    if (type_->intensity) {
+    const unsigned value = unsigned(type_.timeOfFlight ? mm : mm * 4);
+    if (type_.intensity) {
         samples_.push_back(char(mm > 0 ? sampleIntensity : 0));
         sum_ ^= unsigned(mm > 0 ? sampleIntensity : 0);
     }
@@ -119,7 +107,7 @@ void YdlidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
 }
 
 void YdlidarEmulator::sendPacket(std::int64_t time_ns, bool first) {
-    const double base = type_->timeOfFlight ? 3 : 0;
+    const double base = type_.timeOfFlight ? 3 : 0;
     const unsigned kind = first ? unsigned(std::lround((speed() - base) * 10)) << 1 | 1 : 0;
     std::string packet;
     for (const unsigned word : {0x55AAU, kind | unsigned(points_) << 8, firstAngle_, lastAngle_}) {
@@ -130,7 +118,7 @@ void YdlidarEmulator::sendPacket(std::int64_t time_ns, bool first) {
     points_ = 0;
     send(packet + samples_, time_ns);
     if (std::exchange(tells_, false))
-        answer(0x04, information(), time_ns);
+        send(answerOf(0x04, information()), time_ns);
 }
 
 } // namespace

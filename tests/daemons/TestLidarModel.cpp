@@ -202,6 +202,30 @@ private Q_SLOTS:
         QVERIFY(std::abs(distance(horizon) - 5) < 0.002);
     }
 
+    void levelRaysMeetWallsAndPeople() {
+        LidarModel::Options options;
+        options.sigma = 0;
+        World world;
+        world.people = {{1e-6, {{2, 2}, {2, 3}}}};
+        const People people(world.people, 0.3);
+        LidarModel lidar({{{5, -9}, {5, 9}}, {{-9, 4}, {9, 4}}}, options, 1);
+        const double away = std::atan2(1.0, 2.0), person = std::hypot(1.0, 2.0) - People::radius;
+        for (const double theta : {0.0, 2.5, -1.0}) {
+            lidar.stand({0, 1, theta}, people);
+            QVERIFY(std::abs(lidar.range(0 - theta) - 5) < 1e-9);
+            QVERIFY(std::abs(lidar.range(0.04 - theta) - 5 / std::cos(0.04)) < 1e-9); // beside the first
+            QVERIFY(std::abs(lidar.range(M_PI / 2 - theta) - 3) < 1e-9);
+            QCOMPARE(lidar.range(-M_PI / 2 - theta), 0.0);
+            QVERIFY(std::abs(lidar.range(away - theta) - person) < 1e-9);
+        }
+        lidar.stand({1, 1, 0}, people); // it looks anew
+        QVERIFY(std::abs(lidar.range(0) - 4) < 1e-9);
+        options.sensorHeight = People::height + 0.1; // over the head
+        lidar = LidarModel({{{5, -9}, {5, 9}}}, options, 1);
+        lidar.stand({0, 1, 0}, people);
+        QVERIFY(std::abs(lidar.range(away) - 5 / std::cos(away)) < 1e-9);
+    }
+
     void peopleAreWhereTheyAreAtEachFiring() {
         World world = wallAhead(9);
         world.people = {{2, {{4, 0}, {8, 0}}}};

@@ -177,6 +177,46 @@ private Q_SLOTS:
         QCOMPARE(line.state().unreadLost, qint64(3000 - left));
     }
 
+    void otherSpeedMakesGarbage_data() { rowsOf("speed", {"115200", "256000"}); }
+
+    void otherSpeedMakesGarbage() {
+        QFETCH(QString, speed);
+        const int baud = speed.toInt();
+        QByteArray came, heard;
+        SensorLine line;
+        QVERIFY(line.open("", baud, 0.3, [&](const QByteArray &bytes) { came += bytes; }).ok());
+        const QString device = "serial://" + line.state().line.device;
+        for (const int wanted : {baud, 9600, baud}) {
+            SerialInterface near(*InterfaceUrl::parse(QString("%1?baud=%2").arg(device).arg(wanted)),
+                                 nullptr);
+            QObject::connect(&near, &Interface::received, [&](const QByteArray &bytes) { heard += bytes; });
+            near.open();
+            QVERIFY(near.isOpen());
+            heard.clear();
+            const QByteArray text = "at " + QByteArray::number(wanted);
+            line.send(text);
+            near.write(text);
+            QTRY_COMPARE(heard.size(), text.size());
+            QCOMPARE(heard == text, wanted == baud);
+            if (wanted == baud)
+                QTRY_VERIFY(came.endsWith(text));
+        }
+        QVERIFY(!came.contains("9600"));
+    }
+
+    void programMayBeBehindForAWhile() {
+        SensorLine line;
+        QVERIFY(line.open("", 0, 0.2, [](const QByteArray &) {}).ok());
+        QElapsedTimer timer;
+        timer.start();
+        for (int i = 0; i < 30; ++i)
+            line.send(QByteArray(100, 'x'));
+        QCOMPARE(line.state().unreadLost, qint64(0));
+        QTRY_VERIFY((line.send("x"), line.state().unreadLost >= 3000));
+        QVERIFY(timer.elapsed() >= 200);
+        QVERIFY(line.state().bytes > line.state().unreadLost);
+    }
+
     void claimOfAKilledProgramIsDropped() {
         SensorLine line;
         QVERIFY(line.open("").ok());
