@@ -64,11 +64,10 @@ HostAction ScannerDialogue::begin(int step, std::int64_t mono_ns) {
 HostAction ScannerDialogue::fail(const char *problem, std::int64_t mono_ns) {
     problem_ = trouble_.empty() ? problem : std::exchange(trouble_, {});
     isScanning_ = false;
-    const bool reopens = ++attempts_ >= attemptsOfLine;
-    attempts_ %= attemptsOfLine;
+    ++attempts_;
     jump();
     HostAction action = begin(0, mono_ns);
-    action.reopen = reopens;
+    action.reopen = attempts_ >= attemptsOfLine;
     return action;
 }
 

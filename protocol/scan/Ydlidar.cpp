@@ -15,6 +15,7 @@ constexpr double rateWindow_ns = 1e10; // long enough that packets that come lat
 constexpr int maxCount = 80;           // beams of a packet
 constexpr int wrongWidth = 20;         // so many wrong checksums in a row are no noise
 constexpr double tolerance = 5;        // beams that packets may lie beside each other
+constexpr double mostGone = 100;       // revolutions; more is a clock that was set
 
 } // namespace
 
@@ -202,7 +203,7 @@ std::int64_t Ydlidar::endOf(double first_deg, int count, std::int64_t received_n
         if (isDamaged || missing > tolerance) {
             const double passed = double(received_ns - lastReceived_ns_) / sample_ns_ - count;
             missing = std::max(missing, 0.0);
-            missing += std::max(std::round((passed - missing) / around), 0.0) * around;
+            missing += std::clamp(std::round((passed - missing) / around), 0.0, mostGone) * around;
             revolutions_.lose(std::max<std::uint64_t>(
                 1, std::uint64_t(std::ceil((missing - tolerance) / double(fullCount_)))));
             beams += missing;

@@ -138,6 +138,19 @@ private Q_SLOTS:
         }
     }
 
+    /// Where the end of a scan is damaged, the next is still one.
+    void damagedEnd() {
+        for (const std::size_t fromEnd : {1, 2, 3}) {
+            ScannerReader reader("hokuyo-ust10lx");
+            std::string second = ustScan(1);
+            second[second.size() - fromEnd] ^= 0x40;
+            reader.feed(ustParameters + ustScan(0) + second + ustScan(2) + ustScan(3), 0);
+            QCOMPARE(reader.revolutions.size(), std::size_t(3));
+            QCOMPARE(reader.scanner->counts().damaged, std::uint64_t(1));
+            QCOMPARE(reader.assembler.counts().lostPackets, std::uint64_t(1));
+        }
+    }
+
     /// A bit that flips in the parameters leaves the scanner unknown, never another one.
     void damagedParameters() {
         for (std::size_t bit = 0; bit < ustParameters.size() * 8; ++bit) {
@@ -233,6 +246,10 @@ private Q_SLOTS:
     void silence() {
         ScannerReader reader("hokuyo-urg04lx");
         double t_s = 1;
+        reader.scanner->opened(ScannerReader::ns(t_s));
+        reader.nextAction(t_s, 2);
+        QCOMPARE(reader.nextAction(t_s, t_s + 0.09).send, std::string()); // it has its time
+        QCOMPARE(reader.nextAction(t_s, t_s + 0.1).send, std::string("VV\n"));
         reader.scanner->opened(ScannerReader::ns(t_s));
         int requests = 0;
         bool reopens = false;
