@@ -36,7 +36,7 @@ std::vector<double> rangesOf(const ScanMessage &scan, double start, std::size_t 
 } // namespace
 
 QStringList CarmenText::topics() {
-    return {"motorcontrol/odometry", "velodynelogger/scan2d", "scanmatcher/settings"};
+    return {"motorcontrol/odometry", "velodynelogger/scan2d", "scanner/scan2d", "scanmatcher/settings"};
 }
 
 QByteArray CarmenText::take(const SessionMessage &message) {

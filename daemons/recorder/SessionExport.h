@@ -9,8 +9,8 @@ namespace hermes::recorder {
 /// the paths.
 ///  csv:    a file a topic; its columns are the fields of the schema, lists are JSON
 ///  tum:    a file a topic that tells poses: stamp x y z qx qy qz qw; else scanmatcher/pose
-///  carmen: ODOM lines and a ROBOTLASER1 line a scan, of motorcontrol/odometry and velodynelogger/scan2d
-///  mcap:   everything in one file
+///  carmen: ODOM lines and a ROBOTLASER1 line a scan, of motorcontrol/odometry and the scan2d of lidar or
+///  scanner mcap:   everything in one file
 /// Errors: InvalidParams (format), NotReady (no such messages), InputOutput.
 Result<QStringList> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
                                   const QString &into);

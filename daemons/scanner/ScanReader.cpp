@@ -45,13 +45,20 @@ void ScanReader::take(const scan::Revolution &revolution) {
     sink_(revolution);
 }
 
+/// In a full revolution, of which a sweep is a part.
+static quint64 raysOf(const scan::Revolution &revolution) {
+    const double beams = double(revolution.beams.size());
+    const double span_deg = std::abs(revolution.beams.back().angle_deg - revolution.beams.front().angle_deg);
+    return span_deg > 0 && beams > 1 ? quint64(std::lround((beams - 1) * 360 / span_deg)) : quint64(beams);
+}
+
 ScanMessage toScanMessage(const scan::Revolution &revolution, bool replayed) {
     ScanMessage message;
     message.header.turn = revolution.number;
     message.header.stamp = double(revolution.begin_ns) * 1e-9;
     message.header.duration_s = double(revolution.end_ns - revolution.begin_ns) * 1e-9;
     message.header.partial = revolution.partial;
-    message.header.rays = revolution.beams.size();
+    message.header.rays = raysOf(revolution);
     message.header.lostPackets = revolution.lostPackets;
     message.header.frame = "scanner";
     message.header.replayed = replayed;

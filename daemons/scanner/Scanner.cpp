@@ -31,7 +31,7 @@ std::optional<QString> known(const std::string &text) {
 Scanner::Scanner()
     : Daemon(
           {"scanner", "Scanner",
-           "Reads a laser scanner of one plane (RPLIDAR, LDROBOT) or replays a recording of one, publishes "
+           "Reads a laser scanner of one plane (RPLIDAR, LDROBOT, YDLIDAR, Hokuyo, SICK) or replays a recording of one, publishes "
            "each revolution, records its bytes"}) {
     declareSettings();
     declareTopics();

@@ -41,9 +41,12 @@ private:
     void openSession() {
         const std::string &path = options.source.path;
         std::error_code ignored;
-        if (!std::filesystem::is_directory(std::filesystem::u8path(path), ignored) || !captureIn(path))
+        if (!std::filesystem::is_directory(std::filesystem::u8path(path), ignored))
             return;
-        options.source.session = std::make_shared<RecordedSession>(path);
+        auto session = std::make_shared<RecordedSession>(path);
+        if (!captureIn(path) && session->scanTopic().empty())
+            return;
+        options.source.session = std::move(session);
         if (!options.isSigmaGiven())
             options.sigma = options.source.session->sigma().value_or(options.sigma);
     }

@@ -129,6 +129,13 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
     scan.fault = turn.partial ? MapScan::Fault::Partial : MapScan::Fault::None;
 }
 
+void reportSession(const RecordedSession &session, const MapSourceOptions &options, MapSourceReport &report) {
+    report.odometryRefused = session.refused();
+    report.mount = options.mount.value_or(session.tracker().sensorOnRobot);
+    if (const std::string problems = session.problems(); !problems.empty())
+        report.otherSensors += (report.otherSensors.empty() ? "" : "; ") + problems;
+}
+
 void readCapture(Input &input, const MapSourceOptions &options, const MapScanSink &sink,
                  MapSourceReport &report) {
     MapScan scan;
@@ -146,12 +153,25 @@ void readCapture(Input &input, const MapSourceOptions &options, const MapScanSin
     report.otherSensors = LidarCapture(input, options.sensor, velodyne::Model::Blank,
                                        session ? session->clock() : velodyne::ClockChoice::Gps)
                               .read(assembler);
-    if (!session)
-        return;
-    report.odometryRefused = session->refused();
-    report.mount = options.mount.value_or(session->tracker().sensorOnRobot);
-    if (const std::string problems = session->problems(); !problems.empty())
-        report.otherSensors += (report.otherSensors.empty() ? "" : "; ") + problems;
+    if (session)
+        reportSession(*session, options, report);
+}
+
+/// Of a session whose scanner has no capture: the scans that its daemon published.
+void readScans(const MapSourceOptions &options, const MapScanSink &sink, MapSourceReport &report) {
+    RecordedSession &session = *options.session;
+    std::size_t scans = 0;
+    MapScan scan;
+    session.readScans([&](const vectorlib::TimedScan &read, bool partial) {
+        if (scans++ % options.every != 0)
+            return;
+        static_cast<vectorlib::TimedScan &>(scan) = read;
+        scan.fault = partial ? MapScan::Fault::Partial : MapScan::Fault::None;
+        if (!scan.points.empty())
+            scan.odometry = session.over(scan.begin(), scan.end());
+        sink(scan, (scans - 1) / options.every, 0);
+    });
+    reportSession(session, options, report);
 }
 
 void readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
@@ -197,8 +217,11 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
 void readAny(const MapSourceOptions &options, const MapScanSink &sink, MapSourceReport &report) {
     std::error_code ignored;
     if (options.session) {
-        Input input(*captureIn(options.path));
-        refuseUnused(options, true, false);
+        const auto capture = captureIn(options.path);
+        refuseUnused(options, capture.has_value(), false);
+        if (!capture)
+            return readScans(options, sink, report);
+        Input input(*capture);
         return readCapture(input, options, sink, report);
     }
     if (fs::is_directory(fs::u8path(options.path), ignored)) {

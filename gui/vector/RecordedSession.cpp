@@ -6,6 +6,7 @@
 #include "vectorlib/motion/OdometryFault.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace hermes::vector {
@@ -16,7 +17,8 @@ using JsonData = nlohmann::json;
 namespace {
 
 constexpr std::size_t partDigits = 4;
-constexpr double clockStep_s = 0.5;   // back: the clock was set
+constexpr double clockStep_s = 0.5; // back: the clock was set
+const std::string scanSuffix = "/scan2d";
 constexpr double longestLead_s = 1.0; // of an odometry before a scan: else its stamp is wrong
 
 /// Where the number of a part begins in its path: NAME-0001.pcap.
@@ -72,6 +74,31 @@ std::optional<vectorlib::OdometrySample> sampleFrom(const mcap::Message &message
     for (int i = 0; i < 9; ++i)
         take("/covariance/" + std::to_string(i), (*sample.covariance)(i / 3, i % 3));
     return isWhole && vectorlib::faultOf(sample).empty() ? std::optional(sample) : std::nullopt;
+}
+
+/// What a message of the topic `scan2d` tells; nothing where its lists do not fit.
+std::optional<vectorlib::TimedScan> scanFrom(const JsonData &data) {
+    const auto list = [&](const char *name) {
+        const JsonData values = data.is_object() ? data.value(name, JsonData::array()) : JsonData::array();
+        std::vector<float> numbers;
+        for (const JsonData &value : values)
+            numbers.push_back(value.is_number() ? value.get<float>() : std::nanf(""));
+        return numbers;
+    };
+    const std::vector<float> x = list("x"), y = list("y");
+    vectorlib::TimedScan scan;
+    scan.seconds = list("t");
+    const auto stamp = numberAt(data, "/stamp");
+    if (!stamp || x.size() != y.size() || (!scan.seconds.empty() && scan.seconds.size() != x.size()))
+        return std::nullopt;
+    scan.stamp = *stamp;
+    scan.rays = std::size_t(std::clamp(numberAt(data, "/rays").value_or(double(x.size())), 0.0, 1e6));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!std::isfinite(x[i]) || !std::isfinite(y[i]))
+            return std::nullopt;
+        scan.points.emplace_back(x[i], y[i]);
+    }
+    return scan;
 }
 
 } // namespace
@@ -162,6 +189,33 @@ velodyne::ClockChoice RecordedSession::clock() const {
     return velodyne::clockChoiceFromText(found->second.at(path).get<std::string>());
 }
 
+std::string RecordedSession::scanTopic() const {
+    for (const mcap::Reader &reader : readers_)
+        for (const auto &[id, channel] : reader.channels())
+            if (channel.topic.size() > scanSuffix.size() &&
+                channel.topic.compare(channel.topic.size() - scanSuffix.size(), scanSuffix.size(),
+                                      scanSuffix) == 0)
+                return channel.topic;
+    return {};
+}
+
+void RecordedSession::readScans(
+    const std::function<void(const vectorlib::TimedScan &scan, bool partial)> &take) {
+    const std::string topic = scanTopic();
+    for (const std::string &file : files_) {
+        mcap::Reader reader = valueOrFail(mcap::Reader::open(file)); // beside those of the odometry
+        reader.select([&](const mcap::Channel &channel) { return channel.topic == topic; });
+        while (const auto message = reader.next()) {
+            const JsonData data = JsonData::parse(message->data, nullptr, false);
+            const auto scan = scanFrom(data);
+            if (scan)
+                take(*scan, numberAt(data, "/partial").value_or(0) != 0);
+            else
+                ++refusedScans_;
+        }
+    }
+}
+
 std::optional<vectorlib::OdometrySample> RecordedSession::nextSample() {
     for (; reader_ < readers_.size(); ++reader_)
         while (const auto message = readers_[reader_].next()) {
@@ -191,7 +245,7 @@ std::optional<vectorlib::OdometryTrack> RecordedSession::over(double begin, doub
 }
 
 std::string RecordedSession::problems() const {
-    std::string text;
+    std::string text = refusedScans_ == 0 ? "" : std::to_string(refusedScans_) + " scans cannot be read";
     for (std::size_t i = 0; i < files_.size(); ++i)
         if (const std::string problem = readers_[i].problem(); !problem.empty())
             text += (text.empty() ? "" : "; ") + files_[i] + ": " + problem;

@@ -3,10 +3,12 @@
 #include "protocol/mcap/Reader.h"
 #include "protocol/velodyne/TurnAssembler.h"
 #include "vectorlib/mapping/ScanTracker.h"
+#include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/motion/Odometry.h"
 
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,6 +37,11 @@ public:
     velodyne::ClockChoice clock() const;
     std::optional<double> sigma() const { return number(matcherTopic, "matcher.sigma_m"); }
 
+    /// The topic of its scans among those recorded, as of a scanner without a capture; empty: there is none.
+    std::string scanTopic() const;
+    /// Gives all scans of that topic; partial: too little of a revolution.
+    void readScans(const std::function<void(const vectorlib::TimedScan &scan, bool partial)> &take);
+
     /// The robot's way during a scan (seconds since the Unix epoch), when it is known. Scans in the order of
     /// time.
     std::optional<vectorlib::OdometryTrack> over(double begin, double end);
@@ -58,7 +65,7 @@ private:
     std::optional<vectorlib::OdometrySample> next_; ///< not yet in the buffer
     vectorlib::OdometryBuffer buffer_;
     std::optional<double> newest_, lastEnd_; ///< stamp in the buffer; of the last scan
-    std::size_t refused_ = 0;
+    std::size_t refused_ = 0, refusedScans_ = 0;
 };
 
 } // namespace hermes::vector
