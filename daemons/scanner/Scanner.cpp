@@ -29,10 +29,10 @@ std::optional<QString> known(const std::string &text) {
 } // namespace
 
 Scanner::Scanner()
-    : Daemon(
-          {"scanner", "Scanner",
-           "Reads a laser scanner of one plane (RPLIDAR, LDROBOT, YDLIDAR, Hokuyo, SICK) or replays a recording of one, publishes "
-           "each revolution, records its bytes"}) {
+    : Daemon({"scanner", "Scanner",
+              "Reads a laser scanner of one plane (RPLIDAR, LDROBOT, YDLIDAR, Hokuyo, SICK) or replays a "
+              "recording of one, publishes "
+              "each revolution, records its bytes"}) {
     declareSettings();
     declareTopics();
     declareCommands();

@@ -21,7 +21,7 @@ const std::vector<Ydlidar> ydlidars{{"ydlidar-x2", 4, true, false, false, true},
                                     {"ydlidar-x4", 6, false, false, false, true},
                                     {"ydlidar-tmini", 150, false, true, false, false},
                                     {"ydlidar-tg30", 101, false, false, true, false}};
-constexpr int pointsPerPacket = 40, sampleIntensity = 128;
+constexpr int farthest_mm = 0x3FFF, pointsPerPacket = 40, sampleIntensity = 128;
 
 /// What is to be added to the head's angle, which grows clockwise, for that of a ray.
 double correction_rad(int mm) {
@@ -93,8 +93,8 @@ void YdlidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
         sum_ = 0;
     }
     const double ray = 2 * vectorlib::pi * turn() + (type_.triangulating ? correction_ : 0);
-    const int mm = range_mm(measure, -ray, type_.timeOfFlight ? 65535 : 0x3FFF);
-    correction_ = correction_rad(mm);
+    const int mm = range_mm(measure, -ray, type_.timeOfFlight ? 65535 : farthest_mm);
+    correction_ = correction_rad(mm > 0 ? mm : farthest_mm); // what gives none is far
     const unsigned value = unsigned(type_.timeOfFlight ? mm : mm * 4);
     if (type_.intensity) {
         samples_.push_back(char(mm > 0 ? sampleIntensity : 0));
