@@ -88,8 +88,8 @@ std::string toText(const SensorChoice::Sensor &sensor) {
            std::to_string(sensor.port);
 }
 
-using velodyne::ClockChoice;
 using scan::HostClock;
+using velodyne::ClockChoice;
 using velodyne::PacketFault;
 using velodyne::TurnAssembler;
 
@@ -142,8 +142,8 @@ std::optional<HostClock::Time> LidarStream::hostTime(const Datagram &datagram) {
     const velodyne::SensorModel *const model =
         velodyne::findSensorModel(isNamed ? packet.model() : options_.model);
     const std::uint64_t restarts = host_.restarts();
-    const HostClock::Time time =
-        host_.take(packet.stamp_us() * std::int64_t(1000), datagram.stamp_ns, packet.groups() * model->blockPeriod_ns());
+    const HostClock::Time time = host_.take(packet.stamp_us() * std::int64_t(1000), datagram.stamp_ns,
+                                            packet.groups() * model->blockPeriod_ns());
     if (host_.restarts() != restarts) {
         isSet_ = false;
         gps_.forget();

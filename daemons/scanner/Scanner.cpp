@@ -256,9 +256,11 @@ std::pair<HealthLevel, QString> Scanner::sensorHealth() {
     if (silent_s > stale_s)
         return {HealthLevel::Stale, QString("%1: no revolution for %2 s").arg(name).arg(silent_s, 0, 'f', 1)};
     const scan::RevolutionAssembler::Counts &counts = reader.counts();
+    if (reader.period_s() == 0)
+        return {HealthLevel::Ok, name + ": it measures"};
     QString text = QString("%1: %2 revolutions a minute of %3 beams, stamps to %4 ms")
                        .arg(name)
-                       .arg(reader.period_s() > 0 ? 60 / reader.period_s() : 0.0, 0, 'f', 0)
+                       .arg(60 / reader.period_s(), 0, 'f', 0)
                        .arg(reader.beams())
                        .arg(double(reader.clockBound_ns()) * 1e-6, 0, 'f', 1);
     if (counts.lostPackets > 0)

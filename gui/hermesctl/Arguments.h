@@ -27,6 +27,7 @@ struct Arguments {
     QString recorder = "recorder"; ///< who records and replays sessions
     QStringList without, topics;
     QString format;
+    QString scanner, world, kinematics = "mecanum"; ///< of a simulated robot
     double at_s = 0, from_s = 0;
     bool detach = false;
     QString out;        ///< file instead of stdout

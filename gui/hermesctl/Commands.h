@@ -18,6 +18,11 @@ Result<void> listDaemons(const Arguments &arguments);
 /// Finds what is plugged in, through the supervisor, and writes the settings for it.
 Result<void> setUp(const Arguments &arguments);
 
+/// Starts a simulated robot with its daemons at their usual ports; it has ended when it is back.
+Result<void> simulate(const Arguments &arguments);
+/// Error: a kind of drive that cannot be simulated.
+Result<void> checkSimulate(const Arguments &arguments);
+
 Result<void> stopRobots(const Arguments &arguments);
 Result<void> emergencyStopRobots(const Arguments &arguments);
 

@@ -1,0 +1,136 @@
+// hermesctl simulate: a whole simulated robot on this computer, until Ctrl-C.
+#include "common/Project.h"
+#include "common/daemon/SignalWatcher.h"
+#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/Waiting.h"
+
+#include <QDir>
+#include <QEventLoop>
+#include <QFile>
+#include <QJsonDocument>
+#include <QProcess>
+#include <QTemporaryDir>
+
+namespace hermes::ctl {
+namespace {
+
+/// A world that came with the programs, in an installation or a source tree.
+QString usualWorld(const QString &programs) {
+    for (const char *place : {"/../share/hermes/worlds/", "/../../../deploy/worlds/"})
+        if (const QFileInfo file(programs + place + "pillars.json"); file.exists())
+            return file.canonicalFilePath();
+    return {};
+}
+
+/// Settings of the daemons of such a robot, by their names.
+QMap<QString, QJsonObject> settingsOf(const Arguments &arguments, const QString &folder,
+                                      const QString &world) {
+    const QString motors = folder + "/motors", laser = folder + "/laser", here = QDir::currentPath();
+    const auto portOf = [](const char *daemon) { return QString("127.0.0.1:%1").arg(defaultPort(daemon)); };
+    const QJsonObject line{{"url", QString("serial://%1?baud=115200").arg(motors)}};
+    const QJsonObject frame{{"layout", arguments.kinematics}}, record{{"folder", here + "/recordings"}};
+    const bool hasScanner = !arguments.scanner.isEmpty();
+    QMap<QString, QJsonObject> settings{
+        {"simulator", {{"world", world}, {"motors", QJsonObject{{"link", motors}}}, {"frame", frame}}},
+        {"motorcontrol", {{"controllers", QJsonObject{{"1", line}, {"2", line}}}, {"frame", frame}}},
+        {"scanmatcher",
+         {{"source", QJsonObject{{"address", portOf(hasScanner ? "scanner" : "velodynelogger")}}},
+          {"odometry", QJsonObject{{"address", portOf("motorcontrol")}}},
+          {"map", QJsonObject{{"folder", here + "/maps"}}}}},
+        {"recorder", {{"record", record}}}};
+    if (hasScanner) {
+        settings["simulator"]["scanner"] = QJsonObject{{"model", arguments.scanner}, {"link", laser}};
+        settings["simulator"]["lidar"] = QJsonObject{{"port", 0}};
+        settings["scanner"] = {
+            {"scanner", QJsonObject{{"url", "serial://" + laser}, {"model", arguments.scanner}}},
+            {"record", record}};
+    } else {
+        settings["velodynelogger"] = {{"source", QJsonObject{{"address", "127.0.0.1"}}}, {"record", record}};
+    }
+    return settings;
+}
+
+Result<void> put(const QString &path, const QJsonObject &settings) {
+    QFile file(path);
+    const QByteArray text = QJsonDocument(settings).toJson();
+    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size())
+        return Error(ErrorCode::InputOutput, path + ": " + file.errorString());
+    return {};
+}
+
+/// A daemon takes its settings.
+Result<void> check(const QString &programs, const QString &name, const QString &path) {
+    QProcess daemon;
+    daemon.start(programs + "/hermes-" + name, {"--config", path, "--check"});
+    if (!daemon.waitForStarted() || !daemon.waitForFinished())
+        return Error(ErrorCode::InputOutput, programs + "/hermes-" + name + ": " + daemon.errorString());
+    if (daemon.exitCode() == 0)
+        return {};
+    return Error(ErrorCode::InvalidParams, QString::fromUtf8(daemon.readAllStandardError()).trimmed());
+}
+
+/// Writes their settings, and those of the supervisor that starts them; the simulator, whose lines the others
+/// open, first.
+Result<void> write(const QString &programs, const QString &folder,
+                   const QMap<QString, QJsonObject> &settings) {
+    QStringList names = settings.keys();
+    names.removeAll("simulator");
+    names.prepend("simulator");
+    QJsonArray processes;
+    for (const QString &name : qAsConst(names)) {
+        const QString path = folder + '/' + name + ".json";
+        if (const Result<void> written = put(path, settings[name]); !written)
+            return written;
+        if (const Result<void> checked = check(programs, name, path); !checked)
+            return checked;
+        processes.append(
+            QJsonObject{{"name", name}, {"arguments", QJsonArray{"--config", path}}, {"autostart", true}});
+    }
+    return put(folder + "/supervisor.json", {{"robot", "simulated"}, {"processes", processes}});
+}
+
+} // namespace
+
+Result<void> checkSimulate(const Arguments &arguments) {
+    if (arguments.kinematics == "mecanum" || arguments.kinematics == "differential")
+        return {};
+    return Error(
+        ErrorCode::InvalidParams,
+        QString("--kinematics: found \"%1\", expected mecanum or differential").arg(arguments.kinematics));
+}
+
+Result<void> simulate(const Arguments &arguments) {
+    const QString programs = QCoreApplication::applicationDirPath();
+    const QString world =
+        arguments.world.isEmpty() ? usualWorld(programs) : QFileInfo(arguments.world).absoluteFilePath();
+    if (!QFile::exists(world))
+        return Error(ErrorCode::InputOutput, world.isEmpty()
+                                                 ? "no world came with this program; --world FILE names one"
+                                                 : world + ": there is no such world");
+    const QTemporaryDir folder;
+    if (!folder.isValid())
+        return Error(ErrorCode::InputOutput, folder.errorString());
+    const auto settings = settingsOf(arguments, folder.path(), world);
+    if (const Result<void> written = write(programs, folder.path(), settings); !written)
+        return written;
+    QProcess supervisor;
+    supervisor.setProcessChannelMode(QProcess::ForwardedChannels);
+    supervisor.start(programs + "/hermes-supervisor", {"--config", folder.path() + "/supervisor.json"});
+    if (!supervisor.waitForStarted())
+        return Error(ErrorCode::InputOutput, programs + "/hermes-supervisor: " + supervisor.errorString());
+    note(QString("a robot is simulated in %1: %2; recordings and maps are put below %3\n"
+                 "hermesctl drive motorcontrol drives it, hermes-gui shows it, Ctrl-C ends it")
+             .arg(world, QStringList(settings.keys()).join(", "), QDir::currentPath()));
+    QEventLoop loop;
+    SignalWatcher signals(nullptr);
+    QObject::connect(&signals, &SignalWatcher::received, &supervisor, &QProcess::terminate);
+    QObject::connect(&supervisor, qOverload<int, QProcess::ExitStatus>(&QProcess::finished), &loop,
+                     &QEventLoop::quit);
+    loop.exec();
+    if (supervisor.exitStatus() == QProcess::NormalExit && supervisor.exitCode() == 0)
+        return {};
+    return Error(ErrorCode::DeviceFault,
+                 QString("the supervisor ended with status %1").arg(supervisor.exitCode()));
+}
+
+} // namespace hermes::ctl
