@@ -1,5 +1,7 @@
 #include "common/interface/PtyInterface.h"
 
+#include "common/interface/AnySpeed.h"
+
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
@@ -18,16 +20,6 @@ namespace {
 QString systemError() {
     return QString::fromLocal8Bit(std::strerror(errno));
 }
-
-/// The kernel's struct termios2. Its header cannot be included together with <termios.h>, which knows but
-/// some speeds.
-struct AnySpeed {
-    tcflag_t inputFlags, outputFlags, control, local;
-    cc_t line, characters[19];
-    speed_t input, output;
-};
-const auto getAnySpeed = _IOR('T', 0x2A, AnySpeed), setAnySpeed = _IOW('T', 0x2B, AnySpeed);
-constexpr tcflag_t anySpeed = 0x1000; // BOTHER
 
 } // namespace
 
@@ -105,17 +97,12 @@ qint64 PtyInterface::discardUnread() {
 }
 
 int PtyInterface::baud() const {
-    AnySpeed settings;
-    return nearFd_ >= 0 && ioctl(nearFd_, getAnySpeed, &settings) == 0 ? int(settings.output) : 0;
+    return nearFd_ >= 0 ? speedOf(nearFd_) : 0;
 }
 
 void PtyInterface::setBaud(int baud) {
-    AnySpeed settings;
-    if (baud <= 0 || nearFd_ < 0 || ioctl(nearFd_, getAnySpeed, &settings) != 0)
-        return;
-    settings.control = (settings.control & ~tcflag_t(CBAUD)) | anySpeed;
-    settings.input = settings.output = speed_t(baud);
-    ioctl(nearFd_, setAnySpeed, &settings);
+    if (baud > 0 && nearFd_ >= 0)
+        setSpeed(nearFd_, baud);
 }
 
 bool PtyInterface::doWrite(const QByteArray &bytes) {

@@ -26,7 +26,8 @@ Findings DeviceSearch::search(const Options &options) const {
         controllers.append(QFileInfo(path).canonicalFilePath());
     std::vector<std::future<FoundSerial>> probes;
     for (const SerialCandidate &candidate : serialCandidates(options.ports)) {
-        const bool mayAsk = options.ask || candidate.isController || controllers.contains(candidate.device);
+        const bool isController = candidate.isController || controllers.contains(candidate.device);
+        const SerialProbe::Permission mayAsk{options.ask || isController, options.ask && !isController};
         probes.push_back(std::async(std::launch::async, [this, candidate, mayAsk] {
             return SerialProbe(candidate, mayAsk, isCancelled_).run();
         }));

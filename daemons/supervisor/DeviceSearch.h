@@ -14,7 +14,8 @@ public:
     struct Options {
         QStringList ports;       ///< serial lines beside those that the system lists
         QStringList controllers; ///< devices that settings name as those of motor controllers
-        bool ask = false;        ///< silent lines are asked for a RoboClaw, also those of unknown devices
+        bool ask =
+            false; ///< silent lines are asked for a RoboClaw or a scanner, also those of unknown devices
         quint16 lidarPort = 0, positionPort = 0;
     };
     /// In a thread of the search.
@@ -25,7 +26,7 @@ public:
     DeviceSearch(const DeviceSearch &) = delete;
     DeviceSearch &operator=(const DeviceSearch &) = delete;
 
-    /// Eight seconds at most. Only when none is running.
+    /// Fifteen seconds at most. Only when none is running.
     void begin(const Options &options, const Done &done);
 
 private:

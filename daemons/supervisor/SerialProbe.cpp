@@ -1,8 +1,11 @@
 #include "daemons/supervisor/SerialProbe.h"
 
+#include "common/Time.h"
+#include "common/interface/AnySpeed.h"
 #include "daemons/supervisor/PortUsers.h"
 #include "protocol/nmea/SentenceParser.h"
 #include "protocol/roboclaw/Packet.h"
+#include "protocol/scan/ScannerModel.h"
 
 #include <QElapsedTimer>
 #include <QFile>
@@ -17,17 +20,13 @@
 namespace hermes::supervisor {
 namespace {
 
-struct Speed {
-    int baud;
-    speed_t flag;
-};
-constexpr Speed speeds[] = {
-    {4800, B4800}, {9600, B9600}, {38400, B38400}, {115200, B115200}, {460800, B460800}};
 constexpr int talkerBauds[] = {9600, 4800, 38400, 115200}; // the usual one first
 constexpr int controllerBauds[] = {115200, 38400, 460800}; // the same
 constexpr int listen_ms = 1200;                            // a receiver says something each second
 constexpr int answer_ms = 60, patientAnswer_ms = 200; // 50 bytes, and an adapter that holds them for 16 ms
-constexpr int slice_ms = 50;                          // between two looks whether to give up
+constexpr int scannerAnswer_ms = 700, scannerStep_ms = 10;
+constexpr std::uint64_t enoughPackets = 10; // that were right, of a scanner
+constexpr int slice_ms = 50;                // between two looks whether to give up
 constexpr int allAddresses = roboclaw::lastAddress - roboclaw::firstAddress + 1;
 
 /// The first whole sentence; empty: none.
@@ -66,11 +65,15 @@ FoundSerial SerialProbe::run() {
     found_.kind = "failed";
     found_.text = open();
     if (port_ >= 0 && found_.text.isEmpty() && !listen()) {
-        found_.kind = mayAsk_ ? "silent" : "not_asked";
-        if (mayAsk_)
+        found_.kind = mayAsk_.controller ? "silent" : "not_asked";
+        if (mayAsk_.controller)
             ask();
+        if (mayAsk_.scanner && found_.kind != "roboclaw")
+            findScanner(false);
     }
-    if (isGone_ && found_.kind != "nmea" && found_.kind != "roboclaw") {
+    if (found_.kind == "talker")
+        findScanner(true);
+    if (isGone_ && found_.kind != "nmea" && found_.kind != "roboclaw" && found_.kind != "scanner") {
         found_.kind = "failed";
         found_.text = "went away during the search";
     }
@@ -120,10 +123,8 @@ void SerialProbe::setBaud(int baud) {
     ::cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     settings.c_cflag &= ~tcflag_t(CRTSCTS | CSTOPB);
-    for (const Speed &speed : speeds)
-        if (speed.baud == baud)
-            ::cfsetspeed(&settings, speed.flag);
     ::tcsetattr(port_, TCSANOW, &settings);
+    setSpeed(port_, baud);
     ::tcflush(port_, TCIOFLUSH);
 }
 
@@ -169,6 +170,37 @@ bool SerialProbe::listen() {
         found_.text = "talks by itself, but not in NMEA sentences; it was asked nothing";
     }
     return true;
+}
+
+/// Of the scanners that send by themselves, or of those that are asked, which never are where somebody talks.
+void SerialProbe::findScanner(bool isOneWay) {
+    for (const scan::ScannerModel *const model : scan::scannerSearch(true)) {
+        if (model->isOneWay != isOneWay || isGone_ || isCancelled_)
+            continue;
+        setBaud(model->baud);
+        scan::RevolutionAssembler revolutions([](const scan::Revolution &) {});
+        const auto scanner = model->make(*model, revolutions);
+        scanner->opened(Moment::now().mono_ns);
+        QElapsedTimer waiting;
+        for (waiting.start(); waiting.elapsed() < scannerAnswer_ms && !isGone_ && !isCancelled_;) {
+            const std::string asked = isOneWay ? std::string() : scanner->next(Moment::now().mono_ns).send;
+            if (!asked.empty() && ::write(port_, asked.data(), asked.size()) != ssize_t(asked.size()))
+                isGone_ = errno != EAGAIN;
+            const QByteArray bytes = receive(scannerStep_ms, [](const QByteArray &) { return true; });
+            if (bytes.isEmpty())
+                continue;
+            const Moment now = Moment::now();
+            scanner->feed({bytes.constData(), std::size_t(bytes.size())}, {now.stamp_ns, now.mono_ns});
+            const scan::ScannerIdentity &identity = scanner->identity();
+            if (scanner->counts().packets < enoughPackets && identity.serial.empty())
+                continue;
+            found_.kind = "scanner";
+            found_.model = model->name;
+            found_.baud = model->baud;
+            found_.text = identity.model.empty() ? model->title : QString::fromStdString(identity.model);
+            return;
+        }
+    }
 }
 
 void SerialProbe::ask() {

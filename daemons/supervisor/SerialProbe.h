@@ -10,17 +10,23 @@
 namespace hermes::supervisor {
 
 /// Looks what is at the far end of one serial line, in a thread that may wait. It listens first; only a line
-/// that is silent is asked, and only for the version of a RoboClaw (command 21, two bytes), which moves
-/// nothing. A line that another program has open is left alone.
+/// that is silent is asked: for the version of a RoboClaw (command 21, two bytes), which moves nothing, then
+/// whether it is a scanner of those that are asked. A line that another program has open is left alone.
 class SerialProbe {
 public:
-    /// mayAsk: without it nothing is sent. isCancelled: gives up soon when it becomes true.
-    SerialProbe(const SerialCandidate &candidate, bool mayAsk, const std::atomic<bool> &isCancelled)
+    /// What may be asked for: without either nothing is sent. What scanners are asked would turn the motors
+    /// of a RoboClaw in simple serial mode.
+    struct Permission {
+        bool controller = false, scanner = false;
+    };
+
+    /// isCancelled: gives up soon when it becomes true.
+    SerialProbe(const SerialCandidate &candidate, Permission mayAsk, const std::atomic<bool> &isCancelled)
         : candidate_(candidate)
         , mayAsk_(mayAsk)
         , isCancelled_(isCancelled) {}
 
-    /// Eight seconds at most.
+    /// Fifteen seconds at most.
     FoundSerial run();
 
 private:
@@ -34,10 +40,11 @@ private:
     /// True: somebody talks by themselves, and found_ says who.
     bool listen();
     void ask();
+    void findScanner(bool isOneWay);
     bool askAt(int baud, int timeout_ms);
 
     const SerialCandidate candidate_;
-    const bool mayAsk_;
+    const Permission mayAsk_;
     const std::atomic<bool> &isCancelled_;
     FoundSerial found_;
     int port_ = -1;

@@ -116,14 +116,16 @@ SettingsFiles Setup::files() const {
 }
 
 Command Setup::findCommand() {
-    return Command("setup.find",
-                   "Looks for a few seconds what is plugged in: serial lines, and lidars that send packets. "
-                   "It listens; what is silent is asked for the version of a RoboClaw, which moves nothing, "
-                   "where the line is known as a motor controller's (by USB or by the settings) or ask is "
-                   "true. What another program uses is left alone")
+    return Command(
+               "setup.find",
+               "Looks for a few seconds what is plugged in: serial lines, and lidars that send packets. "
+               "It listens; what is silent is asked for the version of a RoboClaw, which moves nothing, "
+               "where the line is known as a motor controller's (by USB or by the settings). Where ask is "
+               "true all others are asked, too, also whether they are laser scanners. What another program "
+               "uses is left alone")
         .needs(Role::Engineer)
         .param(Field::boolean("ask", "Ask all silent lines: a motor controller that is no RoboClaw in packet "
-                                     "serial mode may take the two bytes for speeds; wheels off the ground")
+                                     "serial mode may take the bytes for speeds; wheels off the ground")
                    .byDefault(false))
         .param(Field::boolean("release", "Processes of the supervisor that use serial lines or receive "
                                          "packets of lidars are ended first, and started again afterwards")

@@ -73,6 +73,7 @@ public:
         busy(findings);
         motors(findings.serial);
         receivers(findings.serial);
+        scanner(findings.serial);
         lidar(findings.lidars);
         if (processes_ != before_)
             set("supervisor.processes", processes_);
@@ -87,7 +88,8 @@ private:
     Findings withoutSimulated(Findings findings) {
         const auto isReal = [](const auto &one) { return !one.simulated; };
         const auto isDevice = [](const FoundSerial &line) {
-            return !line.simulated && (line.kind == "roboclaw" || line.kind == "nmea");
+            return !line.simulated &&
+                   (line.kind == "roboclaw" || line.kind == "nmea" || line.kind == "scanner");
         };
         const auto &[serial, lidars, problems, restarted] = findings;
         const bool isRobot = std::any_of(serial.begin(), serial.end(), isDevice) ||
@@ -173,9 +175,29 @@ private:
             set("seriallogger.ports", ports);
     }
 
+    /// The first of them; the matcher takes its scans.
+    void scanner(const std::vector<FoundSerial> &lines) {
+        for (const FoundSerial &line : lines) {
+            if (line.kind != "scanner")
+                continue;
+            if (hasScanner_) {
+                note(QString("there is a scanner at %1, too; one is taken").arg(line.path));
+                continue;
+            }
+            hasScanner_ = true;
+            set("scanner.scanner.url", "serial://" + line.path);
+            set("scanner.scanner.model", line.model);
+            set("scanmatcher.source.address", QString("127.0.0.1:%1").arg(defaultPort("scanner")));
+            start("scanner");
+            start("scanmatcher");
+        }
+    }
+
     void lidar(const std::vector<FoundLidar> &lidars) {
+        if (lidars.empty() && hasScanner_)
+            return;
         if (lidars.empty())
-            return note("no packets of a lidar were found");
+            return note("no packets of a lidar were found, nor a scanner on a line");
         if (lidars.size() > 1)
             note(QString("%1 lidars send packets; that at %2 is taken")
                      .arg(lidars.size())
@@ -226,7 +248,7 @@ private:
     const QJsonArray before_;
     QJsonArray processes_ = before_;
     Proposal proposal_;
-    bool drives_ = false;
+    bool drives_ = false, hasScanner_ = false;
 };
 
 } // namespace

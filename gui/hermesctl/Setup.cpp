@@ -256,7 +256,7 @@ private:
 
     static bool hasMotors(const Proposal &proposal) { return proposal.settings.contains("motorcontrol"); }
 
-    static constexpr std::chrono::seconds longestSearch{8}; // of setup.find, but for daemons that it ends
+    static constexpr std::chrono::seconds longestSearch{15}; // of setup.find, but for daemons that it ends
 
     Client &supervisor_;
     const Arguments &arguments_;

@@ -11,11 +11,13 @@ Fields<FoundSerial> fieldsOf(Of<FoundSerial>) {
         .add("device", &S::device, "Its name of today")
         .addMaybe("about", &S::about, "What the system knows of the adapter, or empty")
         .add("kind", &S::kind,
-             "A RoboClaw; NMEA sentences; something else that talks by itself; something that answers, "
+             "A RoboClaw; NMEA sentences; a laser scanner of one plane; something else that talks by itself; "
+             "something that answers, "
              "but not as a RoboClaw; silent, also when asked; silent and not asked; in use by another "
              "program, and left alone; cannot be opened")
         .choices(S::kinds())
         .addMaybe("text", &S::text, "The version of a controller, a sentence, or why there is nothing")
+        .addMaybe("model", &S::model, "Of a scanner, as the setting scanner.model has it")
         .addMaybe("baud", &S::baud, "At which it was understood; 0: it was not")
         .addMaybe("addresses", &S::addresses, "At which a controller answered, 128 to 135")
         .addMaybe("any_address", &S::anyAddress, "It answers at all of them, as a controller on USB does")

@@ -6,6 +6,8 @@
 #include "protocol/scan/SickCola.h"
 #include "protocol/scan/Ydlidar.h"
 
+#include <algorithm>
+
 namespace hermes::scan {
 namespace {
 
@@ -64,6 +66,20 @@ const std::vector<ScannerModel> &scannerModels() {
         {"ydlidar-tg30", "YDLIDAR TG15 to TG50", 512000, false, false, 20000, Motor::Itself, makeYdlidarTg},
     };
     return models;
+}
+
+std::vector<const ScannerModel *> scannerSearch(bool isSerial) {
+    std::vector<const ScannerModel *> all;
+    for (const bool isOneWay : {true, false})
+        for (const ScannerModel &model : scannerModels()) {
+            const auto isSame = [&](const ScannerModel *other) {
+                return other->make == model.make && other->baud == model.baud;
+            };
+            if (model.isOneWay == isOneWay && (isSerial ? model.baud > 0 : model.isOverTcp) &&
+                std::none_of(all.begin(), all.end(), isSame))
+                all.push_back(&model);
+        }
+    return all;
 }
 
 const ScannerModel *findScannerModel(std::string_view name) {

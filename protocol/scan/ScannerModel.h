@@ -29,6 +29,9 @@ struct ScannerModel {
 };
 
 const std::vector<ScannerModel> &scannerModels();
+/// One of each that differ in what is said on a serial line, or over TCP, in the order in which they are to
+/// be looked for: those that send by themselves are heard before anything is sent.
+std::vector<const ScannerModel *> scannerSearch(bool isSerial);
 /// Null: there is none of that name.
 const ScannerModel *findScannerModel(std::string_view name);
 

@@ -105,7 +105,8 @@ class Setup(unittest.TestCase):
         self.assertEqual(serial[silent.path]["kind"], "silent")
         self.assertEqual(serial[chatty.path]["kind"], "talker")
         self.assertEqual(chatty.heard, b"", "a device that talks by itself was sent something")
-        commands = {silent.heard[i:i + 2][1:] for i in range(0, len(silent.heard), 2)}
+        controllers = silent.heard[:next(i for i in range(0, len(silent.heard), 2) if not 128 <= silent.heard[i] <= 135)]
+        commands = {controllers[i:i + 2][1:] for i in range(0, len(controllers), 2)}  # before scanners are looked for
         self.assertEqual(commands, {b"\x15"}, "more was sent than the command that reads the version")
         self.assertEqual(len(findings["lidars"]), 1, findings)
         lidar = findings["lidars"][0]
@@ -125,6 +126,21 @@ class Setup(unittest.TestCase):
         self.assertRegex(table, r"roboclaw +\S+motors +.*115200 baud, address 128, address 129")
         self.assertRegex(table, r"not_asked +\S+silent")
         self.assertEqual(silent.heard, b"")
+
+    def test_finds_scanners(self):
+        lines = {model: os.path.join(self.folder, model) for model in ("ld06", "rplidar-a1", "ydlidar-x4")}
+        for model, line in lines.items():
+            self.start("simulator", {"world": WORLD, "lidar.port": 0, "scanner.model": model, "scanner.link": line})
+        put(os.path.join(self.folder, "scanmatcher.json"), {})
+        self.supervisor(lines.values(), [self.sleeper(name) for name in ("scanner", "scanmatcher")])
+        _, serial = self.found()
+        self.assertEqual([serial[line]["kind"] for line in lines.values()], ["scanner", "not_asked", "not_asked"])
+        _, serial = self.found("--yes")
+        for model, line in lines.items():
+            self.assertEqual((serial[line]["kind"], serial[line]["model"]), ("scanner", model), serial)
+        self.ctl("--yes")
+        self.assertEqual(self.file("scanner")["scanner"], {"url": f"serial://{lines['ld06']}", "model": "ld06"})
+        self.assertEqual(self.file("scanmatcher")["source"]["address"], "127.0.0.1:7470")
 
     def test_leaves_what_is_in_use(self):
         self.simulator()
