@@ -14,8 +14,9 @@ namespace hermes::simulator {
 namespace {
 
 constexpr auto healthItem = "lidar";
-const QStringList takenAtTheStart{"listen",       "insecure", "files.folders", "world",       "motors.link",
-                                  "motors.link2", "gps.link", "scanner.model", "scanner.link"};
+const QStringList takenAtTheStart{"listen",       "insecure",     "files.folders", "world",
+                                  "motors.link",  "motors.link2", "gps.link",      "scanner.model",
+                                  "scanner.link", "scanner.port"};
 constexpr qint64 largestWorldFile = 16 << 20; // some 300,000 edges
 
 TruthMessage messageOf(const Simulation::Truth &truth) {
@@ -51,7 +52,11 @@ Simulator::Simulator()
           },
           [this](const std::string &bytes) {
               QMetaObject::invokeMethod(
-                  this, [this, bytes] { scannerLine_.send(QByteArray::fromStdString(bytes)); },
+                  this,
+                  [this, bytes, session = scannerSession_] {
+                      if (session == scannerSession_)
+                          scannerLine_.send(QByteArray::fromStdString(bytes));
+                  },
                   Qt::QueuedConnection);
           })
     , lines_([this](int line, const QByteArray &bytes, double now) {

@@ -50,6 +50,7 @@ private:
     MotorLines lines_;
     SensorLine gpsLine_, scannerLine_;
     QString scannerModel_ = "none";
+    int scannerSession_ = 0; ///< of programs on its network, one after another; guarded by the pump
     World world_;
     QString worldPath_;
 };

@@ -15,13 +15,23 @@ Result<void> Simulator::openScanner(const SimulatorSettings &wanted) {
     const std::unique_ptr<ScannerEmulator> scanner = makeScanner(scannerModel_.toStdString());
     if (!scanner)
         return {};
-    return scannerLine_.open(
-        wanted.scannerLink, scanner->model().baud, patience_s, [this](const QByteArray &bytes) {
-            pump_.with([&](Simulation &simulation) {
-                if (simulation.scanner())
-                    simulation.scanner()->receive(bytes.toStdString(), simulation.now_ns());
-            });
+    const auto received = [this](const QByteArray &bytes) {
+        pump_.with([&](Simulation &simulation) {
+            if (!simulation.scanner())
+                return;
+            if (bytes.isEmpty()) {
+                simulation.scanner()->disconnect();
+                ++scannerSession_;
+            } else {
+                simulation.scanner()->receive(bytes.toStdString(), simulation.now_ns());
+            }
         });
+        if (bytes.isEmpty())
+            pump_.dropScannerBytes();
+    };
+    if (wanted.scannerPort > 0)
+        return scannerLine_.listen(wanted.scannerPort, received);
+    return scannerLine_.open(wanted.scannerLink, scanner->model().baud, patience_s, received);
 }
 
 Result<void> Simulator::setScannerFault(const Call &call) {
