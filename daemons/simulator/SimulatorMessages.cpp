@@ -99,7 +99,7 @@ Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
 Fields<LineState> fieldsOf(Of<LineState>) {
     return Fields<LineState>()
         .add("link", &LineState::link, "That stays the same, or empty")
-        .add("device", &LineState::device, "Or where it listens; empty while it is pulled");
+        .add("device", &LineState::device, "Its path, or where it listens; empty while it is pulled");
 }
 
 Fields<SensorLineState> fieldsOf(Of<SensorLineState>) {

@@ -96,8 +96,7 @@ void SimulatorSettings::addScanner() {
     for (const ScannerModel &model : scannerModels())
         models.append(model.name);
     group("Scanner", Applies::OnRestart);
-    add("scanner.model", scannerModel, "A 2D laser scanner besides, on a pseudo-terminal or a TCP port")
-        .choices(models);
+    add("scanner.model", scannerModel, "A 2D laser scanner besides").choices(models);
     add("scanner.link", scannerLink,
         "Link to the pseudo-terminal of the scanner; none: sim.state tells its name");
     add("scanner.port", scannerPort, "TCP port of 127.0.0.1 on which it listens; 0: it is on a serial line")
