@@ -34,22 +34,26 @@ Result<void> Simulator::openScanner(const SimulatorSettings &wanted) {
     return scannerLine_.open(wanted.scannerLink, scanner->model().baud, patience_s, received);
 }
 
-Result<void> Simulator::setScannerFault(const Call &call) {
-    const QString kind = call.text("kind");
-    if (scannerModel_ == "none")
+Result<void> Simulator::setSensorFault(const Call &call) {
+    const QString device = call.text("device"), kind = call.text("kind");
+    const bool gps = device == "gps";
+    if (!gps && scannerModel_ == "none")
         return Error(ErrorCode::NotReady, "the robot has no scanner; scanner.model gives it one");
     if (kind == "pulled" || kind == "none")
-        scannerLine_.setPulled(kind == "pulled");
+        (gps ? gpsLine_ : scannerLine_).setPulled(kind == "pulled");
     if (kind != "pulled") {
         if (worldPath_.isEmpty() && kind != "none")
             return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
-        const auto number = scannerFaultKinds().indexOf(kind) + 1;
+        const auto number = faultKindsOf(device).indexOf(kind) + 1;
+        const double share = call.number("share");
         pump_.with([&](Simulation &simulation) {
-            if (simulation.scanner())
-                simulation.scanner()->setFault({ScannerEmulator::Fault::Kind(number), call.number("share")});
+            if (gps)
+                simulation.gps().setFault({GpsModel::Fault::Kind(number), share});
+            else if (simulation.scanner())
+                simulation.scanner()->setFault({ScannerEmulator::Fault::Kind(number), share});
         });
     }
-    logInfo("simulator", "fault of the scanner: " + kind);
+    logInfo("simulator", "fault of the " + device + ": " + kind);
     return {};
 }
 
