@@ -7,6 +7,8 @@
 
 namespace hermes::simulator {
 
+constexpr int refusal_ms = 100;
+
 Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link) {
     InterfaceUrl url;
     url.scheme = "pty";
@@ -22,8 +24,7 @@ Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link) {
     return pty;
 }
 
-Result<void> SensorLine::open(const QString &link, int baud, double patience_s,
-                              const std::function<void(const QByteArray &)> &received) {
+Result<void> SensorLine::open(const QString &link, int baud, double patience_s, const Receiver &received) {
     auto opened = openDeviceLine(link);
     if (!opened)
         return opened.error();
@@ -39,7 +40,42 @@ Result<void> SensorLine::open(const QString &link, int baud, double patience_s,
     return {};
 }
 
+Result<void> SensorLine::listen(std::uint16_t port, const Receiver &received) {
+    InterfaceUrl url;
+    url.scheme = "tcp";
+    url.host = "127.0.0.1";
+    url.port = port;
+    server_ = std::make_unique<TcpServerInterface>(url, nullptr);
+    QObject::connect(server_.get(), &Listener::accepted, [this, received](Interface *program) {
+        if (!program_)
+            return take(program, received);
+        program->setReceiving(false);
+        QTimer::singleShot(refusal_ms, program,
+                           [this, program, received] { // the end of the other may be seen
+                               if (program_ || !program->isOpen())
+                                   program->deleteLater();
+                               else
+                                   take(program, received);
+                           });
+    });
+    return server_->listen();
+}
+
+void SensorLine::take(Interface *program, const Receiver &received) {
+    program_ = program;
+    program->setWriteLimit(maxUnsent);
+    program->setReceiving(true);
+    QObject::connect(program, &Interface::received, received);
+    QObject::connect(program, &Interface::closed, [this, program, received] {
+        program->deleteLater();
+        program_.clear();
+        received({});
+    });
+}
+
 void SensorLine::send(QByteArray bytes) {
+    if (program_)
+        (program_->write(bytes) ? state_.bytes : state_.unreadLost) += bytes.size();
     if (!pty_ || !pty_->isOpen())
         return;
     const qint64 unread = pty_->unread(); // of which the system does not tell more than some thousand
@@ -61,6 +97,16 @@ void SensorLine::send(QByteArray bytes) {
 }
 
 void SensorLine::setPulled(bool pulled) {
+    if (server_) {
+        if (std::exchange(pulled_, pulled) == pulled)
+            return;
+        if (!pulled)
+            return void(server_->listen());
+        server_->close();
+        if (program_)
+            program_->close();
+        return;
+    }
     if (pulled)
         return pty_->close();
     if (pty_->isOpen())
@@ -70,7 +116,10 @@ void SensorLine::setPulled(bool pulled) {
 }
 
 const SensorLineState &SensorLine::state() {
-    state_.line.device = pty_ ? pty_->device() : QString();
+    if (server_)
+        state_.line.device = pulled_ ? QString() : server_->address();
+    else
+        state_.line.device = pty_ ? pty_->device() : QString();
     return state_;
 }
 

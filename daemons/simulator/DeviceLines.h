@@ -2,17 +2,21 @@
 
 #include "common/Result.h"
 #include "common/interface/PtyInterface.h"
+#include "common/interface/TcpServerInterface.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 
+#include <QPointer>
 #include <QStringList>
 
 #include <functional>
+#include <memory>
 #include <random>
 #include <vector>
 
 namespace hermes::simulator {
 
-/// A simulated device's serial line: the link under which programs find it, if any, and the device.
+/// A simulated device's serial line: the link under which programs find it, if any, and the device. Or where
+/// it listens.
 struct LineState {
     QString link, device; ///< no device while it is pulled
 };
@@ -27,29 +31,45 @@ struct SensorLineState {
     qint64 bytes = 0, unreadLost = 0;
 };
 
-/// The serial line of a simulated sensor: a pseudo-terminal under a link that stays the same.
+/// The serial line of a simulated sensor: a pseudo-terminal under a link that stays the same. Or its network:
+/// a TCP port to which one program at a time can connect.
 class SensorLine {
 public:
+    /// Of what comes from the program; nothing: it has closed its connection.
+    using Receiver = std::function<void(const QByteArray &)>;
+
     /// baud: a program that sets another one gets garbage, and its bytes do not arrive; 0: any will do.
-    /// patience_s: so long a program may be behind. received: what comes from the program.
+    /// patience_s: so long a program may be behind.
     Result<void> open(
         const QString &link, int baud = 0, double patience_s = 0,
-        const std::function<void(const QByteArray &)> &received = [](const QByteArray &) {});
-    void close() { pty_.reset(); }
+        const Receiver &received = [](const QByteArray &) {});
+    /// Listens on this port of 127.0.0.1.
+    Result<void> listen(std::uint16_t port, const Receiver &received);
+    void close() {
+        pty_.reset();
+        server_.reset();
+    }
 
     /// Sends it. What no program has read is lost when a program is behind for too long.
     void send(QByteArray bytes);
-    /// As when the cable is pulled: device and link vanish. Put back, there is a new device under the link.
+    /// As when the cable is pulled: device and link vanish, or the connection ends and nobody can connect.
+    /// Put back, there is a new device under the link.
     void setPulled(bool pulled);
     const SensorLineState &state();
 
 private:
     /// More than so many bytes: a program is behind. Of a GPS receiver at 10 Hz it is 1.4 s.
     static constexpr qint64 maxUnread = 2048;
+    /// Over a network the system keeps some, too.
+    static constexpr qint64 maxUnsent = 64 << 10;
 
     bool isGarbled() const { return baud_ > 0 && pty_->baud() != baud_; }
+    void take(Interface *program, const Receiver &received);
 
     std::shared_ptr<PtyInterface> pty_;
+    std::unique_ptr<TcpServerInterface> server_;
+    QPointer<Interface> program_; ///< on the network
+    bool pulled_ = false;         ///< from it
     SensorLineState state_;
     int baud_ = 0;
     double patience_s_ = 0;

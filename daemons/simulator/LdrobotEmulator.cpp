@@ -1,7 +1,4 @@
 #include "daemons/simulator/ScannerEmulator.h"
-#include "vectorlib/geometry/Angle.h"
-
-#include <cmath>
 
 namespace hermes::simulator {
 
@@ -13,24 +10,20 @@ public:
     using ScannerEmulator::ScannerEmulator;
 
 protected:
-    void hear(std::uint8_t, std::int64_t) override {}
+    void hear(std::uint8_t) override {}
     bool isScanning() const override { return turns(); }
 
-    void sample(std::int64_t time_ns, const Measure &measure) override {
-        const unsigned angle = unsigned(std::lround(turn() * 36000) % 36000); // 1/100 degree
+    void sample() override {
+        const unsigned angle = stepOf(36000); // 1/100 degree
         if (points_ == 0) {
-            packet_ = "\x54\x2C";
-            putU16(packet_, unsigned(std::lround(speed() * 360)));
-            putU16(packet_, angle);
+            packet_ = "\x54\x2C" + bytes16(unsigned(std::lround(speed() * 360))) + bytes16(angle);
         }
-        const int mm = range_mm(measure, -2 * vectorlib::pi * turn());
-        putU16(packet_, unsigned(mm));
-        packet_.push_back(char(mm > 0 ? intensity : 0));
+        const int mm = range_mm(-turn());
+        packet_ += bytes16(unsigned(mm)) + char(mm > 0 ? intensity : 0);
         if (++points_ < pointsPerPacket)
             return;
         points_ = 0;
-        putU16(packet_, angle);
-        putU16(packet_, unsigned(clock_ms(time_ns) % clockPeriod_ms));
+        packet_ += bytes16(angle) + bytes16(unsigned(clock_us() / 1000 % clockPeriod_ms));
         std::uint8_t crc = 0; // polynomial 4D
         for (const char byte : packet_) {
             crc = std::uint8_t(crc ^ std::uint8_t(byte));
@@ -38,7 +31,7 @@ protected:
                 crc = std::uint8_t(crc << 1 ^ (crc & 0x80 ? 0x4D : 0));
         }
         packet_.push_back(char(crc));
-        send(packet_, time_ns);
+        send(packet_);
     }
 
 private:
@@ -50,8 +43,6 @@ private:
 
 } // namespace
 
-std::unique_ptr<ScannerEmulator> makeLdrobot(const ScannerModel &model, const ScannerOptions &options) {
-    return std::make_unique<LdrobotEmulator>(model, options);
-}
+const ScannerModel::Make makeLdrobot = makeOf<LdrobotEmulator>;
 
 } // namespace hermes::simulator

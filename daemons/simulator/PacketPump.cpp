@@ -168,6 +168,11 @@ void PacketPump::with(const std::function<void(Simulation &)> &function) {
         function(simulation_);
 }
 
+void PacketPump::dropScannerBytes() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    scannerBytes_.clear();
+}
+
 void PacketPump::setFault(const LidarFault &fault) {
     const std::lock_guard<std::mutex> lock(mutex_);
     fault_ = fault;

@@ -71,6 +71,8 @@ public:
 
     /// Runs the function between two packets. Does nothing unless the pump is running.
     void with(const std::function<void(Simulation &)> &function);
+    /// Loses what the scanner has sent and has not gone on yet.
+    void dropScannerBytes();
     void setFault(const LidarFault &fault);
     LidarFault fault() const;
     Counts counts() const;

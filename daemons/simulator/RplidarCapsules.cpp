@@ -65,14 +65,14 @@ std::string bodyOf(std::uint8_t packet, const std::vector<RplidarPoint> &points)
     std::string body;
     if (packet == 0x85) {
         for (const RplidarPoint &point : points)
-            putU16(body, unsigned(point.mm));
+            body += bytes16(unsigned(point.mm));
         return body;
     }
     if (packet == 0x84) {
         for (std::size_t i = 0; i + 3 < points.size(); i += 3) {
             const Major first = majorOf(points[i].mm), next = majorOf(points[i + 3].mm);
-            putU32(body, first.code | prediction(first.mm > 0 ? first : next, points[i + 1].mm) << 12 |
-                             prediction(next, points[i + 2].mm) << 22);
+            body += bytes32(first.code | prediction(first.mm > 0 ? first : next, points[i + 1].mm) << 12 |
+                            prediction(next, points[i + 2].mm) << 22);
         }
         return body;
     }
@@ -80,13 +80,11 @@ std::string bodyOf(std::uint8_t packet, const std::vector<RplidarPoint> &points)
         const RplidarPoint &a = points[i], &b = points[i + 1];
         if (packet == 0x86) {
             const std::uint32_t first = scaled(a.mm), second = scaled(b.mm);
-            putU16(body, first & 0xFFFF);
-            putU16(body, second & 0xFFFF);
+            body += bytes16(first & 0xFFFF) + bytes16(second & 0xFFFF);
             body.push_back(char(first >> 16 | second >> 16 << 4));
         } else {
             const unsigned first = unsigned(a.before_deg * 8), second = unsigned(b.before_deg * 8);
-            putU16(body, unsigned(a.mm) << 2 | first >> 4);
-            putU16(body, unsigned(b.mm) << 2 | second >> 4);
+            body += bytes16(unsigned(a.mm) << 2 | first >> 4) + bytes16(unsigned(b.mm) << 2 | second >> 4);
             body.push_back(char((first & 15) | (second & 15) << 4));
         }
     }
@@ -120,13 +118,8 @@ double rplidarSlant_deg(std::uint8_t packet, int mm) {
 
 std::string encodeRplidar(std::uint8_t packet, unsigned start, std::uint32_t stamp_us,
                           const std::vector<RplidarPoint> &points) {
-    std::string body;
-    if (packet == 0x86) {
-        putU32(body, stamp_us);
-        putU16(body, 0); // state
-    }
-    putU16(body, start);
-    body += bodyOf(packet, points);
+    const std::string time = packet == 0x86 ? bytes32(stamp_us) + bytes16(0) : ""; // and the state
+    const std::string body = time + bytes16(start) + bodyOf(packet, points);
     const std::uint8_t sum = xorOf(body);
     return std::string{char(0xA0 | (sum & 15)), char(0x50 | sum >> 4)} + body;
 }

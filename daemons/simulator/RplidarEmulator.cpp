@@ -1,6 +1,5 @@
 #include "daemons/simulator/RplidarCapsules.h"
 #include "daemons/simulator/ScannerEmulator.h"
-#include "vectorlib/geometry/Angle.h"
 
 #include <cmath>
 #include <utility>
@@ -47,9 +46,9 @@ public:
     }
 
 protected:
-    void hear(std::uint8_t byte, std::int64_t now_ns) override;
+    void hear(std::uint8_t byte) override;
     bool isScanning() const override { return packet_ != 0 && (turns() || forced_) && !isBroken(); }
-    void sample(std::int64_t time_ns, const Measure &measure) override;
+    void sample() override;
     void resume() override {
         setSpeed(model().turns_hz);
         scan(type_.modes[0]);
@@ -58,13 +57,11 @@ protected:
 
 private:
     void obey(std::uint8_t request, std::string_view payload);
-    void answer(std::uint8_t type, std::string_view bytes) { send(answerOf(type, bytes), heard_ns_); }
+    void answer(std::uint8_t type, std::string_view bytes) { send(answerOf(type, bytes)); }
     void tellConf(std::string_view payload);
     void scan(const Mode &mode);
 
     const Type &type_;
-    std::string request_;
-    std::int64_t heard_ns_ = 0;
     std::uint8_t packet_ = 0; ///< type of the packets that it sends; 0: none
     bool forced_ = false;     ///< scans even if the head stands
     bool begins_ = false;     ///< no packet was sent yet
@@ -80,8 +77,7 @@ unsigned number(std::string_view bytes, std::size_t at) {
     return value;
 }
 
-void RplidarEmulator::hear(std::uint8_t byte, std::int64_t now_ns) {
-    heard_ns_ = now_ns;
+void RplidarEmulator::hear(std::uint8_t byte) {
     request_.push_back(char(byte));
     if (request_[0] != '\xA5')
         return request_.clear();
@@ -101,72 +97,63 @@ void RplidarEmulator::hear(std::uint8_t byte, std::int64_t now_ns) {
 
 void RplidarEmulator::obey(std::uint8_t request, std::string_view payload) {
     const std::vector<Mode> &modes = type_.modes;
-    if (request == 0xF0 && type_.motor == Motor::Pwm)
-        return setSpeed(model().turns_hz * number(payload, 0) / fullPwm);
-    if (request == 0xA8 && type_.motor == Motor::Rpm)
-        return setSpeed(model().turns_hz * number(payload, 0) / fullRpm);
-    if (request == 0xF0 || request == 0xA8)
+    if (request == 0xF0 || request == 0xA8) {
+        if (type_.motor == (request == 0xF0 ? Motor::Pwm : Motor::Rpm))
+            setSpeed(model().turns_hz * number(payload, 0) / (request == 0xF0 ? fullPwm : fullRpm));
         return;
+    }
     packet_ = 0;
-    std::string value;
     if (request == 0x40) {
         mend();
         unsend();
-        send("RP LIDAR System.\r\nFirmware Ver 1.29, HW Ver 7\r\n", heard_ns_);
-    } else if (request == 0x50) {
-        value = {char(type_.model), 29, 1, 7}; // model, firmware 1.29, hardware
-        answer(0x04, value + "0123456789ABCDEF");
+        send("RP LIDAR System.\r\nFirmware Ver 1.29, HW Ver 7\r\n");
+    } else if (request == 0x50) { // firmware 1.29, hardware 7
+        answer(0x04, std::string{char(type_.model), 29, 1, 7} + "0123456789ABCDEF");
     } else if (request == 0x52) {
-        value = {char(isBroken() ? 2 : 0), char(isBroken() ? 4 : 0), 0};
-        answer(0x06, value);
+        answer(0x06, std::string{char(isBroken() ? 2 : 0), char(isBroken() ? 4 : 0), 0});
     } else if (request == 0x59) {
-        putU16(value, unsigned(std::lround(modes[0].sample_us)));
-        putU16(value, unsigned(std::lround(modes[1].sample_us)));
-        answer(0x15, value);
+        answer(0x15, bytes16(unsigned(std::lround(modes[0].sample_us))) +
+                         bytes16(unsigned(std::lround(modes[1].sample_us))));
     } else if (request == 0x84) {
         tellConf(payload);
     } else if (request == 0xFF) {
-        putU32(value, type_.motor == Motor::Pwm);
-        answer(0xFF, value);
+        answer(0xFF, bytes32(type_.motor == Motor::Pwm));
     } else if ((request == 0x20 || request == 0x21) && !isBroken()) {
         scan(modes[0]);
         forced_ = request == 0x21;
     } else if (request == 0x82 && payload.size() == 5 && !isBroken()) {
         const std::size_t number = std::uint8_t(payload[0]);
-        if (number >= modes.size())
-            return;
-        scan(number > 0 ? modes[number] : Mode{0x82, modes[1].sample_us});
+        if (number < modes.size())
+            scan(number > 0 ? modes[number] : Mode{0x82, modes[1].sample_us});
     }
 }
 
 void RplidarEmulator::tellConf(std::string_view payload) {
     const unsigned type = number(payload, 0), wanted = number(payload, 4);
-    std::string value(payload.substr(0, 4));
     const bool ofMode = type == 0x71 || type == 0x74 || type == 0x75 || type == 0x7F;
     if (payload.size() < 4 || (ofMode && wanted >= type_.modes.size()))
         return;
     const Mode &mode = type_.modes[ofMode ? wanted : 0];
+    std::string value;
     if (type == 0x70)
-        putU16(value, unsigned(type_.modes.size()));
+        value = bytes16(unsigned(type_.modes.size()));
     else if (type == 0x7C)
-        putU16(value, type_.typicalMode);
+        value = bytes16(type_.typicalMode);
     else if (type == 0x71)
-        putU32(value, std::uint32_t(std::lround(mode.sample_us * 256)));
+        value = bytes32(std::uint32_t(std::lround(mode.sample_us * 256)));
     else if (type == 0x74)
-        putU32(value, std::uint32_t(std::lround(model().range_m * 256)));
+        value = bytes32(std::uint32_t(std::lround(model().range_m * 256)));
     else if (type == 0x75)
-        value.push_back(char(mode.packet));
+        value = char(mode.packet);
     else if (type == 0x7F)
-        value.append(rplidarPacket(mode.packet).mode).push_back('\0');
-    else if (type == 0x01) {
-        putU16(value, unsigned(fullRpm));
-        putU16(value, unsigned(fullPwm));
-    }
-    answer(0x20, value);
+        value = rplidarPacket(mode.packet).mode + std::string(1, '\0');
+    else if (type == 0x01)
+        value = bytes16(unsigned(fullRpm)) + bytes16(unsigned(fullPwm));
+    answer(0x20, std::string(payload.substr(0, 4)) + value);
 }
 
 void RplidarEmulator::scan(const Mode &mode) {
-    send(answerOf(mode.packet, {}, rplidarPacket(mode.packet).bytes), heard_ns_);
+    send(answerOf(mode.packet, {}, rplidarPacket(mode.packet).bytes));
     packet_ = mode.packet;
     setPeriod(mode.sample_us * 1000);
     begins_ = true;
@@ -175,19 +162,18 @@ void RplidarEmulator::scan(const Mode &mode) {
     points_.clear();
 }
 
-void RplidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
-    const unsigned angle = unsigned(std::lround(turn() * 360 * 64) % (360 * 64)); // 1/64 degree
-    const bool needsNext = packet_ == 0x84; // its last ranges begin from the first one of the next
+void RplidarEmulator::sample() {
+    const unsigned angle = stepOf(360 * 64); // 1/64 degree
+    const bool needsNext = packet_ == 0x84;  // its last ranges begin from the first one of the next
     // A packet leaves one and a half samples after its last one.
-    const std::int64_t ready_ns = time_ns + std::int64_t((needsNext ? 0.5 : 1.5) * period_ns());
+    const double ready_ns = (needsNext ? 0.5 : 1.5) * period_ns();
     // Where a slanting ray goes depends on the range that it finds: on that of the sample before.
-    const double ray = 2 * vectorlib::pi * (turn() - slant_ / 360);
     const bool fine = packet_ == 0x81 || packet_ == 0x82; // quarters of a millimetre
-    const int mm = range_mm(measure, -ray, fine ? 0x3FFF : 0xFFFF);
+    const int mm = range_mm(slant_ / 360 - turn(), fine ? 0x3FFF : 0xFFFF);
     if (packet_ == 0x81) {
         std::string packet(1, char((mm > 0 ? rplidarQuality : 0) << 2 | (isFirst() ? 1 : 2)));
-        putU16(packet, angle << 1 | 1);
-        putU16(packet, unsigned(mm) * 4);
+        packet += bytes16(angle << 1 | 1);
+        packet += bytes16(unsigned(mm) * 4);
         return send(packet, ready_ns);
     }
     start_ = points_.empty() ? angle : start_;
@@ -196,8 +182,7 @@ void RplidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
     const std::size_t samples = rplidarPacket(packet_).samples;
     if (points_.size() < samples + needsNext)
         return;
-    send(encodeRplidar(packet_, start_ | (begins_ ? 0x8000 : 0), std::uint32_t(clock_ms(time_ns) * 1000),
-                       points_),
+    send(encodeRplidar(packet_, start_ | (begins_ ? 0x8000 : 0), std::uint32_t(clock_us()), points_),
          ready_ns);
     begins_ = false;
     points_.erase(points_.begin(), points_.begin() + std::ptrdiff_t(samples));
@@ -206,8 +191,6 @@ void RplidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
 
 } // namespace
 
-std::unique_ptr<ScannerEmulator> makeRplidar(const ScannerModel &model, const ScannerOptions &options) {
-    return std::make_unique<RplidarEmulator>(model, options);
-}
+const ScannerModel::Make makeRplidar = makeOf<RplidarEmulator>;
 
 } // namespace hermes::simulator

@@ -1,13 +1,12 @@
 #include "daemons/simulator/ScannerEmulator.h"
-
-#include <cmath>
+#include "vectorlib/geometry/Angle.h"
 
 namespace hermes::simulator {
 
 namespace {
 
 constexpr std::int64_t longestStep_ns = 500000000; // more is a pause, in which nothing happened
-constexpr std::int64_t clockAhead_ms = 23456;      // at the start; made up
+constexpr std::int64_t clockAhead_us = 23456000;   // at the start; made up
 constexpr int usbBaud = 12000000;
 constexpr int bitsPerByte = 10;
 constexpr int heldBytes = 7; // no packet has so few, but those of 5: it ends in the middle
@@ -30,6 +29,9 @@ const std::vector<ScannerModel> &scannerModels() {
         {"ydlidar-tg30", makeYdlidar, 512000, 20000, 10, 30},
         {"hokuyo-urg04lx", makeHokuyo, 0, 10240, 10, 5.6},
         {"hokuyo-ust10lx", makeHokuyo, 0, 57600, 40, 10},
+        {"sick-tim551", makeSick, 0, 5400, 15, 10},
+        {"sick-tim571", makeSick, 0, 16200, 15, 25},
+        {"sick-lms111", makeSick, 0, 36000, 50, 20},
     };
     return models;
 }
@@ -56,14 +58,22 @@ void ScannerEmulator::begin(std::int64_t now_ns) {
 
 void ScannerEmulator::receive(std::string_view bytes, std::int64_t now_ns) {
     begin(now_ns);
+    now_ns_ = now_ns;
     for (const char byte : bytes) {
         if (fault_.kind != Fault::Kind::Silence)
-            hear(std::uint8_t(byte), now_ns);
+            hear(std::uint8_t(byte));
     }
+}
+
+void ScannerEmulator::disconnect() {
+    unsend();
+    request_.clear();
+    hangUp();
 }
 
 std::string_view ScannerEmulator::take(std::int64_t now_ns, const Measure &measure) {
     begin(now_ns);
+    measure_ = &measure;
     next_ns_ = now_ns - next_ns_ > longestStep_ns ? now_ns : next_ns_;
     while (next_ns_ <= now_ns) {
         turn_ += turns() ? turns_hz_ * period_ * 1e-9 : 0;
@@ -72,8 +82,9 @@ std::string_view ScannerEmulator::take(std::int64_t now_ns, const Measure &measu
             turn_ = std::max(turn_ - 1, 0.0);
             ++revolutions_;
         }
+        now_ns_ = next_ns_;
         if (isScanning())
-            sample(next_ns_, measure);
+            sample();
         rest_ns_ += period_;
         next_ns_ += std::int64_t(rest_ns_);
         rest_ns_ -= std::floor(rest_ns_);
@@ -108,37 +119,33 @@ void ScannerEmulator::setFault(const Fault &fault) {
         resume();
 }
 
-void ScannerEmulator::send(std::string_view bytes, std::int64_t time_ns) {
+void ScannerEmulator::send(std::string_view bytes, double later_ns) {
     if (pending_.empty())
-        lineFree_ns_ = std::max(lineFree_ns_, double(time_ns - start_ns_));
+        lineFree_ns_ = std::max(lineFree_ns_, double(now_ns_ - start_ns_) + later_ns);
     pending_ += bytes;
 }
 
-std::int64_t ScannerEmulator::clock_ms(std::int64_t time_ns) const {
-    return clockAhead_ms + std::int64_t(double(time_ns - start_ns_) * (1 + options_.drift_ppm * 1e-6) * 1e-6);
+std::int64_t ScannerEmulator::clock_us() const {
+    return clockAhead_us + std::int64_t(double(now_ns_ - start_ns_) * (1 + options_.drift_ppm * 1e-6) * 1e-3);
 }
 
-int ScannerEmulator::range_mm(const Measure &measure, double angle, int largest) const {
-    const double range = measure(angle);
+int ScannerEmulator::range_mm(double turns, int largest) const {
+    const double range = (*measure_)(2 * vectorlib::pi * turns);
     const long mm = std::lround(range * 1000);
     return range <= model_.range_m && mm > 0 && mm <= largest ? int(mm) : 0;
 }
 
-void putU16(std::string &bytes, unsigned value) {
-    bytes.push_back(char(value));
-    bytes.push_back(char(value >> 8));
+std::string bytes16(unsigned value) {
+    return {char(value), char(value >> 8)};
 }
 
-void putU32(std::string &bytes, std::uint32_t value) {
-    putU16(bytes, value & 0xFFFF);
-    putU16(bytes, value >> 16);
+std::string bytes32(std::uint32_t value) {
+    return bytes16(value & 0xFFFF) + bytes16(value >> 16);
 }
 
 std::string answerOf(std::uint8_t type, std::string_view bytes, std::size_t packetSize) {
-    std::string answer = "\xA5\x5A";
-    putU32(answer, std::uint32_t(packetSize > 0 ? packetSize | 1U << 30 : bytes.size()));
-    answer.push_back(char(type));
-    return answer.append(bytes);
+    const std::size_t size = packetSize > 0 ? packetSize | 1U << 30 : bytes.size();
+    return "\xA5\x5A" + bytes32(std::uint32_t(size)) + char(type) + std::string(bytes);
 }
 
 } // namespace hermes::simulator

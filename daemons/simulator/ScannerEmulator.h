@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -37,8 +38,9 @@ const std::vector<ScannerModel> &scannerModels();
 /// None for a name that is no model's.
 std::unique_ptr<ScannerEmulator> makeScanner(std::string_view model, const ScannerOptions &options = {});
 
-/// A laser scanner at the far end of a serial line: it hears what the host sends, turns, measures, and sends
-/// as fast as its line carries bytes. Knows no line and no clock. Families derive from it.
+/// A laser scanner at the far end of a serial line or a network: it hears what the host sends, turns,
+/// measures, and sends as fast as its line carries bytes. Knows no line and no clock. Families derive from
+/// it.
 class ScannerEmulator {
 public:
     /// The range along a direction (radians, counter-clockwise from the scanner's zero) now, metres; 0: none.
@@ -62,6 +64,8 @@ public:
 
     /// The host has sent this.
     void receive(std::string_view bytes, std::int64_t now_ns);
+    /// The host has closed its connection over a network.
+    void disconnect();
     /// Lets time come to now, in short steps. What has left the line since; valid until the next call.
     std::string_view take(std::int64_t now_ns, const Measure &measure);
 
@@ -70,32 +74,39 @@ public:
     std::uint64_t revolutions() const { return revolutions_; }
 
 protected:
-    virtual void hear(std::uint8_t byte, std::int64_t now_ns) = 0;
+    virtual void hear(std::uint8_t byte) = 0;
     /// Whether samples are to be taken.
     virtual bool isScanning() const = 0;
     /// Takes one, with the head at turn().
-    virtual void sample(std::int64_t time_ns, const Measure &measure) = 0;
+    virtual void sample() = 0;
     /// Scans as an earlier host left it.
     virtual void resume() {}
+    /// Nobody listens any more; of those with a network.
+    virtual void hangUp() {}
 
-    /// It leaves the line after what was sent before, not before this time.
-    void send(std::string_view bytes, std::int64_t time_ns);
+    /// It leaves the line after what was sent before, not before now and some time later.
+    void send(std::string_view bytes, double later_ns = 0);
     /// What has not left the line is lost.
     void unsend() { pending_.clear(); }
 
     void setSpeed(double turns_hz) { turns_hz_ = turns_hz; }
     double speed() const { return turns_hz_; } ///< turns a second
     bool turns() const { return turns_hz_ > 0 && fault_.kind != Fault::Kind::Stalled; }
-    double turn() const { return turn_; }        ///< 0 to 1, in the sense in which the head turns
+    double turn() const { return turn_; } ///< 0 to 1, in the sense in which the head turns
+    /// The step in which the head is, of so many a turn.
+    unsigned stepOf(int steps) const { return unsigned(std::lround(turn_ * steps) % steps); }
     bool isFirst() const { return first_; }      ///< sample of a turn
     double period_ns() const { return period_; } ///< from sample to sample
     void setPeriod(double period_ns) { period_ = period_ns; }
     bool isBroken() const { return fault_.kind == Fault::Kind::Health; }
     void mend() { fault_.kind = isBroken() ? Fault::Kind::None : fault_.kind; }
-    /// By the scanner's own clock, which began some time ago.
-    std::int64_t clock_ms(std::int64_t time_ns) const;
-    /// Millimetres along a direction, 0 where it sees nothing or what does not fit.
-    int range_mm(const Measure &measure, double angle, int largest = 65535) const;
+    /// Now, by the scanner's own clock, which began some time ago.
+    std::int64_t clock_us() const;
+    /// Millimetres along a direction, in turns counter-clockwise from its zero; 0 where it sees nothing or
+    /// what does not fit.
+    int range_mm(double turns, int largest = 65535) const;
+
+    std::string request_; ///< what has been heard of one
 
 private:
     void begin(std::int64_t now_ns);
@@ -108,16 +119,18 @@ private:
     double turns_hz_, turn_ = 0, period_;
     bool first_ = false;
     std::uint64_t revolutions_ = 0;
+    const Measure *measure_ = nullptr;        ///< while samples are taken
     std::int64_t start_ns_ = 0, next_ns_ = 0; ///< next sample; start 0: none yet
+    std::int64_t now_ns_ = 0;                 ///< of what is heard or sampled
     double rest_ns_ = 0;                      ///< of the next sample's time
     std::string pending_, told_;
     double lineFree_ns_ = 0; ///< after start: when the last byte has left the line
     int held_ = 0;           ///< bytes that are to be lost
 };
 
-/// Appends a number, little endian.
-void putU16(std::string &bytes, unsigned value);
-void putU32(std::string &bytes, std::uint32_t value);
+/// A number, little endian.
+std::string bytes16(unsigned value);
+std::string bytes32(std::uint32_t value);
 /// An answer of RPLIDAR and YDLIDAR. packetSize: of packets that follow until the next request; 0: none do.
 std::string answerOf(std::uint8_t type, std::string_view bytes, std::size_t packetSize = 0);
 
@@ -128,10 +141,11 @@ const Type &typeOf(const ScannerModel &model, const std::vector<Type> &types) {
     return *std::find_if(types.begin(), types.end(), isNamedSo);
 }
 
-// The families.
-std::unique_ptr<ScannerEmulator> makeRplidar(const ScannerModel &model, const ScannerOptions &options);
-std::unique_ptr<ScannerEmulator> makeLdrobot(const ScannerModel &model, const ScannerOptions &options);
-std::unique_ptr<ScannerEmulator> makeYdlidar(const ScannerModel &model, const ScannerOptions &options);
-std::unique_ptr<ScannerEmulator> makeHokuyo(const ScannerModel &model, const ScannerOptions &options);
+/// Makes a scanner of a family.
+template <typename Family>
+std::unique_ptr<ScannerEmulator> makeOf(const ScannerModel &model, const ScannerOptions &options) {
+    return std::make_unique<Family>(model, options);
+}
+extern const ScannerModel::Make makeRplidar, makeLdrobot, makeYdlidar, makeHokuyo, makeSick;
 
 } // namespace hermes::simulator

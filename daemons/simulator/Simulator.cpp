@@ -14,8 +14,9 @@ namespace hermes::simulator {
 namespace {
 
 constexpr auto healthItem = "lidar";
-const QStringList takenAtTheStart{"listen",       "insecure", "files.folders", "world",       "motors.link",
-                                  "motors.link2", "gps.link", "scanner.model", "scanner.link"};
+const QStringList takenAtTheStart{"listen",       "insecure",     "files.folders", "world",
+                                  "motors.link",  "motors.link2", "gps.link",      "scanner.model",
+                                  "scanner.link", "scanner.port"};
 constexpr qint64 largestWorldFile = 16 << 20; // some 300,000 edges
 
 TruthMessage messageOf(const Simulation::Truth &truth) {
@@ -39,21 +40,16 @@ Simulator::Simulator()
     : Daemon({"simulator", "Simulator",
               "A simulated robot in a world of line segments: an HDL-32E that sends packets over UDP, "
               "two RoboClaws that drive it, a GPS receiver and a 2D scanner on pseudo-terminals"})
-    , pump_(
-          [this](const Simulation::Truth &truth) {
-              QMetaObject::invokeMethod(
-                  this, [this, truth] { publishTruth(truth); }, Qt::QueuedConnection);
-          },
-          [this](const std::string &sentences) {
-              QMetaObject::invokeMethod(
-                  this, [this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); },
-                  Qt::QueuedConnection);
-          },
-          [this](const std::string &bytes) {
-              QMetaObject::invokeMethod(
-                  this, [this, bytes] { scannerLine_.send(QByteArray::fromStdString(bytes)); },
-                  Qt::QueuedConnection);
-          })
+    , pump_([this](const Simulation::Truth &truth) { later([this, truth] { publishTruth(truth); }); },
+            [this](const std::string &sentences) {
+                later([this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); });
+            },
+            [this](const std::string &bytes) {
+                later([this, bytes, session = scannerSession_] {
+                    if (session == scannerSession_)
+                        scannerLine_.send(QByteArray::fromStdString(bytes));
+                });
+            })
     , lines_([this](int line, const QByteArray &bytes, double now) {
         std::vector<RoboClawEmulator::Answer> answers;
         pump_.with([&](Simulation &simulation) {
@@ -262,10 +258,8 @@ Result<void> Simulator::setNoise(const Call &call) {
 Result<void> Simulator::setFault(const Call &call) {
     if (const QString wrong = faultMismatch(call.text("device"), call.text("kind")); !wrong.isEmpty())
         return invalidParams({{"kind", call.value("kind"), "a fault of this device"}}, wrong);
-    if (call.text("device") == "gps")
-        return setGpsFault(call);
-    if (call.text("device") == "scanner")
-        return setScannerFault(call);
+    if (call.text("device") == "gps" || call.text("device") == "scanner")
+        return setSensorFault(call);
     if (call.text("device") != "lidar")
         return setMotorFault(call);
     LidarFault fault;

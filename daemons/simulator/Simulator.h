@@ -37,19 +37,24 @@ private:
     Result<void> setNoise(const Call &call);
     Result<void> setFault(const Call &call);
     Result<void> setMotorFault(const Call &call);
-    Result<void> setGpsFault(const Call &call);
+    /// Of the GPS receiver or the 2D scanner.
+    Result<void> setSensorFault(const Call &call);
     Result<void> openScanner(const SimulatorSettings &wanted);
-    Result<void> setScannerFault(const Call &call);
     DrivetrainState motorState(Drivetrain &drivetrain) const;
     SimulatorState state();
     void publishTruth(const Simulation::Truth &truth);
     void updateHealth();
+    /// In this thread.
+    void later(const std::function<void()> &function) {
+        QMetaObject::invokeMethod(this, function, Qt::QueuedConnection);
+    }
 
     PacketPump pump_;
     PastFaults faults_;
     MotorLines lines_;
     SensorLine gpsLine_, scannerLine_;
     QString scannerModel_ = "none";
+    int scannerSession_ = 0; ///< of programs on its network, one after another; guarded by the pump
     World world_;
     QString worldPath_;
 };

@@ -5,10 +5,6 @@
 
 namespace hermes::simulator {
 
-QStringList scannerFaultKinds() {
-    return {"silence", "corrupt", "loss", "stalled", "health", "held", "pulled"};
-}
-
 namespace {
 
 constexpr std::array<const char *, 4> wheels{"front_left", "front_right", "rear_left", "rear_right"};
@@ -22,20 +18,21 @@ struct Device {
     QString name;
     QStringList kinds;
 };
-const QList<Device> devices{{"lidar", {"silence", "loss"}},
-                            {"gps", {"silence", "no_fix", "corrupt", "pulled"}},
-                            {"scanner", scannerFaultKinds()},
-                            {"line1", {"pulled", "adapter"}},
-                            {"line2", {"pulled", "adapter"}},
-                            {"controller1", ofController},
-                            {"controller2", ofController},
-                            {"controllers", {"swapped"}},
-                            {"battery", {"charge"}},
-                            {"wheels", {"slip"}},
-                            {wheels[0], ofWheel},
-                            {wheels[1], ofWheel},
-                            {wheels[2], ofWheel},
-                            {wheels[3], ofWheel}};
+const QList<Device> devices{
+    {"lidar", {"silence", "loss"}},
+    {"gps", {"silence", "no_fix", "corrupt", "pulled"}},
+    {"scanner", {"silence", "corrupt", "loss", "stalled", "health", "held", "pulled"}},
+    {"line1", {"pulled", "adapter"}},
+    {"line2", {"pulled", "adapter"}},
+    {"controller1", ofController},
+    {"controller2", ofController},
+    {"controllers", {"swapped"}},
+    {"battery", {"charge"}},
+    {"wheels", {"slip"}},
+    {wheels[0], ofWheel},
+    {wheels[1], ofWheel},
+    {wheels[2], ofWheel},
+    {wheels[3], ofWheel}};
 
 } // namespace
 
@@ -54,12 +51,19 @@ QStringList faultKinds() {
     return kinds;
 }
 
-QString faultMismatch(const QString &device, const QString &kind) {
+QStringList faultKindsOf(const QString &device) {
     for (const Device &known : devices) {
-        if (known.name == device && kind != "none" && !known.kinds.contains(kind))
-            return QString("%1 has no fault %2; it has: none, %3").arg(device, kind, known.kinds.join(", "));
+        if (known.name == device)
+            return known.kinds;
     }
     return {};
+}
+
+QString faultMismatch(const QString &device, const QString &kind) {
+    const QStringList kinds = faultKindsOf(device);
+    if (kind == "none" || kinds.contains(kind))
+        return {};
+    return QString("%1 has no fault %2; it has: none, %3").arg(device, kind, kinds.join(", "));
 }
 
 int wheelNumber(const QString &device) {
@@ -99,7 +103,7 @@ Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
 Fields<LineState> fieldsOf(Of<LineState>) {
     return Fields<LineState>()
         .add("link", &LineState::link, "That stays the same, or empty")
-        .add("device", &LineState::device, "Empty while it is pulled");
+        .add("device", &LineState::device, "Its path, or where it listens; empty while it is pulled");
 }
 
 Fields<SensorLineState> fieldsOf(Of<SensorLineState>) {

@@ -17,8 +17,8 @@ QStringList faultDevices();
 QStringList faultKinds();
 /// Why the device has no such fault, or an empty text.
 QString faultMismatch(const QString &device, const QString &kind);
-/// Of the scanner: those of ScannerEmulator::Fault in their order, without None, and "pulled".
-QStringList scannerFaultKinds();
+/// What it can do wrong; of GPS receiver and scanner in the order of their Fault::Kind, from Silence on.
+QStringList faultKindsOf(const QString &device);
 /// Of a wheel by its name, in the order of WheelBase; -1 for other devices.
 int wheelNumber(const QString &device);
 

@@ -96,9 +96,11 @@ void SimulatorSettings::addScanner() {
     for (const ScannerModel &model : scannerModels())
         models.append(model.name);
     group("Scanner", Applies::OnRestart);
-    add("scanner.model", scannerModel, "A 2D laser scanner besides, on a pseudo-terminal").choices(models);
+    add("scanner.model", scannerModel, "A 2D laser scanner besides").choices(models);
     add("scanner.link", scannerLink,
         "Link to the pseudo-terminal of the scanner; none: sim.state tells its name");
+    add("scanner.port", scannerPort, "TCP port of 127.0.0.1 on which it listens; 0: it is on a serial line")
+        .range(0, 65535);
     add("scanner.x_m", simulation.scannerPose.x, "Where it is on the robot, forward", "m", -10, 10);
     add("scanner.y_m", simulation.scannerPose.y, "Where it is on the robot, to the left", "m", -10, 10);
     add("scanner.theta_rad", simulation.scannerPose.theta, "Direction of its zero, counter-clockwise", "rad",

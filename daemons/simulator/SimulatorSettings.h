@@ -13,6 +13,7 @@ struct SimulatorSettings : SettingsTable {
     QString lidarHost = "127.0.0.1";
     std::uint16_t lidarPort = velodyne::dataPort, positionPort = velodyne::positionPort;
     QString link, link2, gpsLink, scannerLink; ///< to pseudo-terminals; empty: none
+    std::uint16_t scannerPort = 0;             ///< 0: a pseudo-terminal instead
     QString scannerModel = "none";
     QString firmware = "4.2.8"; ///< of both motor controllers
     QString layout = "mecanum";

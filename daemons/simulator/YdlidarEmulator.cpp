@@ -23,9 +23,9 @@ const std::vector<Ydlidar> ydlidars{{"ydlidar-x2", 4, true, false, false, true},
                                     {"ydlidar-tg30", 101, false, false, true, false}};
 constexpr int farthest_mm = 0x3FFF, pointsPerPacket = 40, sampleIntensity = 128;
 
-/// What is to be added to the head's angle, which grows clockwise, for that of a ray.
-double correction_rad(int mm) {
-    return mm > 0 ? std::atan(21.8 * (155.3 - mm) / (155.3 * mm)) : 0;
+/// What is to be added to the head's angle, which grows clockwise, for that of a ray; turns.
+double correction(int mm) {
+    return mm > 0 ? std::atan(21.8 * (155.3 - mm) / (155.3 * mm)) / (2 * vectorlib::pi) : 0;
 }
 
 class YdlidarEmulator : public ScannerEmulator {
@@ -36,21 +36,21 @@ public:
         , scanning_(type_.oneWay) {}
 
 protected:
-    void hear(std::uint8_t byte, std::int64_t now_ns) override {
+    void hear(std::uint8_t byte) override {
         if (last_ == 0xA5 && !type_.oneWay)
-            obey(byte, now_ns);
+            obey(byte);
         last_ = byte;
     }
     bool isScanning() const override { return scanning_ && turns() && !isBroken(); }
     void resume() override { scanning_ = true; }
-    void sample(std::int64_t time_ns, const Measure &measure) override;
+    void sample() override;
 
 private:
-    void obey(std::uint8_t request, std::int64_t now_ns);
+    void obey(std::uint8_t request);
     std::string information() const {
         return std::string{char(type_.model), 5, 1, 1} + std::string(16, '\1');
     }
-    void sendPacket(std::int64_t time_ns, bool first);
+    void sendPacket(bool first);
 
     const Ydlidar &type_;
     bool scanning_;
@@ -63,9 +63,9 @@ private:
     unsigned sum_ = 0; ///< of the samples
 };
 
-void YdlidarEmulator::obey(std::uint8_t request, std::int64_t now_ns) {
+void YdlidarEmulator::obey(std::uint8_t request) {
     if (request == 0x60 && !isBroken()) {
-        send(answerOf(0x81, {}, 5), now_ns);
+        send(answerOf(0x81, {}, 5));
         scanning_ = tells_ = true;
     } else if (request == 0x65 || request == 0x00 || request == 0x80) {
         scanning_ = false;
@@ -73,58 +73,54 @@ void YdlidarEmulator::obey(std::uint8_t request, std::int64_t now_ns) {
         if (request == 0x80)
             mend();
     } else if (request == 0x90) {
-        send(answerOf(0x04, information()), now_ns);
+        send(answerOf(0x04, information()));
     } else if (request == 0x92) {
-        send(answerOf(0x06, std::string{char(isBroken() ? 2 : 0), char(isBroken() ? 1 : 0), 0}), now_ns);
+        send(answerOf(0x06, std::string{char(isBroken() ? 2 : 0), char(isBroken() ? 1 : 0), 0}));
     } else if (request == 0x0D) {
-        std::string speed; // hundredths of a turn a second
-        putU32(speed, std::uint32_t(std::lround(this->speed() * 100)));
-        send(answerOf(0x04, speed), now_ns);
+        send(answerOf(0x04, bytes32(std::uint32_t(std::lround(speed() * 100))))); // 0.01 Hz
     }
 }
 
-void YdlidarEmulator::sample(std::int64_t time_ns, const Measure &measure) {
+void YdlidarEmulator::sample() {
     if (isFirst() && points_ > 0)
-        sendPacket(time_ns, false);
-    lastAngle_ = unsigned(std::lround(turn() * 360 * 64) % (360 * 64)) << 1 | 1;
+        sendPacket(false);
+    lastAngle_ = stepOf(360 * 64) << 1 | 1;
     if (points_ == 0) {
         firstAngle_ = lastAngle_;
         samples_.clear();
         sum_ = 0;
     }
-    const double ray = 2 * vectorlib::pi * turn() + (type_.triangulating ? correction_ : 0);
-    const int mm = range_mm(measure, -ray, type_.timeOfFlight ? 65535 : farthest_mm);
-    correction_ = correction_rad(mm > 0 ? mm : farthest_mm); // what gives none is far
+    const double ray = turn() + (type_.triangulating ? correction_ : 0);
+    const int mm = range_mm(-ray, type_.timeOfFlight ? 65535 : farthest_mm);
+    correction_ = correction(mm > 0 ? mm : farthest_mm); // what gives none is far
     const unsigned value = unsigned(type_.timeOfFlight ? mm : mm * 4);
     if (type_.intensity) {
         samples_.push_back(char(mm > 0 ? sampleIntensity : 0));
         sum_ ^= unsigned(mm > 0 ? sampleIntensity : 0);
     }
-    putU16(samples_, value);
+    samples_ += bytes16(value);
     sum_ ^= value;
     if (++points_ == pointsPerPacket || isFirst())
-        sendPacket(time_ns, isFirst());
+        sendPacket(isFirst());
 }
 
-void YdlidarEmulator::sendPacket(std::int64_t time_ns, bool first) {
+void YdlidarEmulator::sendPacket(bool first) {
     const double base = type_.timeOfFlight ? 3 : 0;
     const unsigned kind = first ? unsigned(std::lround((speed() - base) * 10)) << 1 | 1 : 0;
     std::string packet;
     for (const unsigned word : {0x55AAU, kind | unsigned(points_) << 8, firstAngle_, lastAngle_}) {
-        putU16(packet, word);
+        packet += bytes16(word);
         sum_ ^= word;
     }
-    putU16(packet, sum_);
+    packet += bytes16(sum_);
     points_ = 0;
-    send(packet + samples_, time_ns);
+    send(packet + samples_);
     if (std::exchange(tells_, false))
-        send(answerOf(0x04, information()), time_ns);
+        send(answerOf(0x04, information()));
 }
 
 } // namespace
 
-std::unique_ptr<ScannerEmulator> makeYdlidar(const ScannerModel &model, const ScannerOptions &options) {
-    return std::make_unique<YdlidarEmulator>(model, options);
-}
+const ScannerModel::Make makeYdlidar = makeOf<YdlidarEmulator>;
 
 } // namespace hermes::simulator

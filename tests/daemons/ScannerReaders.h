@@ -260,3 +260,29 @@ inline Reading readScip(const QByteArray &bytes, int first, int front, int steps
     }
     return reading;
 }
+
+/// The telegrams LMDscandata of CoLa A; angles from straight ahead, stamps of the zero index and of sending.
+inline Reading readCola(const QByteArray &bytes) {
+    Reading reading;
+    for (int begin = 0, end = 0; (end = bytes.indexOf('\x03', begin)) >= 0; begin = end + 1) {
+        const QList<QByteArray> words = bytes.mid(begin, end - begin).split(' ');
+        const int dist = words.indexOf("DIST1"), count = words.value(dist + 5).toInt(nullptr, 16);
+        if (!words[0].startsWith("\x02s") || words.value(1) != "LMDscandata" || dist != 20 ||
+            words.size() < dist + 6 + count) {
+            reading.strayBytes += end + 1 - begin;
+            continue;
+        }
+        const auto number = [&words](int at) { return words.value(at).toUInt(nullptr, 16); };
+        const int second = words.indexOf("RSSI1");
+        for (int i = 0; i < count; ++i) {
+            const unsigned mm = number(dist + 6 + i);
+            const double angle = std::int32_t(number(dist + 3)) / 1e4 + i * (number(dist + 4) / 1e4) - 90;
+            reading.points.push_back({circle(angle), mm < 16 ? 0 : mm / 1000.0,
+                                      second < 0 ? 0 : int(number(second + 6 + i)), i == 0});
+        }
+        ++reading.packets;
+        reading.stamps.push_back(number(9) * 1e-6);
+        reading.stamps.push_back(number(10) * 1e-6);
+    }
+    return reading;
+}

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """The simulated laser scanner as a program sees it that knows nothing but an LD06 (docs/examples/ld06.py): it measures the hall from
-its place on the robot, faults do what they should, a pulled line comes back."""
+its place on the robot, faults do what they should, a pulled line comes back. And scanners on a network."""
 import math
 import os
+import socket
 import sys
 import tempfile
 import time
 
-from support import SOURCE, refusal, simulated_hall, wait_for
+from support import SOURCE, free_port, refusal, simulated_hall, wait_for
 
 sys.path.insert(0, os.path.join(SOURCE, "docs", "examples"))
 from ld06 import read_scans  # noqa: E402
@@ -57,6 +58,77 @@ def same_after_a_while(simulator):
     return before if sent() == before else None
 
 
+def connected(port):
+    client = socket.create_connection(("127.0.0.1", port), 5)
+    client.settimeout(5)
+    return client
+
+
+def told(client, end):
+    """What comes, until this has come."""
+    text = b""
+    while end not in text:
+        more = client.recv(4096)
+        assert more, f"closed after {text[-200:]}"
+        text += more
+    return text
+
+
+def expect(client, answer, end):
+    """That the answer comes first, then something that ends so."""
+    text = told(client, end)
+    assert text.startswith(answer), text[:200]
+
+
+def is_closed(client):
+    """Whether the other end closes it."""
+    try:
+        while client.recv(4096):
+            pass
+    except ConnectionError:
+        pass
+    return True
+
+
+def check_network(folder, model, start, answer, end):
+    """start: a request upon which the scanner sends again and again what ends so."""
+    port = free_port(0)
+    process, _ = simulated_hall(folder, **{"scanner.model": model, "scanner.port": port, "lidar.port": 0})
+    with process:
+        simulator = process.connect()
+        assert simulator.call("sim.state")["scanner"]["device"] == f"tcp://127.0.0.1:{port}"
+        with connected(port) as client:
+            client.sendall(start)
+            expect(client, answer, end)
+            with connected(port) as second:
+                assert is_closed(second)
+            for _ in range(5):
+                told(client, end)
+        with connected(port) as client:  # another one, to which nothing comes unasked
+            client.settimeout(0.3)
+            try:
+                assert not client.recv(100), "it was not asked"
+                raise AssertionError("it was refused")
+            except socket.timeout:
+                pass
+            client.settimeout(5)
+            client.sendall(start)
+            expect(client, answer, end)
+            simulator.call("sim.fault", device="scanner", kind="pulled")
+            assert is_closed(client)
+            assert simulator.call("sim.state")["scanner"]["device"] == ""
+            try:
+                connected(port).close()
+                raise AssertionError("it is pulled")
+            except ConnectionRefusedError:
+                pass
+        for _ in range(2):  # the second time it is in place
+            simulator.call("sim.fault", device="scanner", kind="none")
+        with connected(port) as client:
+            client.sendall(start)
+            expect(client, answer, end)
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         link = os.path.join(folder, "devices", "scanner")
@@ -75,6 +147,8 @@ def main():
             assert scanner["model"] == "ld06" and scanner["link"] == link and os.path.realpath(link) == scanner["device"], scanner
             assert scanner["revolutions"] > 2 and scanner["bytes"] > 5000, scanner
             check_faults(simulator, scans, link)
+        check_network(folder, "hokuyo-ust10lx", b"MD0000108001000\n", b"MD0000108001000\n00P\n\n", b"\n\nMD0000108001000\n99b\n")
+        check_network(folder, "sick-tim571", b"\2sEN LMDscandata 1\3", b"\2sEA LMDscandata 1\3", b" 0 1 B not defined 0 0 0\3")
         process, _ = simulated_hall(folder)
         with process:
             refusal(process.connect(), "sim.fault", "scanner.model", device="scanner", kind="silence")
