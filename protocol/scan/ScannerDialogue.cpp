@@ -92,7 +92,7 @@ HostAction ScannerDialogue::next(std::int64_t mono_ns) {
             return {};
         break;
     case Until::Time:
-        if (since_ms < request_->wait_ms)
+        if (!isAnswered_ && since_ms < request_->wait_ms)
             return {};
         break;
     case Until::Answer:

@@ -1,41 +1,14 @@
 // Bytes of scanners to revolutions: the worked examples of the makers' documents, damage, and any cut.
-#include "protocol/scan/ScannerModel.h"
+#include "tests/protocol/ScannerReader.h"
 #include "tests/support/Seed.h"
 
 #include <QtTest>
 
-#include <random>
+#include <map>
 
 using namespace hermes::scan;
 
 namespace {
-
-std::string bytesOf(const QByteArray &hex) {
-    return QByteArray::fromHex(hex).toStdString();
-}
-
-/// A scanner, what came out of it, and a clock.
-struct Reader {
-    explicit Reader(const char *model)
-        : scanner(findScannerModel(model)->make(*findScannerModel(model), assembler)) {}
-
-    void feed(const std::string &bytes, double t_s) {
-        const auto t_ns = std::int64_t(t_s * 1e9);
-        scanner->feed(bytes, {1700000000000000000 + t_ns, t_ns});
-    }
-    std::vector<Beam> beams() {
-        assembler.jump();
-        std::vector<Beam> all;
-        for (const Revolution &revolution : revolutions)
-            all.insert(all.end(), revolution.beams.begin(), revolution.beams.end());
-        return all;
-    }
-
-    std::vector<Revolution> revolutions;
-    RevolutionAssembler assembler{
-        [this](const Revolution &revolution) { revolutions.push_back(revolution); }};
-    std::unique_ptr<ScannerProtocol> scanner;
-};
 
 const QByteArray ld06Packet =
     "54 2C 68 08 AB 7E E0 00 E4 DC 00 E2 D9 00 E5 D5 00 E3 D3 00 E4 D0 00 E9 CD 00 E4 CA 00 E2 C7 "
@@ -71,7 +44,7 @@ class TestScanners : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void ld06Example() {
-        Reader reader("ld06");
+        ScannerReader reader("ld06");
         reader.feed(bytesOf(ld06Packet), 1);
         const std::vector<Beam> beams = reader.beams();
         QCOMPARE(beams.size(), std::size_t(12));
@@ -89,15 +62,11 @@ private Q_SLOTS:
     /// However the bytes are cut: the same revolutions, whole ones of 450 beams, and none lost.
     void ld06Revolutions() {
         std::mt19937 random(newSeed());
-        Reader reader("ld06");
+        ScannerReader reader("ld06");
         std::string stream;
         for (int n = 5; n < 375; ++n) // ten revolutions, but for their beginning
             stream += ldrobotPacket(n);
-        for (std::size_t at = 0; at < stream.size();) {
-            const std::size_t size = 1 + random() % 100;
-            at += size;
-            reader.feed(stream.substr(at - size, size), double(std::min(at, stream.size())) / 47 * 12 / 4500);
-        }
+        reader.feedInPieces(stream, 47.0 / 12 * 4500, random);
         QCOMPARE(reader.scanner->counts().packets, std::uint64_t(370));
         QCOMPARE(reader.scanner->counts().skippedBytes, std::uint64_t(0));
         QCOMPARE(reader.assembler.counts().lostPackets, std::uint64_t(0));
@@ -113,7 +82,7 @@ private Q_SLOTS:
     void ld06Damage() {
         std::mt19937 random(newSeed());
         std::uint64_t broken = 0;
-        Reader reader("ld06");
+        ScannerReader reader("ld06");
         for (int n = 0; n < 4000; ++n) {
             std::string packet = ldrobotPacket(n);
             const bool isBroken = n % 10 == 5, isMissing = n % 100 == 51;
@@ -130,7 +99,7 @@ private Q_SLOTS:
     }
 
     void rplidarStandardExample() {
-        Reader reader("rplidar-a1");
+        ScannerReader reader("rplidar-a1");
         reader.feed(bytesOf("A5 5A 05 00 00 40 81"), 0);
         for (int i = 0; i < 8; ++i) // 10.00 degrees and on, by 1 degree
             reader.feed(
@@ -144,7 +113,7 @@ private Q_SLOTS:
     }
 
     void rplidarExpressExample() {
-        Reader reader("rplidar-a1");
+        ScannerReader reader("rplidar-a1");
         reader.feed(bytesOf("A5 5A 54 00 00 40 82"), 0);
         const auto capsule = [](int start_q6) {
             std::string body{char(start_q6), char(start_q6 >> 8)};
@@ -174,11 +143,91 @@ private Q_SLOTS:
         QCOMPARE(clockwise_deg.back(), 61.0);
     }
 
+    void rplidarDialogue_data() {
+        QTest::addColumn<QByteArray>("model");
+        QTest::addColumn<QByteArray>("info");
+        QTest::addColumn<QByteArray>("answers");
+        QTest::addColumn<QByteArray>("sent");
+        const QByteArray health = "A552>A55A0300000006000000", express = "A55A5400004082";
+        const auto typical = [](const char *form, const char *sample) {
+            return QByteArray("A584047C00000059>A55A06000000207C0000000200 ") +
+                   "A5840671000000020054>A55A080000002071000000" + sample +
+                   " A5840675000000020050>A55A050000002075000000" + form;
+        };
+        QTest::newRow("A1") << QByteArray("rplidar-a1") << QByteArray("181D0107")
+                            << health + " " + typical("84", "007D0000") + " A58205020000000020>A55A8400004084"
+                            << QByteArray("dtr A525 A550 A552 A5FF04000000005E dtr A584047C00000059 "
+                                          "A5840671000000020054 A5840675000000020050 A58205020000000020");
+        QTest::newRow("A3") << QByteArray("rplidar-a3") << QByteArray("311D0107")
+                            << health + " A5FF04000000005E>A55A04000000FF01000000 " +
+                                   typical("84", "803E0000") + " A58205020000000020>A55A8400004084"
+                            << QByteArray("dtr A525 A550 A552 A5FF04000000005E dtr A5F0029402C1 "
+                                          "A584047C00000059 A5840671000000020054 A5840675000000020050 "
+                                          "A58205020000000020");
+        QTest::newRow("S2") << QByteArray("rplidar-s2") << QByteArray("711D0107")
+                            << health + " " + typical("86", "401F0000") + " A58205020000000020>A55AAA00004086"
+                            << QByteArray("A525 A550 A552 A5A802580255 A584047C00000059 "
+                                          "A5840671000000020054 A5840675000000020050 A58205020000000020");
+        QTest::newRow("old firmware") << QByteArray("rplidar-a1") << QByteArray("18140107")
+                                      << health + " A559>A55A0400000015FC01FE00 A58205000000000022>" + express
+                                      << QByteArray("dtr A525 A550 A552 A5FF04000000005E dtr A559 "
+                                                    "A58205000000000022");
+        QTest::newRow("no express") << QByteArray("rplidar-a1") << QByteArray("180F0107")
+                                    << health + " A559>A55A0400000015FC01FE00 A520>A55A0500004081"
+                                    << QByteArray("dtr A525 A550 A552 A5FF04000000005E dtr A559 "
+                                                  "A58205000000000022 A520");
+        QTest::newRow("typical is standard")
+            << QByteArray("rplidar-c1") << QByteArray("411D0107")
+            << health + " " + typical("81", "00C80000") + " A520>A55A0500004081"
+            << QByteArray("A525 A550 A552 A5FF04000000005E A584047C00000059 A5840671000000020054 "
+                          "A5840675000000020050 A520");
+        QTest::newRow("fault") << QByteArray("rplidar-a1") << QByteArray("18140107")
+                               << QByteArray("A552>A55A0300000006020400 A559>A55A0400000015FC01FE00 "
+                                             "A58205000000000022>") +
+                                      express
+                               << QByteArray("dtr A525 A550 A552 A540 A5FF04000000005E dtr A559 "
+                                             "A58205000000000022");
+    }
+
+    /// What is asked, in this order; answers are put as request>answer.
+    void rplidarDialogue() {
+        QFETCH(QByteArray, model);
+        QFETCH(QByteArray, info);
+        QFETCH(QByteArray, answers);
+        QFETCH(QByteArray, sent);
+        ScannerReader reader(model.constData());
+        std::map<QByteArray, QByteArray> known{{"A550", "A55A1400000004" + info + QByteArray(32, '1')}};
+        for (const QByteArray &pair : answers.split(' '))
+            known[pair.split('>')[0]] = pair.split('>')[1];
+        double t_s = 1;
+        reader.scanner->opened(ScannerReader::ns(t_s));
+        QByteArrayList seen;
+        while (t_s < 4.5) {
+            const HostAction action = reader.nextAction(t_s, 4.5);
+            if (action.dtr)
+                seen += *action.dtr ? "raised" : "dtr";
+            const QByteArray request = QByteArray::fromStdString(action.send).toHex().toUpper();
+            if (!request.isEmpty())
+                seen += request;
+            if (request == "A540")
+                QVERIFY(QString::fromStdString(reader.scanner->problem()).contains("0004"));
+            if (known.count(request) > 0)
+                reader.feed(bytesOf(known[request]), t_s);
+            if (seen.join(' ') == sent)
+                break;
+        }
+        QCOMPARE(seen.join(' '), sent);
+        QCOMPARE(reader.scanner->identity().serial, std::string(32, '1'));
+        QVERIFY(!reader.scanner->prerequisite().empty());
+        QCOMPARE(reader.nextAction(t_s, t_s + 2.9).send, std::string()); // the motor comes to its speed
+        QCOMPARE(reader.nextAction(t_s, t_s + 0.3).send, bytesOf("A525"));
+    }
+
     /// What no scanner sends is taken for nothing, and kills nobody.
     void noiseIsNoScan() {
         std::mt19937 random(newSeed());
         for (const ScannerModel &model : scannerModels()) {
-            Reader reader(model.name);
+            ScannerReader reader(model.name);
             for (int n = 0; n < 300; ++n) {
                 std::string bytes(1 + random() % 300, 0);
                 for (char &byte : bytes)
