@@ -107,16 +107,14 @@ std::size_t Rplidar::take(std::string_view bytes, const Arrival &arrival) {
         return more;
     const auto *const data = reinterpret_cast<const std::uint8_t *>(bytes.data());
     if (size == 0 || !packets_.isPacket(data)) {
-        if (packetsOfScan_ > 0 && skipped_++ == 0)
-            packets_.lose(0);
+        if (size > 0) {
+            counts_.damaged += skipped_++ % size == 0;
+            packets_.lose();
+        }
         return 0;
     }
-    if (const std::size_t skipped = std::exchange(skipped_, 0); skipped > 0) {
-        counts_.damaged += (skipped + size - 1) / size;
-        packets_.lose((skipped + size - 1) / size);
-    }
-    packets_.take(data, arrival, bytes.size() - size);
-    ++packetsOfScan_;
+    skipped_ = 0;
+    packets_.take(data, arrival, bytes.size());
     measured(arrival);
     return size;
 }
@@ -134,7 +132,7 @@ std::size_t Rplidar::takeAnswer(std::string_view bytes) {
             return 0;
         const double told_us = sample_us_ > 0 ? sample_us_ : rates_us_[form == 0x81 ? 0 : 1];
         packets_.begin(form, told_us > 0 ? told_us : packets_.sample_us());
-        packetsOfScan_ = skipped_ = 0;
+        skipped_ = 1; // it may begin within a packet, which is no damage
         answered(Express);
         answered(Standard);
         return headSize;
@@ -190,7 +188,7 @@ void Rplidar::takeHealth(const std::uint8_t *data) {
     std::snprintf(text, sizeof text, "the scanner tells of a fault, code %04X%s", unsigned(word(data + 1)),
                   needsReset_ ? "; it is reset" : "");
     if (data[0] != 0)
-        problem_ = text;
+        problem_ = trouble_ = text;
     answered(Health);
 }
 

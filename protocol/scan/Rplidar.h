@@ -32,7 +32,6 @@ private:
 
     RplidarPackets packets_;
     const bool turnsByDtr_;
-    std::uint64_t packetsOfScan_ = 0; ///< since it began
     bool needsReset_ = false;
 
     int model_ = 0, firmware_ = 0; ///< 124 is 1.24
@@ -40,7 +39,7 @@ private:
     int mode_ = 0, form_ = 0x82;
     double sample_us_ = 0;          ///< for each beam in the mode; 0: not told
     std::array<int, 2> rates_us_{}; ///< the same, of form 81 and of express scans, as older ones tell it
-    std::size_t skipped_ = 0;       ///< bytes since the last packet
+    std::size_t skipped_ = 1;       ///< bytes since the last packet
 };
 
 } // namespace hermes::scan

@@ -38,6 +38,39 @@ std::string ldrobotPacket(int n) {
     return text + char(crcOfLdrobot(text));
 }
 
+/// The capsule of form 82 whose head begins there: 1000 and 1001 mm, in turn.
+std::string capsule(int start_q6) {
+    std::string body{char(start_q6), char(start_q6 >> 8)};
+    for (int i = 0; i < 16; ++i)
+        body += bytesOf("A0 0F A5 0F 08");
+    char sum = 0;
+    for (const char byte : body)
+        sum = char(sum ^ byte);
+    return std::string{char(0xA0 | (sum & 15)), char(0x50 | (sum >> 4 & 15))} + body;
+}
+
+const QByteArray expressAnswer = "A5 5A 54 00 00 40 82", standardAnswer = "A5 5A 05 00 00 40 81";
+
+/// An RPLIDAR that sends such capsules, 36 in a revolution of 144 ms, or in form 81 a packet for each beam.
+struct RplidarSender {
+    bool isExpress = true;
+    double sample_s() const { return isExpress ? 125e-6 : 500e-6; }
+    double packet_s() const { return isExpress ? 0.004 : 500e-6; }
+    int packets() const { return isExpress ? 36 : 288; } ///< in a revolution
+    double head_deg(int n) const { return n % packets() * 360.0 / packets(); }
+    std::string packet(int n) const {
+        const int head_q6 = int(head_deg(n) * 64);
+        return isExpress ? capsule(head_q6)
+                         : std::string{char(head_q6 == 0 ? 0xBD : 0xBE), char(head_q6 << 1 | 1),
+                                       char(head_q6 >> 7), '\x48', '\x13'};
+    }
+    /// When the first beam of that was measured, and when the packet has come in.
+    double begin_s(int n) const { return n * packet_s() - (isExpress ? 31 : 0) * sample_s(); }
+    double arrival_s(int n) const {
+        return n * packet_s() + (isExpress ? 84 : 5) * 10 / 256000.0 + 1.5 * sample_s();
+    }
+};
+
 } // namespace
 
 class TestScanners : public QObject {
@@ -115,15 +148,6 @@ private Q_SLOTS:
     void rplidarExpressExample() {
         ScannerReader reader("rplidar-a1");
         reader.feed(bytesOf("A5 5A 54 00 00 40 82"), 0);
-        const auto capsule = [](int start_q6) {
-            std::string body{char(start_q6), char(start_q6 >> 8)};
-            for (int i = 0; i < 16; ++i)
-                body += bytesOf("A0 0F A5 0F 08");
-            char sum = 0;
-            for (const char byte : body)
-                sum = char(sum ^ byte);
-            return std::string{char(0xA0 | (sum & 15)), char(0x50 | (sum >> 4 & 15))} + body;
-        };
         reader.feed(capsule(0x8000), 0);
         reader.feed(capsule(32 * 64), 0.004);
         reader.feed(capsule(64 * 64), 0.008);
@@ -221,6 +245,121 @@ private Q_SLOTS:
         QVERIFY(!reader.scanner->prerequisite().empty());
         QCOMPARE(reader.nextAction(t_s, t_s + 2.9).send, std::string()); // the motor comes to its speed
         QCOMPARE(reader.nextAction(t_s, t_s + 0.3).send, bytesOf("A525"));
+    }
+
+    /// A fault that lasts is told as long as it does.
+    void rplidarFault() {
+        ScannerReader reader("rplidar-a1");
+        reader.scanner->opened(1);
+        bool isTold = false;
+        for (double t_s = 0; t_s < 20; t_s += 0.02) {
+            const std::string asked = reader.scanner->next(ScannerReader::ns(t_s)).send;
+            if (asked == bytesOf("A5 50"))
+                reader.feed(bytesOf("A5 5A 14 00 00 00 04 18 14 01 07" + QByteArray(32, '1')), t_s);
+            if (asked == bytesOf("A5 52"))
+                reader.feed(bytesOf("A5 5A 03 00 00 00 06 02 04 00"), t_s);
+            isTold = isTold || !reader.scanner->problem().empty();
+            QVERIFY(!isTold || QString::fromStdString(reader.scanner->problem()).contains("code 0004"));
+        }
+        QVERIFY(isTold);
+    }
+
+    /// What was measured before a silence and after it is no revolution.
+    void rplidarNewStart() {
+        ScannerReader reader("rplidar-a3");
+        const RplidarSender sender;
+        for (const auto &[start_s, first] : std::vector<std::pair<double, int>>{{0, 0}, {5, 25}, {9, 70}}) {
+            reader.feed(bytesOf(expressAnswer), start_s);
+            for (int n = first; n < first + 60; ++n)
+                reader.feed(sender.packet(n), start_s + sender.arrival_s(n));
+        }
+        reader.assembler.jump();
+        std::size_t whole = 0;
+        for (const Revolution &revolution : reader.revolutions) {
+            QVERIFY(revolution.end_ns - revolution.begin_ns < 150000000);
+            QVERIFY(revolution.partial || revolution.beams.size() == 36 * 32);
+            whole += !revolution.partial;
+        }
+        QCOMPARE(whole, std::size_t(2)); // of the second and of the third
+    }
+
+    void rplidarStampsAfterGaps_data() {
+        QTest::addColumn<bool>("isExpress");
+        QTest::addColumn<int>("bunch");
+        QTest::addColumn<int>("missing");
+        QTest::addColumn<bool>("isDamaged");
+        QTest::newRow("one of a bunch is damaged") << true << 5 << 1 << true;
+        QTest::newRow("one is damaged") << true << 1 << 1 << true;
+        QTest::newRow("three of a bunch vanish") << true << 5 << 3 << false;
+        QTest::newRow("more than a revolution vanishes") << true << 1 << 50 << false;
+        QTest::newRow("three revolutions are damaged") << true << 1 << 110 << true;
+        QTest::newRow("single beams") << false << 32 << 20 << true;
+        QTest::newRow("revolutions of single beams") << false << 32 << 2000 << true;
+    }
+
+    /// The beams count the time: what is missing must not shorten it, however it comes in.
+    void rplidarStampsAfterGaps() {
+        QFETCH(bool, isExpress);
+        QFETCH(int, bunch);
+        QFETCH(int, missing);
+        QFETCH(bool, isDamaged);
+        ScannerReader reader("rplidar-a3");
+        const RplidarSender sender{isExpress};
+        reader.feed(bytesOf("A5 5A 04 00 00 00 15 F4 01 7D 00"), 0); // microseconds for each beam
+        reader.feed(bytesOf(isExpress ? expressAnswer : standardAnswer), 0);
+        const int gap = 40 * sender.packets() + 6, end = 80 * sender.packets();
+        std::string bytes;
+        for (int n = 0; n < end; ++n) {
+            std::string packet = sender.packet(n);
+            const bool isGap = n >= gap && n < gap + missing;
+            if (isGap && isDamaged)
+                packet[0] = packet[1] = 0;
+            if (!isGap || isDamaged)
+                bytes += packet;
+            if (n % bunch == bunch - 1)
+                reader.feed(std::exchange(bytes, {}), sender.arrival_s(n));
+        }
+        QVERIFY(reader.assembler.counts().partial > 0);
+        QCOMPARE(reader.assembler.counts().lostPackets, std::uint64_t(missing));
+        QVERIFY(!isDamaged || reader.scanner->counts().damaged == std::uint64_t(missing));
+        for (const Revolution &revolution : reader.revolutions) {
+            if (revolution.partial)
+                continue;
+            const double begin_s = double(revolution.begin_ns - ScannerReader::epoch_ns) * 1e-9;
+            const double error_s = std::remainder(begin_s - sender.begin_s(0), 0.144);
+            QVERIFY2(std::abs(error_s) < 0.0005, qPrintable(QString::number(error_s)));
+        }
+    }
+
+    /// Whoever replays a recording only feeds it.
+    void scansInReplays() {
+        ScannerReader rplidar("rplidar-a1"), ld06("ld06");
+        rplidar.scanner->prepare("82 125.0");
+        QVERIFY(!rplidar.scanner->isScanning() && !ld06.scanner->isScanning());
+        rplidar.feed(capsule(640), 0);
+        ld06.feed(bytesOf(ld06Packet), 0);
+        QVERIFY(rplidar.scanner->isScanning() && ld06.scanner->isScanning());
+    }
+
+    /// One that takes no commands: where it is silent the line is opened anew.
+    void ld06Silence() {
+        ScannerReader reader("ld06");
+        double t_s = 1;
+        for (const double silent_s : {3.0, 1.0}) { // as long as it may take to turn; once it turned
+            const double since_s = t_s;
+            reader.scanner->opened(ScannerReader::ns(t_s));
+            reader.nextAction(t_s, t_s + 0.01);
+            if (silent_s == 1)
+                reader.feed(bytesOf(ld06Packet), t_s += 0.01);
+            QVERIFY(reader.nextAction(t_s, t_s + 5).reopen);
+            QVERIFY2(std::abs(t_s - since_s - silent_s) < 0.05, qPrintable(QString::number(t_s - since_s)));
+            QVERIFY(!reader.scanner->isScanning());
+            QVERIFY(!reader.scanner->problem().empty());
+        }
+        reader.feed(bytesOf(ld06Packet), t_s += 0.01);
+        reader.nextAction(t_s, t_s + 0.02);
+        QVERIFY(reader.scanner->isScanning());
+        QCOMPARE(reader.scanner->problem(), std::string());
     }
 
     /// What no scanner sends is taken for nothing, and kills nobody.
