@@ -32,7 +32,9 @@ Ldrobot::Ldrobot(int samples_hz, int baud, RevolutionAssembler &revolutions)
     : ScannerDialogue(revolutions)
     , sample_ns_(1e9 / samples_hz)
     , byte_ns_(1e10 / baud)
-    , clock_(stampPeriod_ms * ms) {}
+    , clock_(stampPeriod_ms * ms) {
+    identity_.model = "LDROBOT";
+}
 
 void Ldrobot::jump() {
     ScannerDialogue::jump();

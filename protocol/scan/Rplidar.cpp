@@ -65,7 +65,7 @@ std::optional<ScannerDialogue::Request> Rplidar::request(int step) const {
     case Stop:
         return Request{Until::Silence, "\xA5\x25", 0, dtr};
     case Info:
-        return ask("\xA5\x50");
+        return Request{Until::Answer, "\xA5\x50", 300};
     case Health:
         return ask("\xA5\x52");
     case Reset:

@@ -51,7 +51,7 @@ std::optional<ScannerDialogue::Request> Ydlidar::request(int step) const {
     case Stop:
         return Request{Until::Silence, "\xA5\x65"};
     case Info:
-        return Request{Until::Answer, "\xA5\x90", 500};
+        return Request{Until::Answer, "\xA5\x90", 300};
     case Health:
         return Request{Until::Answer, "\xA5\x92", 500};
     case Reset:

@@ -362,6 +362,36 @@ private Q_SLOTS:
         QCOMPARE(reader.scanner->problem(), std::string());
     }
 
+    void namedModels_data() {
+        QTest::addColumn<QByteArray>("alike");
+        QTest::addColumn<QByteArray>("device");
+        QTest::addColumn<QByteArray>("named");
+        const auto row = [](const char *alike, const char *device, const char *named) {
+            QTest::newRow(*device ? device : alike)
+                << QByteArray(alike) << QByteArray(device) << QByteArray(named);
+        };
+        row("hokuyo-urg04lx", "UST-10LX", "hokuyo-ust10lx");
+        row("hokuyo-urg04lx", "SOKUIKI Sensor URG-04LX(Hokuyo Automatic Co.,Ltd.)", "hokuyo-urg04lx");
+        row("hokuyo-urg04lx", "Hokuyo", "");
+        row("rplidar-a1", "RPLIDAR A1 (model 18)", "rplidar-a1");
+        row("rplidar-a1", "RPLIDAR A2 (model 28)", "");
+        row("rplidar-a2m12", "RPLIDAR S1 (model 61)", "rplidar-s1");
+        row("rplidar-s2", "RPLIDAR S3 (model 81)", "rplidar-s3");
+        row("rplidar-c1", "", "rplidar-c1");
+        row("ld06", "LDROBOT", "");
+        row("ydlidar-tmini", "YDLIDAR (model 150)", "ydlidar-tmini");
+    }
+
+    /// Rows of the table that speak alike are told apart by what the device tells of itself.
+    void namedModels() {
+        QFETCH(QByteArray, alike);
+        QFETCH(QByteArray, device);
+        QFETCH(QByteArray, named);
+        const ScannerModel *const model =
+            namedModel(*findScannerModel(alike.toStdString()), device.toStdString());
+        QCOMPARE(QByteArray(model ? model->name : ""), named);
+    }
+
     /// What no scanner sends is taken for nothing, and kills nobody.
     void noiseIsNoScan() {
         std::mt19937 random(newSeed());
