@@ -3,32 +3,12 @@
 #include "common/interface/InterfaceUrl.h"
 #include "common/interface/SerialInterface.h"
 
-#include <algorithm>
-
 namespace hermes::scanner {
 namespace {
 
 constexpr int period_ms = 10;
-constexpr double listening_s = 1, asking_s = 1.5; // until another scanner is tried
+constexpr double listening_s = 0.3, turning_s = 1; // until another is tried; where its motor must start
 constexpr quint64 enoughPackets = 10;
-
-/// One of each that differ in what is said on the line. Those that must not be asked come first: they are
-/// heard before anything is sent.
-std::vector<const scan::ScannerModel *> candidates(const scan::ScannerModel *model, bool isSerial) {
-    if (model)
-        return {model};
-    std::vector<const scan::ScannerModel *> all;
-    for (const bool isOneWay : {true, false})
-        for (const scan::ScannerModel &row : scan::scannerModels()) {
-            const auto isSame = [&](const scan::ScannerModel *other) {
-                return other->make == row.make && other->baud == row.baud;
-            };
-            const bool fits = isSerial ? row.baud > 0 : row.isOverTcp;
-            if (fits && row.isOneWay == isOneWay && std::none_of(all.begin(), all.end(), isSame))
-                all.push_back(&row);
-        }
-    return all;
-}
 
 } // namespace
 
@@ -38,7 +18,8 @@ LiveScanner::LiveScanner(const QString &url, const scan::ScannerModel *model, Ch
     , recording_(recording)
     , sink_(std::move(sink))
     , note_(std::move(note))
-    , candidates_(candidates(model, url.startsWith("serial:")))
+    , told_(model)
+    , candidates_(model ? std::vector{model} : scan::scannerSearch(url.startsWith("serial:")))
     , isFound_(model) {
     connect(&timer_, &QTimer::timeout, this, &LiveScanner::step);
     open(*candidates_.front());
@@ -110,12 +91,22 @@ void LiveScanner::step() {
     act(protocol.next(now.mono_ns));
     if (isFound_)
         return;
-    const bool isOneWay = reader_->model().isOneWay;
-    if (isOneWay ? protocol.counts().packets >= enoughPackets : !protocol.identity().serial.empty()) {
-        isFound_ = true;
-    } else if (now.mono() - openedMono_ > (isOneWay ? listening_s : asking_s)) {
+    const scan::ScannerModel &model = reader_->model();
+    const scan::ScannerProtocol::Counts &counts = protocol.counts();
+    const bool isNamed = !protocol.identity().serial.empty(), failed = !protocol.problem().empty();
+    const bool isMisread = counts.damaged >= enoughPackets && counts.damaged > counts.packets;
+    const double patience_s = model.motor == scan::Motor::Itself ? listening_s : turning_s;
+    const bool isOver = model.isOneWay && now.mono() - openedMono_ > patience_s;
+    if (isMisread || (!isNamed && (failed || isOver)))
         tryNext();
-    }
+    else if (counts.packets >= enoughPackets || reader_->counts().revolutions > 0 || failed)
+        isFound_ = true; // it measures, or tells who it is and that it cannot
+}
+
+const scan::ScannerModel *LiveScanner::model() const {
+    if (!isFound_ || told_)
+        return told_;
+    return scan::namedModel(reader_->model(), reader_->protocol().identity().model);
 }
 
 void LiveScanner::act(const scan::HostAction &action) {

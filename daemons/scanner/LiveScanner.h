@@ -26,8 +26,10 @@ public:
 
     /// The one that is read or tried now.
     const ScanReader &reader() const { return *reader_; }
-    /// It is known which scanner it is.
+    /// It measures, or it has told who it is and that it cannot.
     bool isFound() const { return isFound_; }
+    /// Which it is; null: not known, or of those that speak alike it may be any.
+    const scan::ScannerModel *model() const;
     /// Which were tried in vain, if that were all.
     const QStringList &inVain() const { return inVain_; }
     PortThread::State port() const { return port_->state(); }
@@ -44,6 +46,7 @@ private:
     ChunkQueue &recording_;
     const scan::RevolutionAssembler::Sink sink_;
     const PortThread::Note note_;
+    const scan::ScannerModel *const told_; ///< null: it is looked for
     std::vector<const scan::ScannerModel *> candidates_;
     std::size_t candidate_ = 0;
     QString url_;

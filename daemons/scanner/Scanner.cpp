@@ -175,8 +175,9 @@ void Scanner::publishScan(const scan::Revolution &revolution, bool replayed) {
 void Scanner::tick() {
     if (live_ && live_->isFound()) {
         const ScanReader &reader = live_->reader();
+        const scan::ScannerModel *const model = live_->model();
         const std::lock_guard<std::mutex> lock(mutex_);
-        prerequisite_ = {{"scanner", reader.model().name},
+        prerequisite_ = {{"scanner", (model ? *model : reader.model()).name},
                          {"prerequisite", QString::fromStdString(reader.protocol().prerequisite())}};
     }
     updateHealth();
@@ -198,8 +199,9 @@ ScannerMessage Scanner::state() const {
         return state;
     const ScanReader &reader = shown();
     const scan::ScannerIdentity &identity = reader.protocol().identity();
+    if (const scan::ScannerModel *const model = replayed_ ? &reader.model() : live_->model())
+        state.model = model->name;
     if (replayed_ || live_->isFound()) {
-        state.model = reader.model().name;
         state.device = known(identity.model);
         state.firmware = known(identity.firmware);
         state.serial = known(identity.serial);

@@ -8,7 +8,10 @@ Fields<ScannerMessage> fieldsOf(Of<ScannerMessage>) {
     using S = ScannerMessage;
     return Fields<S>()
         .add("source", &S::source, "Where scans come from; what is counted here, is since it was opened")
-        .addOrNull("model", &S::model, "As the setting scanner.model names it; null while it is looked for")
+        .addOrNull("model", &S::model,
+                   "As the setting scanner.model names it; null: it is looked for, or it may be any of some "
+                   "that speak "
+                   "alike")
         .addOrNull("device", &S::device, "As the scanner names itself")
         .addOrNull("firmware", &S::firmware, "Its version")
         .addOrNull("serial", &S::serial, "Its number")

@@ -102,7 +102,7 @@ std::optional<ScannerDialogue::Request> Hokuyo::request(int step) const {
     char scan[24]; // all steps, one by one, each scan, without end
     std::snprintf(scan, sizeof scan, "MD%04d%04d01000\n", sweep_.first, sweep_.last);
     return Request{step < Version ? Until::Silence : Until::Answer, step < Begin ? commands[step] : scan,
-                   500};
+                   step == Version ? 300 : 500};
 }
 
 std::size_t Hokuyo::take(std::string_view bytes, const Arrival &arrival) {

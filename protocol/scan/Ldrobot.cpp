@@ -2,15 +2,16 @@
 
 #include "protocol/scan/LittleEndian.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hermes::scan {
 namespace {
 
+constexpr std::size_t packetSize = 47;
 constexpr int beams = 12;
 constexpr int stampPeriod_ms = 30000;
-constexpr std::int64_t silence_ns = 1000000000;
+constexpr std::int64_t ms = 1000000;
 
 constexpr std::array<std::uint8_t, 256> makeCrcTable() {
     std::array<std::uint8_t, 256> table{};
@@ -28,43 +29,36 @@ constexpr auto crcTable = makeCrcTable();
 } // namespace
 
 Ldrobot::Ldrobot(int samples_hz, int baud, RevolutionAssembler &revolutions)
-    : ScannerProtocol(revolutions)
+    : ScannerDialogue(revolutions)
     , sample_ns_(1e9 / samples_hz)
     , byte_ns_(1e10 / baud)
-    , clock_(stampPeriod_ms * std::int64_t(1000000)) {}
-
-void Ldrobot::jump() {
-    filled_ = 0;
-    stamp_ms_.reset();
-    clock_ = HostClock(stampPeriod_ms * std::int64_t(1000000));
-    revolutions_.jump();
+    , clock_(stampPeriod_ms * ms) {
+    identity_.model = "LDROBOT";
 }
 
-HostAction Ldrobot::next(std::int64_t mono_ns) {
-    isScanning_ = mono_ns - lastPacket_ns_ < silence_ns;
-    problem_ = isScanning_ ? "" : "no packet of an LDROBOT came for a second";
-    return {};
+void Ldrobot::jump() {
+    ScannerDialogue::jump();
+    stamp_ms_.reset();
+    clock_ = HostClock(stampPeriod_ms * ms);
 }
 
 /// The two bytes of its head may stand within a packet: only the checksum tells where one begins.
-void Ldrobot::feed(std::string_view bytes, const Arrival &arrival) {
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        packet_[filled_++] = std::uint8_t(bytes[i]);
-        while (filled_ > 0) {
-            const bool mayBegin = packet_[0] == 0x54 && (filled_ < 2 || packet_[1] == 0x2C);
-            if (mayBegin && filled_ < packetSize)
-                break;
-            if (mayBegin && takePacket(packet_.data(), arrival, bytes.size() - 1 - i)) {
-                filled_ = 0;
-                break;
-            }
-            const auto next = std::find(packet_.begin() + 1, packet_.begin() + std::ptrdiff_t(filled_), 0x54);
-            const auto skipped = std::size_t(next - packet_.begin());
-            counts_.skippedBytes += skipped;
-            std::copy(next, packet_.begin() + std::ptrdiff_t(filled_), packet_.begin());
-            filled_ -= skipped;
-        }
+std::size_t Ldrobot::take(std::string_view bytes, const Arrival &arrival) {
+    if (bytes[0] != 0x54 || (bytes.size() > 1 && bytes[1] != 0x2C))
+        return 0;
+    if (bytes.size() < packetSize)
+        return more;
+    const auto *const data = reinterpret_cast<const std::uint8_t *>(bytes.data());
+    std::uint8_t crc = 0;
+    for (std::size_t i = 0; i < packetSize - 1; ++i)
+        crc = crcTable[crc ^ data[i]];
+    if (crc != data[packetSize - 1]) {
+        ++counts_.damaged;
+        return 0;
     }
+    takePacket(data, arrival, bytes.size());
+    measured(arrival);
+    return packetSize;
 }
 
 /// Some packets by the angle between, as the clock counts whole milliseconds; many by the clock.
@@ -80,29 +74,18 @@ void Ldrobot::tellLost(double first_deg, double step_deg, int stamp_ms) {
         revolutions_.lose(std::uint64_t(lost));
 }
 
-bool Ldrobot::takePacket(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesBehind) {
-    std::uint8_t crc = 0;
-    for (std::size_t i = 0; i < packetSize - 1; ++i)
-        crc = crcTable[crc ^ bytes[i]];
-    if (crc != bytes[packetSize - 1]) {
-        ++counts_.damaged;
-        return false;
-    }
-    ++counts_.packets;
+void Ldrobot::takePacket(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesSince) {
     const double speed_degps = word(bytes + 2), first_deg = word(bytes + 4) * 0.01;
     double width_deg = word(bytes + 42) * 0.01 - first_deg;
     width_deg += width_deg < 0 ? 360 : 0;
     const int stamp_ms = word(bytes + 44);
-    lastPacket_ns_ = arrival.mono_ns;
-    if (width_deg > 3 * speed_degps * beams * sample_ns_ * 1e-9) { // as the head begins to turn
-        revolutions_.lose(1);
-        return true;
-    }
+    if (width_deg > 3 * speed_degps * beams * sample_ns_ * 1e-9) // as the head begins to turn
+        return revolutions_.lose(1);
     tellLost(first_deg, width_deg / (beams - 1), stamp_ms);
     head_deg_ = first_deg + width_deg;
     stamp_ms_ = stamp_ms;
-    const auto wire_ns = std::int64_t(double(packetSize + bytesBehind) * byte_ns_);
-    const HostClock::Time end = clock_.take(stamp_ms * std::int64_t(1000000), arrival.stamp_ns, wire_ns);
+    const auto wire_ns = std::int64_t(double(bytesSince) * byte_ns_);
+    const HostClock::Time end = clock_.take(stamp_ms * ms, arrival.stamp_ns, wire_ns);
     revolutions_.setClockBound(end.bound_ns + 1000000);
     const double sample_ns = speed_degps > 0 ? width_deg / (beams - 1) / speed_degps * 1e9 : sample_ns_;
     for (int i = 0; i < beams; ++i) {
@@ -111,7 +94,6 @@ bool Ldrobot::takePacket(const std::uint8_t *bytes, const Arrival &arrival, std:
         revolutions_.addClockwise(angle_deg, angle_deg, float(word(beam)) * 1e-3F, beam[2],
                                   end.stamp_ns - std::int64_t((beams - 1 - i) * sample_ns));
     }
-    return true;
 }
 
 } // namespace hermes::scan

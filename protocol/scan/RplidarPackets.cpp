@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace hermes::scan {
 namespace {
 
-constexpr std::int64_t clockPeriod_ns = 3600000000000;
 constexpr double degreesOf64 = 1.0 / 64;
+constexpr double usual_ns = 125000; // for each beam
+constexpr double slack = 20;        // beams that packets may lie beside each other: it speeds up, beams slant
 
 /// Where the first beam's head stands: ultra dense ones have it behind a stamp and a state.
 int startOf(const std::uint8_t *bytes, int form) {
@@ -18,7 +20,7 @@ int startOf(const std::uint8_t *bytes, int form) {
 }
 
 double startDegrees(const std::uint8_t *bytes, int form) {
-    return (startOf(bytes, form) & 0x7FFF) * degreesOf64;
+    return (form == 0x81 ? word(bytes + 1) >> 1 : startOf(bytes, form) & 0x7FFF) * degreesOf64;
 }
 
 struct UltraRange {
@@ -51,7 +53,7 @@ double ultraOffset(int range_mm) {
 RplidarPackets::RplidarPackets(int baud, RevolutionAssembler &revolutions)
     : byte_ns_(1e10 / baud)
     , revolutions_(revolutions)
-    , clock_(clockPeriod_ns) {}
+    , clock_(usual_ns, slack, 1) {}
 
 std::size_t RplidarPackets::sizeOf(int form) {
     switch (form) {
@@ -75,23 +77,22 @@ int RplidarPackets::beamsOf(int form) {
 
 void RplidarPackets::begin(int form, double sample_us) {
     form_ = form;
-    sample_ns_ = sample_us * 1e3;
-    hasLast_ = false;
-    advance_deg_ = 0;
-    isGap_ = true;
+    clock_ = SampleClock(sample_us * 1e3, slack, beamsOf(form));
+    step_deg_ = 0;
+    jump();
 }
 
-void RplidarPackets::lose(std::uint64_t packets) {
-    revolutions_.lose(packets);
+void RplidarPackets::lose() {
+    revolutions_.lose(0);
     hasLast_ = false;
     isGap_ = true;
 }
 
 void RplidarPackets::jump() {
     revolutions_.jump();
+    clock_.jump();
     hasLast_ = false;
     isGap_ = true;
-    clock_ = HostClock(clockPeriod_ns);
 }
 
 /// Those of form 81 are known by two bits alone, and by heads that go on from one to the next.
@@ -100,7 +101,7 @@ bool RplidarPackets::isPacket(const std::uint8_t *bytes) const {
         double head_deg = head_deg_;
         for (std::size_t i = 0; i < needed(); i += size()) {
             const std::uint8_t *beam = bytes + i;
-            const double before_deg = std::exchange(head_deg, (word(beam + 1) >> 1) * degreesOf64);
+            const double before_deg = std::exchange(head_deg, startDegrees(beam, form_));
             const bool isChecked =
                 (beam[0] & 1) != (beam[0] >> 1 & 1) && (beam[1] & 1) == 1 && head_deg < 361;
             const bool goesOn = std::fmod(head_deg - before_deg + 363, 360) < 33;
@@ -117,45 +118,43 @@ bool RplidarPackets::isPacket(const std::uint8_t *bytes) const {
     return sum == ((bytes[0] & 0x0F) | (bytes[1] & 0x0F) << 4) && startDegrees(bytes, form_) < 360;
 }
 
-/// A scanner of this family has no clock that counts: its beams are one. Where some are missing, the host's
-/// tells how many.
-void RplidarPackets::take(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesBehind) {
-    const double beams_ns = beamsOf(form_) * sample_ns_;
-    sensor_ns_ += isGap_ ? double(std::max<std::int64_t>(arrival.stamp_ns - lastArrival_ns_, 0)) : beams_ns;
-    sensor_ns_ = std::fmod(sensor_ns_, double(clockPeriod_ns));
-    lastArrival_ns_ = arrival.stamp_ns;
-    const double wire_ns = double(size() + bytesBehind) * byte_ns_;
+void RplidarPackets::take(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesSince) {
+    if (form_ != 0x81 && startOf(bytes, form_) & 0x8000) { // a new sequence
+        lose();
+        clock_.jump();
+    }
+    const double head_deg = startDegrees(bytes, form_);
+    const int count = beamsOf(form_);
     // The SDK's figure: half a beam measured, and one that the device takes to work.
-    const auto late_ns = std::int64_t(wire_ns + 1.5 * sample_ns_);
-    const HostClock::Time time = clock_.take(std::int64_t(sensor_ns_), arrival.stamp_ns, late_ns);
+    const double late_ns = double(bytesSince) * byte_ns_ + 1.5 * clock_.sample_ns();
+    const SampleClock::Time time =
+        clock_.take({head_deg, count, isGap_, arrival.stamp_ns - std::int64_t(late_ns)});
     revolutions_.setClockBound(time.bound_ns);
-    lastEnd_ns_ = end_ns_;
-    end_ns_ = time.stamp_ns;
-    isGap_ = false;
-    if (form_ == 0x81)
-        return takeOne(bytes);
-    if (startOf(bytes, form_) & 0x8000) // a new sequence
+    if (time.lost > 0) {
+        revolutions_.lose(time.lost);
+        step_deg_ = isGap_ ? step_deg_ : 0; // it may have been wrong
         hasLast_ = false;
-    if (hasLast_)
+    }
+    if (hasLast_) {
+        const double now_deg = (std::fmod(head_deg - head_deg_ + 363, 360) - 3) / count;
+        step_deg_ += (now_deg - step_deg_) * (step_deg_ > 0 ? std::min(count / 32.0, 1.0) : 1);
+    }
+    clock_.expect(head_deg + count * step_deg_, step_deg_);
+    if (form_ == 0x81)
+        revolutions_.addClockwise(std::fmod(head_deg, 360), head_deg, float(word(bytes + 3)) * 0.25e-3F,
+                                  bytes[0] & 0xFC, time.stamp_ns);
+    else if (hasLast_)
         decode(last_, bytes);
     std::memcpy(last_, bytes, size());
     hasLast_ = true;
-}
-
-void RplidarPackets::takeOne(const std::uint8_t *bytes) {
-    head_deg_ = (word(bytes + 1) >> 1) * degreesOf64;
-    revolutions_.addClockwise(std::fmod(head_deg_, 360), head_deg_, float(word(bytes + 3)) * 0.25e-3F,
-                              bytes[0] & 0xFC, end_ns_);
+    isGap_ = false;
+    end_ns_ = time.stamp_ns;
+    head_deg_ = head_deg;
 }
 
 void RplidarPackets::decode(const std::uint8_t *bytes, const std::uint8_t *following) {
-    const double start_deg = startDegrees(bytes, form_);
-    double advance_deg = startDegrees(following, form_) - start_deg;
-    advance_deg += advance_deg < 0 ? 360 : 0;
-    // A packet that vanished whole leaves no other trace.
-    const double before_deg = std::exchange(advance_deg_, advance_deg);
-    if (before_deg > 0 && advance_deg > 1.6 * before_deg + 1)
-        return revolutions_.lose(std::uint64_t(std::lround(advance_deg / before_deg)));
+    const double start_deg = head_deg_;
+    const double advance_deg = std::fmod(startDegrees(following, form_) - start_deg + 360, 360);
     raw_.clear();
     if (form_ == 0x82) {
         for (int cabin = 0; cabin < 16; ++cabin) {
@@ -178,7 +177,8 @@ void RplidarPackets::decode(const std::uint8_t *bytes, const std::uint8_t *follo
         const Raw &raw = raw_[std::size_t(k)];
         const double head_deg = start_deg + k * advance_deg / count;
         revolutions_.addClockwise(std::fmod(head_deg, 360), head_deg - raw.offset_deg, raw.range_m,
-                                  raw.intensity, lastEnd_ns_ - std::int64_t((count - 1 - k) * sample_ns_));
+                                  raw.intensity,
+                                  end_ns_ - std::int64_t((count - 1 - k) * clock_.sample_ns()));
     }
 }
 

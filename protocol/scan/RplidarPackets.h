@@ -1,10 +1,8 @@
 #pragma once
 
-#include "protocol/scan/HostClock.h"
 #include "protocol/scan/RevolutionAssembler.h"
+#include "protocol/scan/SampleClock.h"
 #include "protocol/scan/ScannerProtocol.h"
-
-#include <string_view>
 
 namespace hermes::scan {
 
@@ -19,17 +17,17 @@ public:
     void begin(int form, double sample_us);
     static bool isForm(int form) { return sizeOf(form) > 0; }
     int form() const { return form_; } ///< 0: none
-    double sample_us() const { return sample_ns_ * 1e-3; }
+    double sample_us() const { return clock_.sample_ns() * 1e-3; }
     std::size_t size() const { return sizeOf(form_); } ///< bytes of a packet
 
     /// Bytes that isPacket() looks at.
     std::size_t needed() const { return form_ == 0x81 && isGap_ ? 4 * size() : size(); }
     /// Whether a packet can begin there.
     bool isPacket(const std::uint8_t *bytes) const;
-    /// Takes one that is. bytesBehind: that came in together with it, behind it.
-    void take(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesBehind);
-    /// Packets are missing before the next; 0: nobody knows how many.
-    void lose(std::uint64_t packets);
+    /// Takes one that is. bytesSince: that came in together, from its beginning.
+    void take(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesSince);
+    /// Something is damaged before the next.
+    void lose();
     void jump();
 
 private:
@@ -41,7 +39,6 @@ private:
 
     static std::size_t sizeOf(int form);
     static int beamsOf(int form);
-    void takeOne(const std::uint8_t *bytes);
     void decode(const std::uint8_t *bytes, const std::uint8_t *following);
     void decodeUltra(const std::uint8_t *bytes, const std::uint8_t *following);
     void decodeUltraDense(const std::uint8_t *bytes);
@@ -49,20 +46,16 @@ private:
     const double byte_ns_;
     RevolutionAssembler &revolutions_;
     int form_ = 0;
-    double sample_ns_ = 125000;
 
+    SampleClock clock_;
+    bool isGap_ = true; ///< before the next
     static constexpr std::size_t maxSize = 170;
     std::uint8_t last_[maxSize]{}; ///< the packet before, whose beams are not told yet
     bool hasLast_ = false;
-    std::int64_t end_ns_ = 0, lastEnd_ns_ = 0; ///< when the last beam of this packet and of that was measured
-    double head_deg_ = 0;                      ///< of the beam before, of form 81
-    double advance_deg_ = 0;                   ///< of the head in the packet before; 0: not known
+    std::int64_t end_ns_ = 0; ///< when its last beam was measured
+    double head_deg_ = 0;     ///< of its first beam
+    double step_deg_ = 0;     ///< between beams; 0: not known
     std::vector<Raw> raw_;
-
-    HostClock clock_;
-    double sensor_ns_ = 0; ///< by the beams that came
-    std::int64_t lastArrival_ns_ = 0;
-    bool isGap_ = true;
 };
 
 } // namespace hermes::scan

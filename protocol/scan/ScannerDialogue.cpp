@@ -30,6 +30,7 @@ void ScannerDialogue::feed(std::string_view bytes, const Arrival &arrival) {
 
 void ScannerDialogue::jump() {
     buffer_.clear();
+    isScanning_ = false;
     revolutions_.jump();
 }
 
@@ -43,7 +44,6 @@ void ScannerDialogue::measured(const Arrival &arrival) {
 void ScannerDialogue::opened(std::int64_t mono_ns) {
     jump();
     isNew_ = true;
-    isScanning_ = false;
     attempts_ = 0;
     lastBytes_ns_ = mono_ns;
 }
@@ -63,11 +63,10 @@ HostAction ScannerDialogue::begin(int step, std::int64_t mono_ns) {
 
 HostAction ScannerDialogue::fail(const char *problem, std::int64_t mono_ns) {
     problem_ = trouble_.empty() ? problem : std::exchange(trouble_, {});
-    isScanning_ = false;
     ++attempts_;
     jump();
     HostAction action = begin(0, mono_ns);
-    action.reopen = attempts_ >= attemptsOfLine;
+    action.reopen = attempts_ >= attemptsOfLine || !request_; // nothing else can be done
     return action;
 }
 
@@ -92,7 +91,7 @@ HostAction ScannerDialogue::next(std::int64_t mono_ns) {
             return {};
         break;
     case Until::Time:
-        if (since_ms < request_->wait_ms)
+        if (!isAnswered_ && since_ms < request_->wait_ms)
             return {};
         break;
     case Until::Answer:

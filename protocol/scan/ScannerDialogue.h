@@ -21,7 +21,7 @@ protected:
     enum class Until {
         Answer,  ///< answered(), within the time; else all begins anew
         Silence, ///< for 100 ms: what it streamed before has ended
-        Time,    ///< passes
+        Time,    ///< passes, or answered()
     };
     struct Request {
         Until until = Until::Time;

@@ -7,6 +7,7 @@
 #include "protocol/scan/Ydlidar.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace hermes::scan {
 namespace {
@@ -87,6 +88,24 @@ const ScannerModel *findScannerModel(std::string_view name) {
         if (name == model.name)
             return &model;
     return nullptr;
+}
+
+const ScannerModel *namedModel(const ScannerModel &alike, std::string_view device) {
+    std::string name; // as in the table
+    for (const char character : device)
+        if (std::isalnum(std::uint8_t(character)))
+            name += char(std::tolower(std::uint8_t(character)));
+    const ScannerModel *only = nullptr;
+    int count = 0;
+    for (const ScannerModel &model : scannerModels()) {
+        if (model.make != alike.make || model.baud != alike.baud)
+            continue;
+        const std::string_view all = model.name;
+        if (name.find(all.substr(all.find('-') + 1)) != std::string::npos)
+            return &model;
+        only = ++count == 1 ? &model : nullptr;
+    }
+    return only;
 }
 
 } // namespace hermes::scan

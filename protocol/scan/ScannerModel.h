@@ -34,5 +34,8 @@ const std::vector<ScannerModel> &scannerModels();
 std::vector<const ScannerModel *> scannerSearch(bool isSerial);
 /// Null: there is none of that name.
 const ScannerModel *findScannerModel(std::string_view name);
+/// Of those that speak as this one on a line of the same speed: the one that the device names itself after,
+/// or the only one; else null.
+const ScannerModel *namedModel(const ScannerModel &alike, std::string_view device);
 
 } // namespace hermes::scan

@@ -9,13 +9,10 @@
 namespace hermes::scan {
 namespace {
 
-constexpr std::int64_t countPeriod_ns = 3600000000000;
 constexpr std::size_t packetHead = 10, timePacket = 8, answerHead = 7;
-constexpr double rateWindow_ns = 1e10; // long enough that packets that come late do not matter
-constexpr int maxCount = 80;           // beams of a packet
-constexpr int wrongWidth = 20;         // so many wrong checksums in a row are no noise
-constexpr double tolerance = 5;        // beams that packets may lie beside each other
-constexpr double mostGone = 100;       // revolutions; more is a clock that was set
+constexpr int maxCount = 80, usualCount = 40; // beams of a packet
+constexpr int wrongWidth = 20;                // so many wrong checksums in a row are no noise
+constexpr double tolerance = 5;               // beams that packets may lie beside each other
 
 } // namespace
 
@@ -26,8 +23,7 @@ Ydlidar::Ydlidar(Kind kind, const ScannerModel &model, RevolutionAssembler &revo
     , motor_(model.motor)
     , byte_ns_(1e10 / model.baud)
     , beamSize_(kind == Kind::Tmini ? 3 : 2)
-    , clock_(countPeriod_ns)
-    , sample_ns_(1e9 / model.samples_hz) {
+    , clock_(1e9 / model.samples_hz, tolerance, usualCount) {
     identity_.model = "YDLIDAR";
 }
 
@@ -38,9 +34,7 @@ void Ydlidar::jump() {
 
 void Ydlidar::restart() {
     revolutions_.jump();
-    head_deg_.reset();
-    clock_ = HostClock(countPeriod_ns);
-    rateSince_ns_ = 0;
+    clock_.jump();
     skipped_ = 1; // it may begin within a packet, which is no damage
 }
 
@@ -57,7 +51,7 @@ std::optional<ScannerDialogue::Request> Ydlidar::request(int step) const {
     case Stop:
         return Request{Until::Silence, "\xA5\x65"};
     case Info:
-        return Request{Until::Answer, "\xA5\x90", 500};
+        return Request{Until::Answer, "\xA5\x90", 300};
     case Health:
         return Request{Until::Answer, "\xA5\x92", 500};
     case Reset:
@@ -75,7 +69,7 @@ std::size_t Ydlidar::take(std::string_view bytes, const Arrival &arrival) {
                              : first == 0xAA ? takePacket(bytes, arrival)
                                              : 0;
     if (size == 0)
-        counts_.damaged += skipped_++ % (packetHead + fullCount_ * beamSize_) == 0;
+        counts_.damaged += skipped_++ % (packetHead + std::size_t(clock_.fullBeams()) * beamSize_) == 0;
     return size;
 }
 
@@ -93,7 +87,7 @@ std::size_t Ydlidar::takeAnswer(std::string_view bytes) {
         return answerHead;
     }
     if (!(form == 0x04 && (length == 20 || length == 4)) && !(form == 0x06 && length == 3)) {
-        if (isMeasuring() && head_deg_ && skipped_ == 0)
+        if (isMeasuring() && skipped_ == 0)
             trouble_ = "the head of the scanner is blocked";
         return 0;
     }
@@ -126,7 +120,7 @@ void Ydlidar::takeHealth(const std::uint8_t *data) {
     std::snprintf(text, sizeof text, "the scanner tells of a fault, code %04X%s", unsigned(word(data + 1)),
                   needsReset_ ? "; it is reset" : "");
     if (data[0] != 0)
-        problem_ = text;
+        problem_ = trouble_ = text;
     answered(Health);
 }
 
@@ -164,58 +158,20 @@ std::size_t Ydlidar::takePacket(std::string_view bytes, const Arrival &arrival) 
     wrong_ = 0;
     const double first_deg = (word(data + 4) >> 1) / 64.0;
     const double width_deg = std::fmod((word(data + 6) >> 1) / 64.0 - first_deg + 360, 360);
-    fullCount_ = std::max(fullCount_, std::size_t(count));
     const auto wire_ns = std::int64_t(double(bytes.size()) * byte_ns_);
-    const std::int64_t end_ns = endOf(first_deg, count, arrival.stamp_ns - wire_ns);
+    const SampleClock::Time end = clock_.take({first_deg, count, skipped_ > 0, arrival.stamp_ns - wire_ns});
+    skipped_ = 0;
+    revolutions_.setClockBound(end.bound_ns);
+    if (end.lost > 0)
+        revolutions_.lose(end.lost);
     if (count > 1 && width_deg > 0 && width_deg < 180)
         step_deg_ = width_deg / (count - 1);
     for (int i = 0; i < count; ++i)
         addBeam(data + packetHead + std::size_t(i) * beamSize_, first_deg + i * step_deg_,
-                end_ns - std::int64_t((count - 1 - i) * sample_ns_));
-    head_deg_ = first_deg + (count - 1) * step_deg_;
+                end.stamp_ns - std::int64_t((count - 1 - i) * clock_.sample_ns()));
+    clock_.expect(first_deg + count * step_deg_, step_deg_);
     measured(arrival);
     return size;
-}
-
-/// How many beams it measures is a setting of some models: the host's clock tells, where it is another than
-/// the table has.
-void Ydlidar::followRate(double beams, std::int64_t received_ns) {
-    const double passed_ns = double(received_ns - rateSince_ns_);
-    rateBeams_ += beams;
-    if (passed_ns >= 0 && passed_ns < rateWindow_ns)
-        return;
-    const double measured_ns = passed_ns / rateBeams_, ratio = measured_ns / sample_ns_;
-    if (passed_ns > 0 && passed_ns < 2 * rateWindow_ns && std::abs(ratio - 1) > 0.02 && ratio < 4)
-        sample_ns_ = measured_ns;
-    rateSince_ns_ = received_ns;
-    rateBeams_ = 0;
-}
-
-/// When the last beam of a packet was measured. The scanner has no clock, but its beams are one. The angle
-/// tells how many are missing, but for whole revolutions, which the host's clock tells.
-std::int64_t Ydlidar::endOf(double first_deg, int count, std::int64_t received_ns) {
-    double beams = count;
-    const bool isDamaged = skipped_ > 0;
-    if (head_deg_ && step_deg_ > 0) {
-        const double around = 360 / step_deg_; // beams
-        const double apart = (first_deg - *head_deg_) / step_deg_ - 1;
-        double missing = std::fmod(apart + 2 * around + tolerance, around) - tolerance;
-        if (isDamaged || missing > tolerance) {
-            const double passed = double(received_ns - lastReceived_ns_) / sample_ns_ - count;
-            missing = std::max(missing, 0.0);
-            missing += std::clamp(std::round((passed - missing) / around), 0.0, mostGone) * around;
-            revolutions_.lose(std::max<std::uint64_t>(
-                1, std::uint64_t(std::ceil((missing - tolerance) / double(fullCount_)))));
-            beams += missing;
-        }
-    }
-    skipped_ = 0;
-    followRate(beams, received_ns);
-    sensor_ns_ = std::fmod(sensor_ns_ + beams * sample_ns_, double(countPeriod_ns));
-    lastReceived_ns_ = received_ns;
-    const HostClock::Time time = clock_.take(std::int64_t(sensor_ns_), received_ns, 0);
-    revolutions_.setClockBound(time.bound_ns);
-    return time.stamp_ns;
 }
 
 /// Laser and receiver of those that triangulate lie beside each other: the nearer, the further turned.

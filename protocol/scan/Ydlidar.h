@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/scan/HostClock.h"
+#include "protocol/scan/SampleClock.h"
 #include "protocol/scan/ScannerDialogue.h"
 #include "protocol/scan/ScannerModel.h"
 
@@ -31,8 +31,6 @@ private:
     bool isRight(const std::uint8_t *bytes, int count) const;
     void takeInfo(const std::uint8_t *data);
     void takeHealth(const std::uint8_t *data);
-    void followRate(double beams, std::int64_t received_ns);
-    std::int64_t endOf(double first_deg, int count, std::int64_t received_ns);
     void addBeam(const std::uint8_t *beam, double head_deg, std::int64_t stamp_ns);
 
     const Kind kind_;
@@ -42,17 +40,10 @@ private:
     const std::size_t beamSize_;
     bool needsReset_ = false;
 
-    HostClock clock_;
-    double sample_ns_;              ///< for each beam
-    std::int64_t rateSince_ns_ = 0; ///< that is measured since then
-    double rateBeams_ = 0;          ///< by so many beams
-    double sensor_ns_ = 0;          ///< by the beams that came
-    std::int64_t lastReceived_ns_ = 0;
-    std::optional<double> head_deg_; ///< of the beam before
-    double step_deg_ = 0;            ///< between beams; 0: not known
-    std::size_t fullCount_ = 40;     ///< beams of the largest packet
-    std::size_t skipped_ = 1;        ///< bytes since the last packet
-    int wrong_ = 0;                  ///< checksums in a row
+    SampleClock clock_;
+    double step_deg_ = 0;     ///< between beams; 0: not known
+    std::size_t skipped_ = 1; ///< bytes since the last packet
+    int wrong_ = 0;           ///< checksums in a row
 };
 
 } // namespace hermes::scan

@@ -48,7 +48,10 @@ class Scanners(unittest.TestCase):
         self.process, self.scanner = self.begin("scanner", **{
             "scanner.url": f"serial://{self.line}", "scanner.model": told, "record.folder": self.folder, "record.free_floor_bytes": 0,
             "record.free_warn_bytes": 0})
+        begun = time.monotonic()
         wait_for(f"a revolution of {model}", lambda: self.state()["revolutions"] > 2)
+        print(f"{model}, {told}: measures after {time.monotonic() - begun:.1f} s")
+        self.assertIn(self.state()["model"], (model, None))  # null: several speak alike
 
     def state(self):
         return self.scanner.call("source.status")
@@ -99,6 +102,15 @@ class Scanners(unittest.TestCase):
                 for cleanup in range(len(self._cleanups) - 1):  # but the folder
                     function, args, kwargs = self._cleanups.pop()
                     function(*args, **kwargs)
+
+    def test_found_among_those_alike(self):
+        for model in ("ydlidar-tmini", "hokuyo-ust10lx"):  # others of the same speed come first
+            with self.subTest(model):
+                self.scanner_of(model)
+                self.assertEqual(self.state()["model"], model)
+                self.assertEqual(self.state()["damaged"], 0)
+                self.doCleanups()
+                self.setUp()
 
     def check_poses(self, poses, truths):
         """Where the matcher has the scanner, against where it truly is; relative to the first."""

@@ -1,0 +1,69 @@
+#include "protocol/scan/SampleClock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hermes::scan {
+namespace {
+
+constexpr double rateWindow_ns = 1e10; // long enough that packets that come late do not matter
+constexpr double leastStep_deg = 0.01; // a head that stands nearly
+constexpr double mostGone = 100;       // revolutions; more is a clock that was set
+
+} // namespace
+
+void SampleClock::jump() {
+    clock_ = HostClock(period_ns);
+    head_deg_.reset();
+    rateSince_ns_ = 0;
+}
+
+void SampleClock::expect(double head_deg, double step_deg) {
+    head_deg_ = head_deg;
+    step_deg_ = step_deg;
+}
+
+/// How many beams it measures is a setting of some models: the host's clock tells, where it is another than
+/// is known of it.
+void SampleClock::followRate(double beams, std::int64_t measured_ns) {
+    const double passed_ns = double(measured_ns - rateSince_ns_);
+    rateBeams_ += beams;
+    if (passed_ns >= 0 && passed_ns < rateWindow_ns)
+        return;
+    const double each_ns = passed_ns / rateBeams_, ratio = each_ns / sample_ns_;
+    if (passed_ns > 0 && passed_ns < 2 * rateWindow_ns && std::abs(ratio - 1) > 0.02 && ratio < 4)
+        sample_ns_ = each_ns;
+    rateSince_ns_ = measured_ns;
+    rateBeams_ = 0;
+}
+
+SampleClock::Time SampleClock::take(const Packet &packet) {
+    fullBeams_ = std::max(fullBeams_, packet.beams);
+    double missing = 0;
+    std::uint64_t lost = 0;
+    if (head_deg_ && step_deg_ > leastStep_deg) {
+        const double around = 360 / step_deg_, apart = (packet.head_deg - *head_deg_) / step_deg_;
+        const double half = fullBeams_ / 2.0; // a packet
+        const double tolerance = packet.isBehindGap ? std::min(tolerance_, half) : tolerance_;
+        missing = apart - around * std::floor((apart + tolerance) / around);
+        if (packet.isBehindGap || missing > tolerance) {
+            const double passed = double(packet.measured_ns - lastMeasured_ns_) / sample_ns_ - packet.beams;
+            missing = std::max(missing, 0.0);
+            missing += std::clamp(std::round((passed - missing) / around), 0.0, mostGone) * around;
+            const double packets = (missing - std::min(tolerance, half)) / fullBeams_;
+            lost = std::uint64_t(std::max(std::ceil(packets), 1.0));
+        } else {
+            missing = 0;
+        }
+    } else if (head_deg_ && packet.isBehindGap) { // nobody knows how many
+        jump();
+        lost = 1;
+    }
+    followRate(packet.beams + missing, packet.measured_ns);
+    sensor_ns_ = std::fmod(sensor_ns_ + (packet.beams + missing) * sample_ns_, double(period_ns));
+    lastMeasured_ns_ = packet.measured_ns;
+    const HostClock::Time time = clock_.take(std::int64_t(sensor_ns_), packet.measured_ns, 0);
+    return {time.stamp_ns, time.bound_ns, lost};
+}
+
+} // namespace hermes::scan
