@@ -50,13 +50,13 @@ Result<void> SensorLine::listen(std::uint16_t port, const Receiver &received) {
         if (!program_)
             return take(program, received);
         program->setReceiving(false);
-        QTimer::singleShot(refusal_ms, program,
-                           [this, program, received] { // the end of the other may be seen
-                               if (program_ || !program->isOpen())
-                                   program->deleteLater();
-                               else
-                                   take(program, received);
-                           });
+        // The other one may have gone, which is not seen yet.
+        QTimer::singleShot(refusal_ms, program, [this, program, received] {
+            if (program_ || pulled_ || !program->isOpen())
+                program->deleteLater();
+            else
+                take(program, received);
+        });
     });
     return server_->listen();
 }
@@ -97,16 +97,14 @@ void SensorLine::send(QByteArray bytes) {
 }
 
 void SensorLine::setPulled(bool pulled) {
-    if (server_) {
-        if (std::exchange(pulled_, pulled) == pulled)
-            return;
-        if (!pulled)
-            return void(server_->listen());
+    if (server_ && pulled != pulled_) {
         server_->close();
         if (program_)
             program_->close();
-        return;
+        pulled_ = pulled || !server_->listen();
     }
+    if (server_)
+        return;
     if (pulled)
         return pty_->close();
     if (pty_->isOpen())
