@@ -7,8 +7,6 @@ namespace hermes::scanner {
 namespace {
 
 constexpr int period_ms = 10;
-constexpr double listening_s = 0.3, turning_s = 1; // until another is tried; where its motor must start
-constexpr quint64 enoughPackets = 10;
 
 } // namespace
 
@@ -91,16 +89,11 @@ void LiveScanner::step() {
     act(protocol.next(now.mono_ns));
     if (isFound_)
         return;
-    const scan::ScannerModel &model = reader_->model();
-    const scan::ScannerProtocol::Counts &counts = protocol.counts();
-    const bool isNamed = !protocol.identity().serial.empty(), failed = !protocol.problem().empty();
-    const bool isMisread = counts.damaged >= enoughPackets && counts.damaged > counts.packets;
-    const double patience_s = model.motor == scan::Motor::Itself ? listening_s : turning_s;
-    const bool isOver = model.isOneWay && now.mono() - openedMono_ > patience_s;
-    if (isMisread || (!isNamed && (failed || isOver)))
+    const scan::Search verdict = scan::verdictOf(reader_->model(), protocol, now.mono() - openedMono_);
+    if (verdict == scan::Search::Other)
         tryNext();
-    else if (counts.packets >= enoughPackets || reader_->counts().revolutions > 0 || failed)
-        isFound_ = true; // it measures, or tells who it is and that it cannot
+    else
+        isFound_ = verdict == scan::Search::Found;
 }
 
 const scan::ScannerModel *LiveScanner::model() const {

@@ -24,8 +24,7 @@ constexpr int talkerBauds[] = {9600, 4800, 38400, 115200}; // the usual one firs
 constexpr int controllerBauds[] = {115200, 38400, 460800}; // the same
 constexpr int listen_ms = 1200;                            // a receiver says something each second
 constexpr int answer_ms = 60, patientAnswer_ms = 200; // 50 bytes, and an adapter that holds them for 16 ms
-constexpr int scannerAnswer_ms = 700, scannerStep_ms = 10;
-constexpr std::uint64_t enoughPackets = 10; // that were right, of a scanner
+constexpr int longestScanner_ms = 4000, scannerStep_ms = 10; // until its motor turns
 constexpr int slice_ms = 50;                // between two looks whether to give up
 constexpr int allAddresses = roboclaw::lastAddress - roboclaw::firstAddress + 1;
 
@@ -182,22 +181,25 @@ void SerialProbe::findScanner(bool isOneWay) {
         const auto scanner = model->make(*model, revolutions);
         scanner->opened(Moment::now().mono_ns);
         QElapsedTimer waiting;
-        for (waiting.start(); waiting.elapsed() < scannerAnswer_ms && !isGone_ && !isCancelled_;) {
+        for (waiting.start(); waiting.elapsed() < longestScanner_ms && !isGone_ && !isCancelled_;) {
             const std::string asked = isOneWay ? std::string() : scanner->next(Moment::now().mono_ns).send;
             if (!asked.empty() && ::write(port_, asked.data(), asked.size()) != ssize_t(asked.size()))
                 isGone_ = errno != EAGAIN;
             const QByteArray bytes = receive(scannerStep_ms, [](const QByteArray &) { return true; });
-            if (bytes.isEmpty())
-                continue;
             const Moment now = Moment::now();
-            scanner->feed({bytes.constData(), std::size_t(bytes.size())}, {now.stamp_ns, now.mono_ns});
-            const scan::ScannerIdentity &identity = scanner->identity();
-            if (scanner->counts().packets < enoughPackets && identity.serial.empty())
+            if (!bytes.isEmpty())
+                scanner->feed({bytes.constData(), std::size_t(bytes.size())}, {now.stamp_ns, now.mono_ns});
+            const scan::Search verdict = scan::verdictOf(*model, *scanner, double(waiting.elapsed()) * 1e-3);
+            if (verdict == scan::Search::GoesOn)
                 continue;
+            if (verdict == scan::Search::Other)
+                break;
+            const std::string &device = scanner->identity().model;
+            const scan::ScannerModel *const named = scan::namedModel(*model, device);
             found_.kind = "scanner";
-            found_.model = model->name;
+            found_.model = (named ? named : model)->name;
             found_.baud = model->baud;
-            found_.text = identity.model.empty() ? model->title : QString::fromStdString(identity.model);
+            found_.text = device.empty() ? model->title : QString::fromStdString(device);
             return;
         }
     }

@@ -83,6 +83,19 @@ std::vector<const ScannerModel *> scannerSearch(bool isSerial) {
     return all;
 }
 
+Search verdictOf(const ScannerModel &model, const ScannerProtocol &scanner, double open_s) {
+    constexpr std::uint64_t enoughPackets = 10;
+    constexpr double listening_s = 0.3, turning_s = 1; // where its motor must start
+    const ScannerProtocol::Counts &counts = scanner.counts();
+    const bool isNamed = !scanner.identity().serial.empty(), failed = !scanner.problem().empty();
+    const bool isMisread = counts.damaged >= enoughPackets && counts.damaged > counts.packets;
+    const bool isOver = model.isOneWay && open_s > (model.motor == Motor::Itself ? listening_s : turning_s);
+    if (isMisread || (!isNamed && (failed || isOver)))
+        return Search::Other;
+    // It measures, or tells who it is and that it cannot.
+    return counts.packets >= enoughPackets || failed ? Search::Found : Search::GoesOn;
+}
+
 const ScannerModel *findScannerModel(std::string_view name) {
     for (const ScannerModel &model : scannerModels())
         if (name == model.name)

@@ -32,6 +32,10 @@ const std::vector<ScannerModel> &scannerModels();
 /// One of each that differ in what is said on a serial line, or over TCP, in the order in which they are to
 /// be looked for: those that send by themselves are heard before anything is sent.
 std::vector<const ScannerModel *> scannerSearch(bool isSerial);
+/// Whether a line leads to the scanner that is looked for.
+enum class Search { GoesOn, Found, Other };
+/// open_s: since the line was opened for it.
+Search verdictOf(const ScannerModel &model, const ScannerProtocol &scanner, double open_s);
 /// Null: there is none of that name.
 const ScannerModel *findScannerModel(std::string_view name);
 /// Of those that speak as this one on a line of the same speed: the one that the device names itself after,
