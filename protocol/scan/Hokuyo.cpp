@@ -108,9 +108,14 @@ std::optional<ScannerDialogue::Request> Hokuyo::request(int step) const {
 std::size_t Hokuyo::take(std::string_view bytes, const Arrival &arrival) {
     if (bytes[0] == '\n')
         return 1;
-    const std::size_t end = bytes.find("\n\n");
-    if (end == more)
-        return bytes.size() < maxBlock ? more : 0;
+    const std::size_t end = bytes.substr(0, maxBlock).find("\n\n");
+    if (end == more) {
+        if (bytes.size() < maxBlock)
+            return more;
+        counts_.skippedBytes += maxBlock;
+        isBroken_ = true;
+        return maxBlock;
+    }
     std::string_view block = bytes.substr(0, end);
     const std::size_t scan = block.rfind("\n99b\n");
     const bool isScan = scan != more && scan >= echoSize && block.substr(scan - echoSize, 2) == "MD";

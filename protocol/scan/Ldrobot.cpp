@@ -9,7 +9,7 @@ namespace hermes::scan {
 namespace {
 
 constexpr std::size_t packetSize = 47;
-constexpr int beams = 12;
+constexpr int packetBeams = 12;
 constexpr int stampPeriod_ms = 30000;
 constexpr std::int64_t ms = 1000000;
 
@@ -67,8 +67,9 @@ void Ldrobot::tellLost(double first_deg, double step_deg, int stamp_ms) {
         return;
     const double gap_deg = std::fmod(first_deg - step_deg - head_deg_ + 720 + step_deg, 360) - step_deg;
     const double passed_ms = (stamp_ms - *stamp_ms_ + stampPeriod_ms) % stampPeriod_ms;
-    const double byAngle = gap_deg / (beams * step_deg), byClock = passed_ms * 1e6 / (beams * sample_ns_) - 1;
-    const double revolution = 360 / (beams * step_deg); // packets
+    const double byAngle = gap_deg / (packetBeams * step_deg),
+                 byClock = passed_ms * 1e6 / (packetBeams * sample_ns_) - 1;
+    const double revolution = 360 / (packetBeams * step_deg); // packets
     const auto lost = std::lround(byClock > revolution / 2 ? byClock : byAngle);
     if (lost > 0)
         revolutions_.lose(std::uint64_t(lost));
@@ -76,23 +77,22 @@ void Ldrobot::tellLost(double first_deg, double step_deg, int stamp_ms) {
 
 void Ldrobot::takePacket(const std::uint8_t *bytes, const Arrival &arrival, std::size_t bytesSince) {
     const double speed_degps = word(bytes + 2), first_deg = word(bytes + 4) * 0.01;
-    double width_deg = word(bytes + 42) * 0.01 - first_deg;
-    width_deg += width_deg < 0 ? 360 : 0;
+    const double width_deg = std::fmod(word(bytes + 42) * 0.01 - first_deg + 720, 360);
     const int stamp_ms = word(bytes + 44);
-    if (width_deg > 3 * speed_degps * beams * sample_ns_ * 1e-9) // as the head begins to turn
+    if (width_deg > 3 * speed_degps * packetBeams * sample_ns_ * 1e-9) // as the head begins to turn
         return revolutions_.lose(1);
-    tellLost(first_deg, width_deg / (beams - 1), stamp_ms);
+    tellLost(first_deg, width_deg / (packetBeams - 1), stamp_ms);
     head_deg_ = first_deg + width_deg;
     stamp_ms_ = stamp_ms;
     const auto wire_ns = std::int64_t(double(bytesSince) * byte_ns_);
     const HostClock::Time end = clock_.take(stamp_ms * ms, arrival.stamp_ns, wire_ns);
     revolutions_.setClockBound(end.bound_ns + 1000000);
-    const double sample_ns = speed_degps > 0 ? width_deg / (beams - 1) / speed_degps * 1e9 : sample_ns_;
-    for (int i = 0; i < beams; ++i) {
+    const double sample_ns = speed_degps > 0 ? width_deg / (packetBeams - 1) / speed_degps * 1e9 : sample_ns_;
+    for (int i = 0; i < packetBeams; ++i) {
         const std::uint8_t *beam = bytes + 6 + 3 * i;
-        const double angle_deg = std::fmod(first_deg + i * width_deg / (beams - 1), 360);
+        const double angle_deg = std::fmod(first_deg + i * width_deg / (packetBeams - 1), 360);
         revolutions_.addClockwise(angle_deg, angle_deg, float(word(beam)) * 1e-3F, beam[2],
-                                  end.stamp_ns - std::int64_t((beams - 1 - i) * sample_ns));
+                                  end.stamp_ns - std::int64_t((packetBeams - 1 - i) * sample_ns));
     }
 }
 

@@ -36,8 +36,11 @@ void RevolutionAssembler::jump() {
 void RevolutionAssembler::deliver() {
     const bool isEmpty = revolution_.beams.empty();
     if (!isEmpty) {
-        revolution_.begin_ns = revolution_.beams.front().stamp_ns;
-        revolution_.end_ns = revolution_.beams.back().stamp_ns;
+        const auto [first, last] =
+            std::minmax_element(revolution_.beams.begin(), revolution_.beams.end(),
+                                [](const Beam &a, const Beam &b) { return a.stamp_ns < b.stamp_ns; });
+        revolution_.begin_ns = first->stamp_ns;
+        revolution_.end_ns = last->stamp_ns;
         if (spins_)
             std::sort(revolution_.beams.begin(), revolution_.beams.end(),
                       [](const Beam &a, const Beam &b) { return a.angle_deg < b.angle_deg; });

@@ -55,7 +55,7 @@ std::size_t SickCola::take(std::string_view bytes, const Arrival &arrival) {
         return 0;
     if (bytes.substr(0, 4) == "\x02\x02\x02\x02")
         trouble_ = "the scanner speaks CoLa B (binary); it must be set to CoLa A";
-    const std::size_t end = bytes.find_first_of("\x02\x03", 1);
+    const std::size_t end = bytes.substr(0, maxTelegram).find_first_of("\x02\x03", 1);
     if (end == more)
         return bytes.size() < maxTelegram ? more : 0;
     if (bytes[end] == '\x02') { // the end of that before is missing

@@ -323,6 +323,8 @@ private Q_SLOTS:
         QCOMPARE(reader.assembler.counts().lostPackets, std::uint64_t(missing));
         QVERIFY(!isDamaged || reader.scanner->counts().damaged == std::uint64_t(missing));
         for (const Revolution &revolution : reader.revolutions) {
+            for (const Beam &beam : revolution.beams)
+                QVERIFY(beam.stamp_ns >= revolution.begin_ns && beam.stamp_ns <= revolution.end_ns);
             if (revolution.partial)
                 continue;
             const double begin_s = double(revolution.begin_ns - ScannerReader::epoch_ns) * 1e-9;
@@ -339,6 +341,17 @@ private Q_SLOTS:
         rplidar.feed(capsule(640), 0);
         ld06.feed(bytesOf(ld06Packet), 0);
         QVERIFY(rplidar.scanner->isScanning() && ld06.scanner->isScanning());
+    }
+
+    /// An angle that no head has, with a right checksum.
+    void ld06StrangeAngle() {
+        ScannerReader reader("ld06");
+        std::string packet = ldrobotPacket(0);
+        packet[4] = packet[5] = '\xF6';
+        packet.back() = char(crcOfLdrobot(packet.substr(0, 46)));
+        reader.feed(packet, 1);
+        for (const Beam &beam : reader.beams())
+            QVERIFY(beam.stamp_ns <= ScannerReader::epoch_ns + ScannerReader::ns(1));
     }
 
     /// One that takes no commands: where it is silent the line is opened anew.

@@ -138,6 +138,17 @@ private Q_SLOTS:
         }
     }
 
+    /// What never ends is skipped, in no more time than it takes to read it.
+    void withoutEnd() {
+        ScannerReader reader("hokuyo-ust10lx");
+        const std::string noise(100000, 'A');
+        for (int i = 0; i < 100; ++i)
+            reader.feed(noise, i * 0.01);
+        reader.feed("\n\n" + ustParameters + ustScan(0), 1);
+        QCOMPARE(reader.scanner->counts().skippedBytes, std::uint64_t(10000002));
+        QCOMPARE(reader.scanner->counts().packets, std::uint64_t(1));
+    }
+
     /// Where the end of a scan is damaged, the next is still one.
     void damagedEnd() {
         for (const std::size_t fromEnd : {1, 2, 3}) {
