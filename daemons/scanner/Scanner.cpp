@@ -36,6 +36,10 @@ Scanner::Scanner()
     declareSettings();
     declareTopics();
     declareCommands();
+    recording_.setCondition([this]() -> Result<void> {
+        noteScanner();
+        return {};
+    });
     health().provide("scanner", [this] { updateHealth(); });
     connect(&second_, &QTimer::timeout, this, &Scanner::tick);
     retry_.setSingleShot(true);
@@ -172,14 +176,18 @@ void Scanner::publishScan(const scan::Revolution &revolution, bool replayed) {
     }
 }
 
+void Scanner::noteScanner() {
+    if (!live_ || !live_->isFound())
+        return;
+    const ScanReader &reader = live_->reader();
+    const scan::ScannerModel *const model = live_->model();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    prerequisite_ = {{"scanner", (model ? *model : reader.model()).name},
+                     {"prerequisite", QString::fromStdString(reader.protocol().prerequisite())}};
+}
+
 void Scanner::tick() {
-    if (live_ && live_->isFound()) {
-        const ScanReader &reader = live_->reader();
-        const scan::ScannerModel *const model = live_->model();
-        const std::lock_guard<std::mutex> lock(mutex_);
-        prerequisite_ = {{"scanner", (model ? *model : reader.model()).name},
-                         {"prerequisite", QString::fromStdString(reader.protocol().prerequisite())}};
-    }
+    noteScanner();
     updateHealth();
     publish("scanner", [this] { return state(); });
 }

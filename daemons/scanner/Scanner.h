@@ -36,6 +36,8 @@ private:
     bool mayPublish();
     void publishScan(const scan::Revolution &revolution, bool replayed);
 
+    /// For the sidecar of recordings.
+    void noteScanner();
     void tick();
     const ScanReader &shown() const { return replayed_ ? *replayed_ : live_->reader(); }
     ScannerMessage state() const;

@@ -93,7 +93,7 @@ Search verdictOf(const ScannerModel &model, const ScannerProtocol &scanner, doub
     if (isMisread || (!isNamed && (failed || isOver)))
         return Search::Other;
     // It measures, or tells who it is and that it cannot.
-    return counts.packets >= enoughPackets || failed ? Search::Found : Search::GoesOn;
+    return counts.packets >= (isNamed ? 1 : enoughPackets) || failed ? Search::Found : Search::GoesOn;
 }
 
 const ScannerModel *findScannerModel(std::string_view name) {
