@@ -3,10 +3,13 @@
 #include "common/interface/InterfaceUrl.h"
 #include "common/interface/SerialInterface.h"
 
+#include <future>
+
 namespace hermes::scanner {
 namespace {
 
 constexpr int period_ms = 10;
+constexpr std::chrono::milliseconds farewellTimeout{100};
 
 } // namespace
 
@@ -35,6 +38,16 @@ void LiveScanner::start() {
 
 void LiveScanner::stop() {
     timer_.stop();
+    std::promise<void> said; // outlives the thread
+    if (const std::string farewell = reader_->protocol().farewell();
+        isFound_ && !farewell.empty() && port_->state().carrier == Interface::State::Open) {
+        port_->with([&said, farewell](Interface &line) {
+            line.write(QByteArray::fromStdString(farewell));
+            line.flush();
+            said.set_value();
+        });
+        said.get_future().wait_for(farewellTimeout);
+    }
     port_->end();
 }
 

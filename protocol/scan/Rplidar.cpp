@@ -205,4 +205,10 @@ void Rplidar::takeConf(std::uint32_t what, const std::uint8_t *value, std::size_
     }
 }
 
+std::string Rplidar::farewell() const {
+    return ScannerDialogue::farewell() + (isOfS()   ? withPayload(0xA8, {0, 0})
+                                          : hasPwm_ ? withPayload(0xF0, {0, 0})
+                                                    : std::string());
+}
+
 } // namespace hermes::scan

@@ -17,6 +17,8 @@ public:
     void jump() override;
     std::string prerequisite() const override;
     void prepare(const std::string &prerequisite) override;
+    /// Its motor stands then, too.
+    std::string farewell() const override;
 
 private:
     enum Step { Stop, Info, Health, Reset, MotorKind, Motor, Mode, Period, Form, Rates, Express, Standard };

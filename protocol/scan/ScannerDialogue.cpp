@@ -108,4 +108,9 @@ HostAction ScannerDialogue::next(std::int64_t mono_ns) {
     return begin(step_ + 1, mono_ns);
 }
 
+std::string ScannerDialogue::farewell() const {
+    const auto first = request(0);
+    return first ? first->send : std::string();
+}
+
 } // namespace hermes::scan

@@ -11,6 +11,8 @@ public:
     using ScannerProtocol::ScannerProtocol;
 
     void feed(std::string_view bytes, const Arrival &arrival) final;
+    /// The first request is to stop.
+    std::string farewell() const override;
     void jump() override;
     void opened(std::int64_t mono_ns) final;
     HostAction next(std::int64_t mono_ns) final;

@@ -53,6 +53,9 @@ public:
     /// What the host is to do, asked some 50 times a second and after each feed(). Only one that is live.
     virtual HostAction next(std::int64_t mono_ns) = 0;
 
+    /// What the host sends before it closes the line, so that the scanner rests; empty: nothing.
+    virtual std::string farewell() const { return {}; }
+
     /// What somebody who begins to read in the middle must know; empty: nothing. For prepare().
     virtual std::string prerequisite() const { return {}; }
     virtual void prepare(const std::string &prerequisite) { (void)prerequisite; }

@@ -213,6 +213,16 @@ class Scanners(unittest.TestCase):
         self.scanner.call("source.open", live=True)
         self.assertEqual(self.state()["source"]["state"], "live")
 
+    def test_rests_when_its_daemon_has_ended(self):
+        self.scanner_of("rplidar-a3", told="rplidar-a3")
+        self.process.stop()
+        wait_for("standstill", self.is_still)
+
+    def is_still(self):
+        before = self.turned()
+        time.sleep(0.5)  # five revolutions
+        return self.turned() == before
+
     def test_session_is_mapped_again(self):
         motors = os.path.join(self.folder, "motors")
         self.scanner_of(MODELS[0], told=MODELS[0], **{"motors.link": motors})
