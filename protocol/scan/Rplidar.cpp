@@ -16,6 +16,10 @@ constexpr std::uint32_t streams = 0x40000000; // packets follow the answer, of t
 // What the configuration (request 84) is asked for.
 constexpr std::uint8_t samplePeriod = 0x71, answerForm = 0x75, typicalMode = 0x7C;
 
+bool isPeriod(double sample_us) {
+    return sample_us > 1 && sample_us < 1e5;
+}
+
 /// With its length and the exclusive or of all before.
 std::string withPayload(std::uint8_t command, std::initializer_list<int> payload) {
     std::string text{char(0xA5), char(command), char(payload.size())};
@@ -44,13 +48,14 @@ void Rplidar::prepare(const std::string &prerequisite) {
     unsigned form = 0;
     double sample_us = 0;
     if (std::sscanf(prerequisite.c_str(), "%x %lf", &form, &sample_us) == 2 &&
-        RplidarPackets::isForm(int(form)) && sample_us > 1 && sample_us < 1e5)
+        RplidarPackets::isForm(int(form)) && isPeriod(sample_us))
         packets_.begin(int(form), sample_us);
 }
 
 void Rplidar::jump() {
     ScannerDialogue::jump();
     packets_.jump();
+    skipped_ = 1; // it may begin within a packet, which is no damage
 }
 
 bool Rplidar::hasModes() const {
@@ -131,8 +136,8 @@ std::size_t Rplidar::takeAnswer(std::string_view bytes) {
         if ((length & ~0x3FFFFFFFU) != streams)
             return 0;
         const double told_us = sample_us_ > 0 ? sample_us_ : rates_us_[form == 0x81 ? 0 : 1];
-        packets_.begin(form, told_us > 0 ? told_us : packets_.sample_us());
-        skipped_ = 1; // it may begin within a packet, which is no damage
+        packets_.begin(form, isPeriod(told_us) ? told_us : packets_.sample_us());
+        skipped_ = 1;
         answered(Express);
         answered(Standard);
         return headSize;
@@ -161,7 +166,7 @@ std::size_t Rplidar::takeAnswer(std::string_view bytes) {
     return headSize + length;
 }
 
-/// Who is asked that has been told to stop.
+/// It is asked only while it is to be silent: no packets come until it has begun to scan anew.
 void Rplidar::takeInfo(const std::uint8_t *data) {
     static constexpr const char *series[] = {"", "A1", "A2", "A3", "C1", "", "S1", "S2", "S3"};
     model_ = data[0];

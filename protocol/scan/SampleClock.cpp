@@ -30,8 +30,9 @@ void SampleClock::followRate(double beams, std::int64_t measured_ns) {
     rateBeams_ += beams;
     if (passed_ns >= 0 && passed_ns < rateWindow_ns)
         return;
-    const double each_ns = passed_ns / rateBeams_, ratio = each_ns / sample_ns_;
-    if (passed_ns > 0 && passed_ns < 2 * rateWindow_ns && std::abs(ratio - 1) > 0.02 && ratio < 4)
+    const double each_ns = passed_ns / rateBeams_;
+    const bool isPossible = each_ns > usual_ns_ / 4 && each_ns < usual_ns_ * 4;
+    if (passed_ns < 2 * rateWindow_ns && isPossible && std::abs(each_ns / sample_ns_ - 1) > 0.02)
         sample_ns_ = each_ns;
     rateSince_ns_ = measured_ns;
     rateBeams_ = 0;

@@ -25,7 +25,8 @@ public:
     /// sample_ns: for each beam. tolerance: beams that packets may lie beside each other. beams: of a packet,
     /// as far as it is known.
     SampleClock(double sample_ns, double tolerance, int beams)
-        : sample_ns_(sample_ns)
+        : usual_ns_(sample_ns)
+        , sample_ns_(sample_ns)
         , tolerance_(tolerance)
         , fullBeams_(beams) {}
 
@@ -44,7 +45,7 @@ private:
     static constexpr std::int64_t period_ns = 3600000000000;
 
     HostClock clock_{period_ns};
-    double sample_ns_;
+    double usual_ns_, sample_ns_;
     double tolerance_;
     int fullBeams_;
     std::optional<double> head_deg_; ///< of the next beam

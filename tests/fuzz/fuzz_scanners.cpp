@@ -14,19 +14,21 @@ constexpr std::int64_t parted_ns = 1000000000;    // clocks that part by more ar
 constexpr std::size_t mostMemory = 32 << 20;      // for the longest revolution and its bytes
 constexpr std::size_t mostFed = 1 << 18;
 
+bool isOf(const ScannerModel &model, std::string_view family) {
+    return std::string_view(model.name).substr(0, family.size()) == family;
+}
+
 /// A scanner, and what has to hold of all that comes out of it.
-class Reader {
-public:
+struct Reader {
     explicit Reader(const ScannerModel &model)
-        : scanner(model.make(model, revolutions_)) {}
+        : scanner(model.make(model, revolutions))
+        , isSpinning(!isOf(model, "hokuyo") && !isOf(model, "sick")) {}
 
-    void finish() { revolutions_.jump(); }
-
-private:
     void take(const Revolution &revolution) {
-        FUZZ_REQUIRE(revolution.number == number_++);
+        FUZZ_REQUIRE(revolution.number == number++);
         FUZZ_REQUIRE(revolution.lostPackets < 1000000000 && !revolution.beams.empty());
         FUZZ_REQUIRE(revolution.begin_ns > epoch_ns - longest_ns && revolution.clockBound_ns >= 0);
+        FUZZ_REQUIRE(revolution.end_ns <= now_ns + (isSpinning ? parted_ns : longest_ns));
         double angle_deg = -1e9;
         for (const Beam &beam : revolution.beams) {
             FUZZ_REQUIRE(std::isfinite(beam.range_m) && beam.range_m >= 0);
@@ -35,16 +37,13 @@ private:
             FUZZ_REQUIRE(!isSpinning || beam.angle_deg >= angle_deg);
             angle_deg = beam.angle_deg;
         }
-        FUZZ_REQUIRE(revolution.end_ns <= now_ns + (isSpinning ? parted_ns : longest_ns));
     }
 
-    std::uint64_t number_ = 0;
-    RevolutionAssembler revolutions_{[this](const Revolution &revolution) { take(revolution); }};
-
-public:
+    RevolutionAssembler revolutions{[this](const Revolution &revolution) { take(revolution); }};
     std::unique_ptr<ScannerProtocol> scanner;
+    const bool isSpinning;
+    std::uint64_t number = 0;
     std::int64_t now_ns = epoch_ns;
-    bool isSpinning = true;
 };
 
 void append(std::string &text, int value) {
@@ -150,14 +149,14 @@ std::string sickTelegram(FuzzInput &in) {
 }
 
 std::string packet(const ScannerModel &model, FuzzInput &in) {
-    const std::string_view name = model.name;
-    if (name.substr(0, 6) == "hokuyo")
+    if (isOf(model, "hokuyo"))
         return hokuyoBlock(in);
-    if (name.substr(0, 4) == "sick")
+    if (isOf(model, "sick"))
         return sickTelegram(in);
-    if (name.substr(0, 7) == "ydlidar")
-        return in.take<std::uint8_t>() % 8 == 0 ? answer(in) : ydlidarPacket(in, name == "ydlidar-tmini");
-    if (name.substr(0, 7) == "rplidar")
+    if (isOf(model, "ydlidar"))
+        return in.take<std::uint8_t>() % 8 == 0 ? answer(in)
+                                                : ydlidarPacket(in, isOf(model, "ydlidar-tmini"));
+    if (isOf(model, "rplidar"))
         return in.take<std::uint8_t>() % 8 == 0 ? answer(in) : capsule(in);
     return ldrobotPacket(in);
 }
@@ -170,22 +169,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     FuzzInput in(data, size);
     const ScannerModel &model = scannerModels()[in.take<std::uint8_t>() % scannerModels().size()];
     Reader whole(model), pieces(model);
-    for (Reader *const reader : {&whole, &pieces})
-        reader->isSpinning = std::string_view(model.name).substr(0, 6) != "hokuyo" &&
-                             std::string_view(model.name).substr(0, 4) != "sick";
     const std::size_t before = __sanitizer_get_current_allocated_bytes();
     std::int64_t now_ns = 0;
     std::size_t fed = 0;
     const auto both = [&](const auto &act) {
-        for (Reader *const reader : {&whole, &pieces}) {
-            reader->now_ns = epoch_ns + now_ns;
+        for (Reader *const reader : {&whole, &pieces})
             act(*reader->scanner);
-        }
     };
     const auto feed = [&](const std::string &bytes) {
         fed += bytes.size();
         const Arrival arrival{epoch_ns + now_ns, now_ns};
-        both([](ScannerProtocol &) {});
         whole.scanner->feed(bytes, arrival);
         for (std::size_t at = 0, next = 0; at < bytes.size(); at = next) {
             next = at + 1 + (in.left() > 0 ? in.take<std::uint8_t>() : 255);
@@ -196,6 +189,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     while (in.left() > 0 && fed < mostFed) {
         const auto kind = in.take<std::uint8_t>();
         now_ns += kind % 64 == 0 ? in.take<std::uint8_t>() * std::int64_t(100000000) : kind * 100000;
+        whole.now_ns = pieces.now_ns = epoch_ns + now_ns;
         if (kind % 16 < 8) {
             feed(packet(model, in));
         } else if (kind % 16 < 11) {
@@ -223,7 +217,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     FUZZ_REQUIRE(one.packets == other.packets && one.damaged == other.damaged);
     FUZZ_REQUIRE(one.skippedBytes == other.skippedBytes && one.skippedBytes <= fed);
     FUZZ_REQUIRE(whole.scanner->identity().model.size() < 20000);
-    whole.finish();
-    pieces.finish();
+    for (Reader *const reader : {&whole, &pieces})
+        reader->revolutions.jump();
     return 0;
 }
