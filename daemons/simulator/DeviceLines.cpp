@@ -7,7 +7,16 @@
 
 namespace hermes::simulator {
 
+namespace {
+
 constexpr int refusal_ms = 100;
+
+void garble(QByteArray &bytes, std::minstd_rand &random) {
+    for (char &byte : bytes)
+        byte = char(random() >> 8);
+}
+
+} // namespace
 
 Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link) {
     InterfaceUrl url;
@@ -87,10 +96,8 @@ void SensorLine::send(QByteArray bytes) {
         behindSince_ = now;
         behind_ = tooLate ? 0 : unread;
     }
-    if (isGarbled()) {
-        for (char &byte : bytes)
-            byte = char(garbage_() >> 8);
-    }
+    if (isGarbled())
+        garble(bytes, garbage_);
     const bool taken = pty_->write(bytes);
     (taken ? state_.bytes : state_.unreadLost) += bytes.size();
     behind_ += taken ? bytes.size() : 0;
@@ -121,14 +128,16 @@ const SensorLineState &SensorLine::state() {
     return state_;
 }
 
-Result<void> MotorLines::open(const QStringList &links) {
+Result<void> MotorLines::open(const QStringList &links, int baud) {
     close();
+    baud_ = baud;
     for (const QString &link : links) {
         const auto opened = openDeviceLine(link);
         if (!opened) {
             close();
             return opened.error();
         }
+        (*opened)->setBaud(baud);
         const int number = count();
         connect(opened->get(), &Interface::received, this,
                 [this, number](const QByteArray &bytes) { receive(number, bytes); });
@@ -142,10 +151,13 @@ void MotorLines::close() {
 }
 
 void MotorLines::setPulled(int line, bool pulled) {
+    PtyInterface &pty = *lines_[std::size_t(line)].pty;
     if (pulled)
-        lines_[std::size_t(line)].pty->close();
-    else
-        lines_[std::size_t(line)].pty->open();
+        return pty.close();
+    if (pty.isOpen())
+        return;
+    pty.open();
+    pty.setBaud(baud_);
 }
 
 std::vector<LineState> MotorLines::state() const {
@@ -157,8 +169,14 @@ std::vector<LineState> MotorLines::state() const {
 
 void MotorLines::receive(int line, const QByteArray &bytes) {
     PtyInterface *pty = lines_[std::size_t(line)].pty.get();
-    for (const RoboClawEmulator::Answer &answer : device_(line, bytes, monotonicNow())) {
-        const QByteArray out(reinterpret_cast<const char *>(answer.bytes.data()), int(answer.bytes.size()));
+    const auto carried = [this, pty](QByteArray moved) {
+        if (baud_ > 0 && pty->baud() != baud_)
+            garble(moved, garbage_);
+        return moved;
+    };
+    for (const RoboClawEmulator::Answer &answer : device_(line, carried(bytes), monotonicNow())) {
+        const QByteArray out = carried(
+            QByteArray(reinterpret_cast<const char *>(answer.bytes.data()), int(answer.bytes.size())));
         if (answer.delay > 0)
             QTimer::singleShot(int(std::ceil(answer.delay * 1000)), Qt::PreciseTimer, pty,
                                [pty, out] { pty->write(out); });

@@ -89,7 +89,8 @@ public:
         : device_(std::move(device)) {}
 
     /// One line for each link; an empty text makes a line without link. Error names what cannot be made.
-    Result<void> open(const QStringList &links);
+    /// baud: at another one all bytes are garbage, both ways; 0: any will do.
+    Result<void> open(const QStringList &links, int baud = 0);
     void close();
 
     int count() const { return int(lines_.size()); }
@@ -108,6 +109,8 @@ private:
 
     Device device_;
     std::vector<Line> lines_;
+    int baud_ = 0;
+    std::minstd_rand garbage_;
 };
 
 } // namespace hermes::simulator

@@ -15,14 +15,24 @@ constexpr double patch = 1;         // metres of like ground under a wheel
 std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::uint8_t *data,
                                                           std::size_t size, double now) {
     std::vector<RoboClawEmulator::Answer> answers;
+    const auto add = [&](RoboClawEmulator::Answer answer) {
+        delayAnswer(answer, line, now);
+        answers.push_back(answer);
+    };
     for (std::size_t i = 0; i < size; ++i) {
+        if (arduino_) {
+            RoboClawEmulator::Answer answer{{}, arduino_->faults().delay};
+            for (const char byte : arduino_->receive(char(data[i])))
+                answer.bytes.push(std::uint8_t(byte));
+            if (!answer.bytes.empty())
+                add(answer);
+            continue;
+        }
         for (int number = 0; number < controllers; ++number) {
             if (line != (options_.ownLines ? number : 0))
                 continue;
-            for (RoboClawEmulator::Answer &answer : controller(number).receive(data[i], now)) {
-                delayAnswer(answer, line, now);
-                answers.push_back(answer);
-            }
+            for (const RoboClawEmulator::Answer &answer : controller(number).receive(data[i], now))
+                add(answer);
         }
     }
     return answers;
@@ -41,11 +51,15 @@ void Drivetrain::delayAnswer(RoboClawEmulator::Answer &answer, int line, double 
 
 Twist2D Drivetrain::advance(double seconds) {
     double current = electronics;
-    for (RoboClawEmulator &controller : controllers_) {
-        controller.advance(seconds, battery_.voltage());
+    const auto drive = [&](auto &device) {
+        device.advance(seconds, battery_.voltage());
         for (const int motor : {0, 1}) // the bridge takes from the battery what the duty lets through
-            current += controller.channel(motor).current() * controller.channel(motor).duty();
-    }
+            current += device.channel(motor).current() * device.channel(motor).duty();
+    };
+    if (arduino_)
+        drive(*arduino_);
+    else
+        std::for_each(controllers_.begin(), controllers_.end(), drive);
     battery_.draw(current, seconds);
     return options_.base.twistOf(gripping(seconds));
 }
@@ -66,8 +80,9 @@ std::array<double, 4> Drivetrain::wheelSpeeds() const {
     std::array<double, 4> speeds;
     for (std::size_t i = 0; i < speeds.size(); ++i) {
         const Mount &mount = options_.wheels[i];
-        const double counts = controller(mount.controller).channel(mount.motor).speed();
-        speeds[i] = (mount.reversed ? -1 : 1) * counts * 2 * vectorlib::pi / options_.countsPerTurn;
+        const MotorChannel &motor =
+            arduino_ ? arduino_->channel(int(i) % 2) : controller(mount.controller).channel(mount.motor);
+        speeds[i] = (mount.reversed ? -1 : 1) * motor.speed() * 2 * vectorlib::pi / options_.countsPerTurn;
     }
     return speeds;
 }

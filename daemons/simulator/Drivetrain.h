@@ -1,9 +1,11 @@
 #pragma once
 
+#include "daemons/simulator/ArduinoEmulator.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 namespace hermes::simulator {
@@ -46,8 +48,8 @@ private:
     double current_ = 0;
 };
 
-/// What drives the robot: two RoboClaws with two motors each, four wheels, a battery. Time comes from
-/// outside.
+/// What drives the robot: two RoboClaws with two motors each, or an Arduino with one for each side; four
+/// wheels, a battery. Time comes from outside.
 class Drivetrain {
 public:
     static constexpr int controllers = 2;
@@ -66,6 +68,7 @@ public:
         std::uint64_t seed = 1;
         bool ownLines = false; ///< each controller has a line of its own; else both share line 0
         std::array<RoboClawEmulator::Options, controllers> controller = twoAddresses();
+        std::optional<ArduinoEmulator::Options> arduino; ///< instead of the controllers, on line 0
         Battery::Options battery;
     };
 
@@ -75,7 +78,10 @@ public:
         : options_(options)
         , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
         , battery_(options.battery)
-        , random_(options.seed) {}
+        , random_(options.seed) {
+        if (options.arduino)
+            arduino_.emplace(*options.arduino);
+    }
 
     /// Bytes from a line (0 or 1), now: seconds of any clock; gives what is answered, in order.
     std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
@@ -85,8 +91,12 @@ public:
 
     RoboClawEmulator &controller(int number) { return controllers_[std::size_t(number)]; }
     const RoboClawEmulator &controller(int number) const { return controllers_[std::size_t(number)]; }
+    /// None where the controllers drive.
+    std::optional<ArduinoEmulator> &arduino() { return arduino_; }
     /// The motor of a wheel.
     MotorChannel &wheel(int number) {
+        if (arduino_)
+            return arduino_->channel(number % 2);
         const Mount &mount = options_.wheels[std::size_t(number)];
         return controller(mount.controller).channel(mount.motor);
     }
@@ -122,6 +132,7 @@ private:
     };
     Options options_;
     std::array<RoboClawEmulator, controllers> controllers_;
+    std::optional<ArduinoEmulator> arduino_;
     Battery battery_;
     std::mt19937_64 random_;
     std::array<Ground, 4> grounds_;

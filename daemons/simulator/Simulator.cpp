@@ -14,9 +14,9 @@ namespace hermes::simulator {
 namespace {
 
 constexpr auto healthItem = "lidar";
-const QStringList takenAtTheStart{"listen",       "insecure",     "files.folders", "world",
-                                  "motors.link",  "motors.link2", "gps.link",      "scanner.model",
-                                  "scanner.link", "scanner.port"};
+const QStringList takenAtTheStart{"listen",        "insecure",     "files.folders", "world",
+                                  "motors.kind",   "motors.link",  "motors.link2",  "gps.link",
+                                  "scanner.model", "scanner.link", "scanner.port"};
 constexpr qint64 largestWorldFile = 16 << 20; // some 300,000 edges
 
 TruthMessage messageOf(const Simulation::Truth &truth) {
@@ -37,9 +37,10 @@ QString toText(LidarFault::Kind kind) {
 } // namespace
 
 Simulator::Simulator()
-    : Daemon({"simulator", "Simulator",
-              "A simulated robot in a world of line segments: an HDL-32E that sends packets over UDP, "
-              "two RoboClaws that drive it, a GPS receiver and a 2D scanner on pseudo-terminals"})
+    : Daemon(
+          {"simulator", "Simulator",
+           "A simulated robot in a world of line segments: an HDL-32E that sends packets over UDP, "
+           "two RoboClaws or an Arduino that drive it, a GPS receiver and a 2D scanner on pseudo-terminals"})
     , pump_([this](const Simulation::Truth &truth) { later([this, truth] { publishTruth(truth); }); },
             [this](const std::string &sentences) {
                 later([this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); });
@@ -60,6 +61,7 @@ Simulator::Simulator()
         return answers;
     }) {
     SimulatorSettings().declare([this](const Field &field) { addSetting(field); });
+    settings().addRule([](const QJsonObject &wanted) { return SimulatorSettings(wanted).violations(); });
     addSetting(namedFilesField());
     declareTopics();
     declareCommands();
@@ -148,7 +150,8 @@ Result<void> Simulator::start() {
     if (!wanted.link2.isEmpty())
         links.append(wanted.link2);
     for (const Result<void> &opened :
-         {lines_.open(links), gpsLine_.open(wanted.gpsLink), openScanner(wanted)}) {
+         {lines_.open(links, wanted.simulation.drivetrain.arduino ? ArduinoEmulator::baud : 0),
+          gpsLine_.open(wanted.gpsLink), openScanner(wanted)}) {
         if (!opened)
             return opened;
     }
@@ -256,7 +259,8 @@ Result<void> Simulator::setNoise(const Call &call) {
 }
 
 Result<void> Simulator::setFault(const Call &call) {
-    if (const QString wrong = faultMismatch(call.text("device"), call.text("kind")); !wrong.isEmpty())
+    if (const QString wrong = faultMismatch(call.text("device"), call.text("kind"), hasArduino());
+        !wrong.isEmpty())
         return invalidParams({{"kind", call.value("kind"), "a fault of this device"}}, wrong);
     if (call.text("device") == "gps" || call.text("device") == "scanner")
         return setSensorFault(call);

@@ -12,6 +12,8 @@ const QStringList ofController{"silence",       "loss",     "corrupt",        "s
                                "deaf",          "mute",     "latched",        "echo",
                                "stuck_timeout", "brownout", "emergency_stop", "over_temperature",
                                "over_current",  "driver"};
+const QStringList ofArduino{"silence", "loss", "corrupt", "slow", "deaf", "mute", "stuck_timeout", "restart"};
+const QStringList notOfArduino{"line2", "controller2", "controllers"};
 const QStringList ofWheel{"blocked", "encoder", "jump", "backward"};
 
 struct Device {
@@ -47,6 +49,7 @@ QStringList faultKinds() {
     QStringList kinds{"none"};
     for (const Device &device : devices)
         kinds += device.kinds;
+    kinds += ofArduino;
     kinds.removeDuplicates();
     return kinds;
 }
@@ -59,8 +62,10 @@ QStringList faultKindsOf(const QString &device) {
     return {};
 }
 
-QString faultMismatch(const QString &device, const QString &kind) {
-    const QStringList kinds = faultKindsOf(device);
+QString faultMismatch(const QString &device, const QString &kind, bool arduino) {
+    if (arduino && notOfArduino.contains(device))
+        return "a robot with an Arduino has no " + device;
+    const QStringList kinds = arduino && device == "controller1" ? ofArduino : faultKindsOf(device);
     if (kind == "none" || kinds.contains(kind))
         return {};
     return QString("%1 has no fault %2; it has: none, %3").arg(device, kind, kinds.join(", "));
@@ -100,6 +105,24 @@ Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
         .include(&E::counts);
 }
 
+Fields<ArduinoEmulator::Counts> fieldsOf(Of<ArduinoEmulator::Counts>) {
+    using C = ArduinoEmulator::Counts;
+    return Fields<C>()
+        .add("requests", &C::requests, "Carried out")
+        .add("unknown", &C::unknown, "Commands that it does not know")
+        .add("timeouts", &C::timeouts, "Times that silence stopped the motors")
+        .add("restarts", &C::restarts, "Of its program");
+}
+
+Fields<ArduinoState> fieldsOf(Of<ArduinoState>) {
+    using A = ArduinoState;
+    return Fields<A>()
+        .add("encoders", &A::encoders, "Counts on the left, on the right")
+        .add("pwm", &A::pwm, "Of 255, on the left, on the right")
+        .add("timeout_s", &A::timeout_s, "Without a command that drives it stops then", "s")
+        .include(&A::counts);
+}
+
 Fields<LineState> fieldsOf(Of<LineState>) {
     return Fields<LineState>()
         .add("link", &LineState::link, "That stays the same, or empty")
@@ -127,6 +150,7 @@ Fields<DrivetrainState> fieldsOf(Of<DrivetrainState>) {
     return Fields<D>()
         .add("wheels_rps", &D::wheels_rps, "Front left, front right, rear left, rear right, forward", "rad/s")
         .add("controllers", &D::controllers, "Each")
+        .add("arduino", &D::arduino, "That drives instead")
         .add("battery_v", &D::battery_v, "Voltage", "V")
         .add("battery_charge", &D::batteryCharge, "0 to 1")
         .add("lines", &D::lines, "Pseudo-terminals of the controllers");

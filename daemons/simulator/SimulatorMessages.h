@@ -15,8 +15,8 @@ namespace hermes::simulator {
 QStringList faultDevices();
 /// All that any of them can do wrong, with "none".
 QStringList faultKinds();
-/// Why the device has no such fault, or an empty text.
-QString faultMismatch(const QString &device, const QString &kind);
+/// Why the device of a robot, driven by an Arduino or not, has no such fault, or an empty text.
+QString faultMismatch(const QString &device, const QString &kind, bool arduino);
 /// What it can do wrong; of GPS receiver and scanner in the order of their Fault::Kind, from Silence on.
 QStringList faultKindsOf(const QString &device);
 /// Of a wheel by its name, in the order of WheelBase; -1 for other devices.
@@ -26,6 +26,13 @@ int wheelNumber(const QString &device);
 struct LoadedWorld {
     QString path, name;
     quint64 edges = 0, poses = 0;
+};
+
+/// A simulated Arduino that drives the robot.
+struct ArduinoState {
+    std::array<qint32, 2> encoders{}, pwm{};
+    double timeout_s = 0;
+    ArduinoEmulator::Counts counts;
 };
 
 /// A simulated motor controller.
@@ -39,6 +46,7 @@ struct EmulatorState {
 struct DrivetrainState {
     std::optional<std::array<double, 4>> wheels_rps;
     std::optional<std::vector<EmulatorState>> controllers;
+    std::optional<ArduinoState> arduino; ///< instead of them
     std::optional<double> battery_v, batteryCharge;
     std::vector<LineState> lines;
 };

@@ -41,6 +41,29 @@ void applyFault(RoboClawEmulator &controller, const Call &call) {
         faults.status |= roboclaw::DriverFaultM1;
 }
 
+void applyFault(ArduinoEmulator &arduino, const Call &call) {
+    ArduinoEmulator::Faults &faults = arduino.faults();
+    const QString kind = call.text("kind");
+    if (kind == "none")
+        faults = {};
+    else if (kind == "silence")
+        faults.silent = true;
+    else if (kind == "loss")
+        faults.loss = call.number("share");
+    else if (kind == "corrupt")
+        faults.corrupt = call.number("share");
+    else if (kind == "slow")
+        faults.delay = call.number("delay_s");
+    else if (kind == "deaf")
+        faults.deaf = true;
+    else if (kind == "mute")
+        faults.mute = true;
+    else if (kind == "stuck_timeout")
+        faults.stuckTimeout = true;
+    else if (kind == "restart")
+        arduino.restart();
+}
+
 void applyFault(MotorChannel &motor, const Call &call) {
     const QString kind = call.text("kind");
     if (kind == "jump")
@@ -70,6 +93,8 @@ Result<void> Simulator::setMotorFault(const Call &call) {
             drivetrain.setLatency(second, kind == "adapter" ? call.number("delay_s") : 0);
         else if (device == "controllers")
             drivetrain.setSwapped(kind == "swapped");
+        else if (drivetrain.arduino() && device == "controller1")
+            applyFault(*drivetrain.arduino(), call);
         else if (device.startsWith("controller"))
             applyFault(drivetrain.controller(second), call);
         else if (device == "battery")
@@ -86,13 +111,19 @@ Result<void> Simulator::setMotorFault(const Call &call) {
 DrivetrainState Simulator::motorState(Drivetrain &drivetrain) const {
     DrivetrainState state;
     state.wheels_rps = drivetrain.wheelSpeeds();
+    state.battery_v = drivetrain.battery().voltage();
+    state.batteryCharge = drivetrain.battery().charge();
+    if (const auto &arduino = drivetrain.arduino()) {
+        const auto pwm = [&](int motor) { return qint32(std::lround(arduino->channel(motor).duty() * 255)); };
+        state.arduino = {
+            {arduino->count(0), arduino->count(1)}, {pwm(0), pwm(1)}, arduino->timeout(), arduino->counts()};
+        return state;
+    }
     state.controllers.emplace();
     for (int i = 0; i < Drivetrain::controllers; ++i) {
         const RoboClawEmulator &c = drivetrain.controller(i);
         state.controllers->push_back({c.status(), c.temperature(), c.serialTimeout(), c.counts()});
     }
-    state.battery_v = drivetrain.battery().voltage();
-    state.batteryCharge = drivetrain.battery().charge();
     return state;
 }
 

@@ -45,6 +45,8 @@ void SimulatorSettings::addMotors() {
     Drivetrain::Options &drivetrain = simulation.drivetrain;
     MotorChannel::Motor &motor = drivetrain.controller[0].motor;
     group("Motors", Applies::OnRestart);
+    add("motors.kind", motorsKind, "What drives the wheels: two RoboClaws, or an Arduino with two motors")
+        .choices({"roboclaw", "arduino"});
     add("motors.link", link,
         "Link to the pseudo-terminal of the motor controllers; none: sim.state tells its name");
     add("motors.link2", link2, "Link to one of its own for the second controller; none: both share one");
@@ -56,6 +58,9 @@ void SimulatorSettings::addMotors() {
     add("motors.firmware", firmware,
         "Of the controllers: 4.1.28 tells its status in 16 bits, 4.3.6 does not know commands 0 to 13")
         .choices(QStringList(versions.begin(), versions.end()));
+    add("motors.arduino.timeout_s", arduino.timeout,
+        "Of its firmware: after so long without a command that drives, the power is off", "s", 0.05, 600);
+    add("motors.arduino.coasts", arduino.coasts, "Without power its wheels roll; else they brake");
     add("motors.full_speed", motor.fullSpeed, "Encoder counts a second at full duty and 24 V", "1/s", 100,
         2e7);
     add("motors.lag_s", motor.lag, "Time constant with which a wheel follows", "s", 0.001, 10);
@@ -113,10 +118,18 @@ SimulatorSettings::SimulatorSettings(const QJsonObject &settings)
     : SimulatorSettings() {
     read(settings);
     Drivetrain::Options &drivetrain = simulation.drivetrain;
-    if (layout == "differential")
+    const bool isArduino = motorsKind == "arduino";
+    require(!isArduino || layout == "differential", layout, "differential: an Arduino drives two motors");
+    require(!isArduino || link2.isEmpty(), link2, "empty: an Arduino has one line");
+    if (layout == "differential" || isArduino)
         drivetrain.base.kind = WheelBase::Kind::Differential;
     drivetrain.seed = simulation.gps.seed = simulation.scanner.seed = simulation.seed;
     simulation.scannerModel = scannerModel.toStdString();
+    if (isArduino) {
+        arduino.motor = drivetrain.controller[0].motor;
+        arduino.seed = simulation.seed;
+        drivetrain.arduino = arduino;
+    }
     drivetrain.controller[1].motor = drivetrain.controller[0].motor;
     for (std::size_t i = 0; i < drivetrain.controller.size(); ++i) {
         drivetrain.controller[i].setFirmware(firmware.toStdString());

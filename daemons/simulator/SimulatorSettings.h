@@ -17,6 +17,8 @@ struct SimulatorSettings : SettingsTable {
     QString scannerModel = "none";
     QString firmware = "4.2.8"; ///< of both motor controllers
     QString layout = "mecanum";
+    QString motorsKind = "roboclaw";
+    ArduinoEmulator::Options arduino;
 
     SimulatorSettings();
     /// From settings that it has declared.

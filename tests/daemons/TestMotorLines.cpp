@@ -147,6 +147,35 @@ private Q_SLOTS:
         QCOMPARE(counts.reply[0], std::int64_t(1234));
     }
 
+    void motorsAtAnotherSpeedHearAndAnswerGarbage() {
+        QByteArray came, heard;
+        MotorLines lines([&](int, const QByteArray &bytes, double) {
+            came += bytes;
+            roboclaw::Bytes answer;
+            for (int i = 0; i < bytes.size(); ++i)
+                answer.push('a');
+            return std::vector<RoboClawEmulator::Answer>{{answer, 0}};
+        });
+        QVERIFY(lines.open({""}, 57600).ok());
+        for (const int turn : {0, 1, 2, 3}) {
+            const int baud = turn == 1 ? 115200 : 57600;
+            lines.setPulled(0, turn == 3);
+            lines.setPulled(0, false); // which changes nothing unless it was pulled
+            SerialInterface near(
+                *InterfaceUrl::parse(QString("serial://%1?baud=%2").arg(lines.state()[0].device).arg(baud)),
+                nullptr);
+            QObject::connect(&near, &Interface::received, [&](const QByteArray &bytes) { heard += bytes; });
+            near.open();
+            lines.setPulled(0, false);
+            came.clear();
+            heard.clear();
+            near.write("m 10 10\r");
+            QTRY_COMPARE(heard.size(), 8);
+            QCOMPARE(came == "m 10 10\r", baud == 57600);
+            QCOMPARE(heard == "aaaaaaaa", baud == 57600);
+        }
+    }
+
     void badLinkIsNamed() {
         Robot robot;
         const auto opened = robot.lines.open({"/proc/none/motors"});
