@@ -47,7 +47,7 @@ void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now
             if (level == Level::Fault)
                 drive.fault(fault, QString("%1: %2").arg(told.name, text()));
         };
-        const ControllerReadings &r = told.readings;
+        const drive::Readings &r = told.readings;
         judge(0, watch.battery, r.battery_v, "battery", [&] {
             return QString("the battery has %1 V, at least %2 V are needed")
                 .arg(r.battery_v)

@@ -11,8 +11,8 @@
 namespace hermes {
 
 // A struct of the protocol: its fields are looked for here.
-Fields<roboclaw::Bus::Counts> fieldsOf(Of<roboclaw::Bus::Counts>) {
-    using C = roboclaw::Bus::Counts;
+Fields<drive::Bus::Counts> fieldsOf(Of<drive::Bus::Counts>) {
+    using C = drive::Bus::Counts;
     return Fields<C>()
         .add("requests", &C::sent, "Sent, repetitions too")
         .add("answers", &C::done, "That were taken")
@@ -54,7 +54,7 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
     PowerMessage message;
     message.battery = battery;
     for (const Telemetry::Controller &controller : t.controllers) {
-        const ControllerReadings &r = controller.readings;
+        const drive::Readings &r = controller.readings;
         QStringList meanings;
         for (quint32 bit = 1; bit != 0; bit <<= 1) {
             if (r.status & bit)
@@ -70,13 +70,13 @@ Result<BatteryReading> batteryOf(const Telemetry &t) {
     BatteryReading reading;
     for (std::size_t i = 0; i < controllerCount; ++i) {
         const Telemetry::Controller &controller = t.controllers[i];
-        const ControllerReadings &r = controller.readings;
+        const drive::Readings &r = controller.readings;
         if (!controller.ready || !r.complete) // what its motors draw is not known
             return Error(ErrorCode::NotReady, "no controller tells voltage and current");
         if (!r.duty)
             return Error(ErrorCode::DeviceFault,
                          controller.name + ' ' +
-                             failureText(roboclaw::Command::ReadPwm, roboclaw::Bus::Result::TimedOut, true));
+                             failureText({"48 (duties)"}, drive::Bus::Result::TimedOut, true));
         reading.voltages[i] = r.battery_v;
         for (std::size_t motor = 0; motor < 2; ++motor) // a bridge takes what its duty lets through
             reading.motors_a += std::abs(r.current_a[motor] * (*r.duty)[motor]);

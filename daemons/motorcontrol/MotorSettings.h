@@ -6,6 +6,7 @@
 #include "daemons/motorcontrol/EncoderMonitor.h"
 #include "daemons/motorcontrol/Odometry.h"
 #include "daemons/motorcontrol/Threshold.h"
+#include "protocol/drive/MotorDevice.h"
 #include "protocol/roboclaw/Command.h"
 
 namespace hermes::motorcontrol {
@@ -25,14 +26,6 @@ struct WheelMount {
     double sign = 1;    ///< -1 where positive counts drive the robot backward
 };
 
-/// Velocity control of a controller; the same for every motor.
-struct VelocityPid {
-    double p = 1, i = 0.5, d = 0.25;
-    int qpps = 150000; ///< counts/s at full duty
-
-    bool operator==(const VelocityPid &o) const { return p == o.p && i == o.i && d == o.d && qpps == o.qpps; }
-};
-
 /// The settings of hermes-motorcontrol as its parts use them.
 struct MotorSettings {
     Drive::Settings drive;
@@ -42,7 +35,7 @@ struct MotorSettings {
     std::array<WheelMount, wheelCount> wheels;
     double countsPerTurn = 38000; ///< of a wheel
     double wheelRadius = 0.1;
-    VelocityPid pid;
+    drive::VelocityPid pid;
     double serialTimeout_s = 0.2;     ///< after which the controllers stop by themselves
     double emergencyDeceleration = 4; ///< m/s^2 at the rim
     Threshold::Settings battery{23, 21.5}, current{30, 45}, temperature{70, 85}; ///< V, A, degrees Celsius

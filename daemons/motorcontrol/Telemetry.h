@@ -15,8 +15,8 @@ struct Telemetry {
         bool ready = false;
         bool stands = false; ///< has confirmed it: MotorController::stands()
         double rate_Hz = 0;  ///< of readings; 0: not known
-        ControllerReadings readings;
-        roboclaw::Bus::Counts counts;
+        drive::Readings readings;
+        drive::Bus::Counts counts;
         quint64 strayBytes = 0; ///< on its line: they came when none was awaited
         quint64 overruns = 0;
     };

@@ -33,7 +33,7 @@ bool WheelTracker::isPlausible(double turn, double gap) const {
 }
 
 std::optional<WheelMotion>
-WheelTracker::update(const std::array<const ControllerReadings *, controllerCount> &readings) {
+WheelTracker::update(const std::array<const drive::Readings *, controllerCount> &readings) {
     for (int i = 0; i < controllerCount; ++i) {
         if (readings[i]->countsTime <= times_[i])
             return std::nullopt;

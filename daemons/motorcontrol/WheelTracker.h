@@ -24,8 +24,7 @@ public:
     void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double maxSpeed);
 
     /// Nothing until every controller has been read again, or at the first reading.
-    std::optional<WheelMotion>
-    update(const std::array<const ControllerReadings *, controllerCount> &readings);
+    std::optional<WheelMotion> update(const std::array<const drive::Readings *, controllerCount> &readings);
 
 private:
     bool isPlausible(double turn, double gap) const;
