@@ -35,7 +35,7 @@ void FaultWatch::configure(const MotorSettings &settings) {
 
 void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now) {
     telemetry.levels = {};
-    for (int i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < telemetry.controllers.size(); ++i) {
         const Telemetry::Controller &told = telemetry.controllers[i];
         if (!told.ready || !told.readings.complete)
             continue;

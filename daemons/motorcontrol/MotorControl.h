@@ -55,6 +55,7 @@ private:
     void restoreStop();
     void keepStop();
     void updateHealth();
+    QString runOnOf(std::size_t controller) const;
     void tellControllers();
     void tellMeasures();
     void tellCycle();

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/MotorController.h"
 
 #include "daemons/motorcontrol/FailureText.h"
+#include "protocol/drive/ArduinoDevice.h"
 #include "protocol/roboclaw/Device.h"
 #include "vectorlib/geometry/Angle.h"
 
@@ -27,15 +28,30 @@ constexpr double longestStep_s = 0.04; // a cycle that came later: this program 
 
 constexpr double dutyPause_s = 10; // a request that is not answered holds up a stop on its line
 
+constexpr double rounding_s = 1e-6;
+constexpr double leastGap_s = 0.1; // no reading is so exact in its time as a cycle
+
 constexpr std::array<qint32, 2> zero{};
+
+std::unique_ptr<drive::MotorDevice> makeDevice(const ControllerAddress &address) {
+    if (address.kind == DeviceKind::Arduino)
+        return std::make_unique<drive::ArduinoDevice>();
+    return std::make_unique<roboclaw::Device>(std::uint8_t(address.address));
+}
+
+QString placeOf(const ControllerAddress &address) {
+    return address.kind == DeviceKind::Arduino
+               ? address.url
+               : QString("0x%1 on %2").arg(address.address, 0, 16).arg(address.url);
+}
 
 } // namespace
 
 MotorController::MotorController(int number, const ControllerAddress &address, int onLine)
     : place_(address)
-    , name_(QString("controller %1 (0x%2 on %3)").arg(number).arg(address.address, 0, 16).arg(address.url))
+    , name_(QString("controller %1 (%2)").arg(number).arg(placeOf(address)))
     , onLine_(onLine)
-    , device_(std::make_unique<roboclaw::Device>(std::uint8_t(address.address)))
+    , device_(makeDevice(address))
     , timeoutAtMost_s_(device_->timeout().atMost_s) {}
 
 void MotorController::configure(const MotorSettings &settings) {
@@ -45,7 +61,8 @@ void MotorController::configure(const MotorSettings &settings) {
     watch_.setThreshold(settings.encoder.moving * countsPerRadian);
     disobeyAfter_s_ = settings.encoder.hold_s;
     fullSpeed_ = settings.pid.qpps;
-    if (!device_->configure({settings.pid, settings.serialTimeout_s}))
+    promised_s_ = settings.serialTimeout_s;
+    if (!device_->configure({settings.pid, promised_s_}) && keepsPromise())
         return;
     timeoutAtMost_s_ = std::max(timeoutAtMost_s_, device_->timeout().seconds);
     if (state_ != State::Stopping)
@@ -54,6 +71,7 @@ void MotorController::configure(const MotorSettings &settings) {
 
 void MotorController::lineClosed(const QString &reason) {
     heard_ = timeoutKnown_ = false;
+    device_->forgetLine();
     lose(reason);
     silentUntil_ = nextSetup_ = 0;
 }
@@ -119,7 +137,8 @@ void MotorController::beginCycle(double now) {
     if (!isReady())
         return;
     overruns_ += wantsEncoders_;
-    wantsEncoders_ = wantsSlow_ = true;
+    wantsEncoders_ = true;
+    wantsSlow_ = device_->slowReadings() > 0;
 }
 
 void MotorController::watchAnswers() {
@@ -129,7 +148,7 @@ void MotorController::watchAnswers() {
         lose(failureOf({Kind::SetSpeeds}));
     else if (clock_ - lastCounts_ > lostAfter_s)
         lose(failureOf({Kind::ReadEncoders}));
-    else if (clock_ - lastSlow_ > slowLostAfter_s)
+    else if (device_->slowReadings() > 0 && clock_ - lastSlow_ > slowLostAfter_s)
         lose(failureOf({Kind::ReadSlow, slow_}));
 }
 
@@ -309,6 +328,12 @@ void MotorController::setupAnswered(const Command &command, const Bus::Outcome &
         return failSetup(QString::fromLatin1(fault.c_str()), now);
     if (++setupStep_ < device_->setupSteps())
         return;
+    if (!keepsPromise())
+        return failSetup(QString("stops by itself %1 s after its last command, and that cannot be set: "
+                                 "controllers.timeout_s promises %2 s")
+                             .arg(device_->timeout().seconds)
+                             .arg(promised_s_),
+                         now);
     // A round of the line: set-point and encoders of each, and a slow reading.
     const double reply = usualReplyTime(), round = reply * (2 * onLine_ + 1);
     if (round * leastRate_Hz > 1)
@@ -319,6 +344,10 @@ void MotorController::setupAnswered(const Command &command, const Bus::Outcome &
                          now);
     replyTimeout_s_ = std::clamp(3 * reply, shortestReplyTimeout_s, longestDrivingReplyTimeout_s);
     becomeReady();
+}
+
+bool MotorController::keepsPromise() const {
+    return device_->timeout().seconds <= promised_s_ + rounding_s;
 }
 
 double MotorController::usualReplyTime() {
@@ -339,6 +368,19 @@ void MotorController::becomeReady() {
     ++commanded_;
     ++readings_.setups;
     slow_ = 0;
+}
+
+void MotorController::takeCounts(double time) {
+    const auto before = std::exchange(readings_.counts, device_->counts());
+    const double gap = std::max(leastGap_s, time - std::exchange(readings_.countsTime, time));
+    for (std::size_t i = 0; i < before.size() && device_->timeout().isFixed; ++i) {
+        if (std::abs(double(qint32(readings_.counts[i] - before[i]))) > overspeed * fullSpeed_ * gap)
+            return ++readings_.restarts, lose("its counts have jumped: it has restarted");
+    }
+    watch_.read(readings_.counts, time);
+    lastCounts_ = clock_;
+    rate_.add(clock_);
+    wantsEncoders_ = false;
 }
 
 void MotorController::nextSlow() {
@@ -368,15 +410,8 @@ void MotorController::readyAnswered(const Command &command, const Bus::Outcome &
             watch_.acknowledged();
         return;
     }
-    if (command.kind == Kind::ReadEncoders) {
-        readings_.counts = device_->counts();
-        readings_.countsTime = outcome.received;
-        watch_.read(readings_.counts, outcome.received);
-        lastCounts_ = clock_;
-        rate_.add(clock_);
-        wantsEncoders_ = false;
-        return;
-    }
+    if (command.kind == Kind::ReadEncoders)
+        return takeCounts(outcome.received);
     const std::string fault = device_->take(command, readings_);
     if (!device_->isVital(command))
         lastDuty_ = clock_;

@@ -86,6 +86,8 @@ public:
     const QString &error() const { return error_; }
     const QString &version() const { return version_; }
     const drive::Readings &readings() const { return readings_; }
+    /// After which it stops by itself when it is told nothing, once it is set up.
+    double timeout_s() const { return device_->timeout().seconds; }
     /// Cycles whose encoders were not read in time.
     quint64 overruns() const { return overruns_; }
 
@@ -108,6 +110,9 @@ private:
     /// Of the answers to the set-up; the program or the machine may have stood still in some of them.
     double usualReplyTime();
     void becomeReady();
+    /// Its own time-out is no longer than the settings promise.
+    bool keepsPromise() const;
+    void takeCounts(double time);
     void nextSlow();
     /// A slow reading that is not vital was not answered.
     void missSlow();
@@ -133,6 +138,7 @@ private:
     int onLine_;
     std::unique_ptr<drive::MotorDevice> device_;
     double fullSpeed_ = drive::VelocityPid().qpps; // counts/s
+    double promised_s_ = 0;                        // until it stops by itself
     StandstillWatch watch_;
     ReadingRate rate_{leastRate_Hz};
     quint32 deceleration_ = 1; // counts/s^2

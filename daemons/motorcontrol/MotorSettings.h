@@ -11,12 +11,15 @@
 
 namespace hermes::motorcontrol {
 
-constexpr int controllerCount = 2;
+constexpr int controllerCount = 2; ///< at most
 
-/// Where one motor controller is.
+enum class DeviceKind { RoboClaw, Arduino };
+
+/// Where one motor controller is, and what.
 struct ControllerAddress {
-    QString url; ///< of its serial line; controllers with the same one share it
-    int address = roboclaw::firstAddress;
+    QString url;                          ///< of its serial line; controllers with the same one share it
+    int address = roboclaw::firstAddress; ///< of a RoboClaw
+    DeviceKind kind = DeviceKind::RoboClaw;
 };
 
 /// Which motor turns a wheel.
@@ -30,8 +33,9 @@ struct WheelMount {
 struct MotorSettings {
     Drive::Settings drive;
     OdometryNoise odometry;
-    std::array<ControllerAddress, controllerCount> controllers{
-        {{roboclaw::usualLine, roboclaw::firstAddress}, {roboclaw::usualLine, roboclaw::firstAddress + 1}}};
+    /// Two, or one with two motors: a wheel behind then turns as the one before it.
+    std::vector<ControllerAddress> controllers{{roboclaw::usualLine, roboclaw::firstAddress},
+                                               {roboclaw::usualLine, roboclaw::firstAddress + 1}};
     std::array<WheelMount, wheelCount> wheels;
     double countsPerTurn = 38000; ///< of a wheel
     double wheelRadius = 0.1;
@@ -45,6 +49,11 @@ struct MotorSettings {
 
     /// From settings that declareMotorSettings() has declared.
     static MotorSettings from(const Settings &settings);
+    /// Of their controllers, from the largest speed: how far the robot goes on when this program dies.
+    double longestWay_m(double timeout_s) const {
+        const double speed = drive.limits.velocity.vx;
+        return speed * (timeout_s + speed / emergencyDeceleration);
+    }
 };
 
 /// Calls declare for each setting, in the order in which people should see them.

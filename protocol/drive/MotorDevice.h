@@ -27,7 +27,7 @@ struct DeviceSettings {
 struct DeviceTimeout {
     double seconds;  ///< after the set-up
     double atMost_s; ///< before
-    bool isFixed;    ///< else it is written in the set-up, and may be lost
+    bool isFixed;    ///< else it is written in the set-up, and its loss tells of a restart
 };
 
 /// What a device has told last. Beside the encoders, which are read in every cycle, there are slow readings,
@@ -42,6 +42,7 @@ struct Readings {
     std::uint32_t status = 0; ///< bits of roboclaw::StatusBit
     bool complete = false;    ///< each vital one of the slow ones has been read since it was set up
     int setups = 0;           ///< times it was set up: it may have been without power in between
+    int restarts = 0;         ///< times that its counts told of one
 };
 
 /// What a device with two motors is told or asked.
@@ -79,6 +80,9 @@ public:
     /// Nothing is driven without an answer to it. The others tell of the battery only; the last reading is
     /// vital.
     virtual bool isVital(const Command &command) const = 0;
+
+    /// The line was closed: what was sent before may lie in the device.
+    virtual void forgetLine() {}
 
     virtual Bytes bytes(const Command &command) const = 0;
     virtual Name nameOf(const Command &command) const = 0;
