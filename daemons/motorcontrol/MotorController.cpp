@@ -29,7 +29,6 @@ constexpr double longestStep_s = 0.04; // a cycle that came later: this program 
 constexpr double dutyPause_s = 10; // a request that is not answered holds up a stop on its line
 
 constexpr double rounding_s = 1e-6;
-constexpr double leastGap_s = 0.1; // no reading is so exact in its time as a cycle
 
 constexpr std::array<qint32, 2> zero{};
 
@@ -362,6 +361,7 @@ void MotorController::becomeReady() {
     timeoutAtMost_s_ = device_->timeout().seconds;
     timeoutKnown_ = true; // it was read back
     lastAnswer_ = lastObeyed_ = lastCounts_ = lastSlow_ = lastDuty_ = clock_;
+    countsAsked_ = 0;
     speeds_ = zero;
     toldToTurn_ = false;
     standBy_ = clock_ + disobeyAfter_s_ + timeoutMargin_s;
@@ -370,14 +370,15 @@ void MotorController::becomeReady() {
     slow_ = 0;
 }
 
-void MotorController::takeCounts(double time) {
+void MotorController::takeCounts(const Bus::Outcome &outcome) {
     const auto before = std::exchange(readings_.counts, device_->counts());
-    const double gap = std::max(leastGap_s, time - std::exchange(readings_.countsTime, time));
+    const double gap = outcome.received - std::exchange(countsAsked_, outcome.sent); // at most
+    readings_.countsTime = outcome.received;
     for (std::size_t i = 0; i < before.size() && device_->timeout().isFixed; ++i) {
         if (std::abs(double(qint32(readings_.counts[i] - before[i]))) > overspeed * fullSpeed_ * gap)
             return ++readings_.restarts, lose("its counts have jumped: it has restarted");
     }
-    watch_.read(readings_.counts, time);
+    watch_.read(readings_.counts, outcome.received);
     lastCounts_ = clock_;
     rate_.add(clock_);
     wantsEncoders_ = false;
@@ -411,7 +412,7 @@ void MotorController::readyAnswered(const Command &command, const Bus::Outcome &
         return;
     }
     if (command.kind == Kind::ReadEncoders)
-        return takeCounts(outcome.received);
+        return takeCounts(outcome);
     const std::string fault = device_->take(command, readings_);
     if (!device_->isVital(command))
         lastDuty_ = clock_;

@@ -112,7 +112,7 @@ private:
     void becomeReady();
     /// Its own time-out is no longer than the settings promise.
     bool keepsPromise() const;
-    void takeCounts(double time);
+    void takeCounts(const drive::Bus::Outcome &outcome);
     void nextSlow();
     /// A slow reading that is not vital was not answered.
     void missSlow();
@@ -173,6 +173,7 @@ private:
 
     // Ready.
     double replyTimeout_s_ = 0;
+    double countsAsked_ = 0; // monotonic; 0: not since it is ready
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted
     bool toldToTurn_ = false;                       // by the last one that was sent

@@ -293,16 +293,17 @@ private Q_SLOTS:
 
     // Also so quickly that nothing but its counts tells of it.
     void oneThatRestartsIsSetUpAnew_data() {
-        const Rows<double> row("dead_s");
-        row("watchdog", 0.002);
-        row("boot loader", 1.6);
+        const Rows<double, double> row("dead_s", "after_s");
+        row("watchdog", 0.002, 2);
+        row("watchdog, soon", 0.002, 0);
+        row("boot loader", 1.6, 2);
     }
 
     void oneThatRestartsIsSetUpAnew() {
-        QFETCH(double, dead_s);
+        FETCH(double, dead_s, double, after_s);
         Base base;
         QVERIFY(base.driveOff());
-        base.run(2);
+        base.run(after_s);
         const double x = base.engine.report().pose.x;
         base.arduino.restart(dead_s);
         QVERIFY(base.runUntil([&] { return !base.isReady(); }, 0.5));
