@@ -279,6 +279,21 @@ private Q_SLOTS:
         QVERIFY2(way > 0.55 && way < settings.longestWay_m(2), saying(way));
     }
 
+    void aPulledLineLosesNoWay() {
+        Base base;
+        QVERIFY(base.driveOff(0.3));
+        base.line.setClosed("pulled");
+        base.die(3);
+        base.speed = 0;
+        base.line.setOpen();
+        QVERIFY(base.runUntil([&] { return base.isReady(); }, 1));
+        base.run(0.1);
+        const Telemetry &told = base.engine.report();
+        QCOMPARE(told.counterJumps, 0ULL);
+        const double way = base.arduino.counts[0] / 3000 * 2 * 3.14159 * 0.033;
+        QVERIFY2(way > 0.6 && std::abs(told.pose.x - way) < 0.01, saying(told.pose.x - way));
+    }
+
     void nothingButStopsBeforeItStands() {
         Base base;
         base.arduino.perFrame = {100, 100}; // from a program that ran before
@@ -294,7 +309,7 @@ private Q_SLOTS:
     // Also so quickly that nothing but its counts tells of it.
     void oneThatRestartsIsSetUpAnew_data() {
         const Rows<double, double> row("dead_s", "after_s");
-        row("watchdog", 0.002, 2);
+        row("watchdog", 0.002, 1);
         row("watchdog, soon", 0.002, 0);
         row("boot loader", 1.6, 2);
     }
