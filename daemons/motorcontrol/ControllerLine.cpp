@@ -40,7 +40,7 @@ void ControllerLine::wake() {
     if (guard_)
         guard_();
     const double now = monotonicNow();
-    if (const roboclaw::Bytes *out = master_.poll(now)) {
+    if (const drive::Bytes *out = master_.poll(now)) {
         interface_->write(QByteArray(reinterpret_cast<const char *>(out->data()), int(out->size())));
         interface_->flush();
     }

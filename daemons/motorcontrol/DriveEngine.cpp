@@ -8,12 +8,13 @@
 
 namespace hermes::motorcontrol {
 DriveEngine::DriveEngine(const MotorSettings &settings) {
-    for (int i = 0; i < controllerCount; ++i) {
+    telemetry_.controllers.count = settings.controllers.size();
+    for (std::size_t i = 0; i < settings.controllers.size(); ++i) {
         const auto onLine =
             std::count_if(settings.controllers.begin(), settings.controllers.end(),
                           [&](const auto &c) { return c.url == settings.controllers[i].url; });
         controllers_.push_back(
-            std::make_unique<MotorController>(i + 1, settings.controllers[i], int(onLine)));
+            std::make_unique<MotorController>(int(i) + 1, settings.controllers[i], int(onLine)));
         telemetry_.controllers[i].name = controllers_.back()->name();
     }
     configure(settings);
@@ -25,7 +26,8 @@ void DriveEngine::configure(const MotorSettings &settings) {
     odometry_.setNoise(settings.odometry);
     tracker_.configure(settings.wheels, settings.countsPerTurn,
                        MotorController::overspeed * settings.pid.qpps * 2 * vectorlib::pi /
-                           settings.countsPerTurn);
+                           settings.countsPerTurn,
+                       std::max(1.0, settings.serialTimeout_s + 0.5));
     faults_.configure(settings);
     for (const auto &controller : controllers_)
         controller->configure(settings);
@@ -76,7 +78,7 @@ void DriveEngine::updateReadiness() {
 }
 
 void DriveEngine::judgeObedience() {
-    for (int i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < controllers_.size(); ++i) {
         const QString disobedience = controllers_[i]->takeDisobedience();
         if (!disobedience.isEmpty())
             drive_.fault(QString("controller_%1").arg(i + 1), controllers_[i]->name() + ": " + disobedience);
@@ -89,12 +91,13 @@ void DriveEngine::judgeObedience() {
 }
 
 void DriveEngine::takeReadings() {
-    for (int i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < controllers_.size(); ++i) {
         const MotorController &controller = *controllers_[i];
         Telemetry::Controller &told = telemetry_.controllers[i];
         told.error = controller.error();
         told.version = controller.version();
         told.ready = controller.isReady();
+        told.timeout_s = controller.timeout_s();
         told.rate_Hz = controller.rate_Hz().value_or(0);
         told.readings = controller.readings();
         told.overruns = controller.overruns();
@@ -102,7 +105,8 @@ void DriveEngine::takeReadings() {
 }
 
 void DriveEngine::trackWheels(double now) {
-    const auto motion = tracker_.update({&controllers_[0]->readings(), &controllers_[1]->readings()});
+    const auto motion =
+        tracker_.update({&controllers_.front()->readings(), &controllers_.back()->readings()});
     telemetry_.moved = motion.has_value();
     if (!motion) {
         if (now - telemetry_.mono > MotorController::lostAfter_s)
@@ -136,13 +140,13 @@ void DriveEngine::command(const WheelValues &setPoint) {
         speeds[wheel.controller][wheel.motor] =
             qint32(std::lround(wheel.sign * setPoint[i] * countsPerRadian));
     }
-    for (int i = 0; i < controllerCount; ++i)
+    for (std::size_t i = 0; i < controllers_.size(); ++i)
         controllers_[i]->command(speeds[i]);
     sent_ = setPoint;
 }
 
 Telemetry &DriveEngine::report() {
-    for (int i = 0; i < controllerCount; ++i)
+    for (std::size_t i = 0; i < controllers_.size(); ++i)
         telemetry_.controllers[i].stands = controllers_[i]->stands();
     telemetry_.pose = odometry_.pose();
     telemetry_.covariance = odometry_.covariance();

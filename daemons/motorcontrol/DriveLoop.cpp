@@ -42,7 +42,8 @@ Result<void> DriveLoop::start() {
 }
 
 Result<void> DriveLoop::openLines() {
-    for (int i = 0; i < controllerCount; ++i) {
+    const std::size_t count = settings_.controllers.size();
+    for (std::size_t i = 0; i < count; ++i) {
         if (lineOf_[i])
             continue;
         const QString url = settings_.controllers[i].url;
@@ -52,14 +53,14 @@ Result<void> DriveLoop::openLines() {
             return Error(ErrorCode::InvalidSetting,
                          QString("controllers.%1.url: %2").arg(i + 1).arg(interface.error().message));
         std::vector<MotorController *> onLine;
-        for (int k = i; k < controllerCount; ++k) {
+        for (std::size_t k = i; k < count; ++k) {
             if (settings_.controllers[k].url == url)
-                onLine.push_back(&engine_.controller(k));
+                onLine.push_back(&engine_.controller(int(k)));
         }
         const QString device = parsed->scheme == "serial" ? parsed->path : QString();
         lines_.push_back(new ControllerLine(*interface, device, onLine, this));
         lines_.back()->setGuard([this] { lookForGap(); });
-        for (int k = i; k < controllerCount; ++k) {
+        for (std::size_t k = i; k < count; ++k) {
             if (settings_.controllers[k].url != url)
                 continue;
             lineOf_[k] = lines_.back();
@@ -128,9 +129,9 @@ void DriveLoop::wakeLines() {
 
 void DriveLoop::report() {
     Telemetry &telemetry = engine_.report();
-    for (int i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < telemetry.controllers.size(); ++i) {
         const LineMaster &line = lineOf_[i]->master();
-        telemetry.controllers[i].counts = line.counts(engine_.controller(i));
+        telemetry.controllers[i].counts = line.counts(engine_.controller(int(i)));
         telemetry.controllers[i].strayBytes = line.strayBytes();
         telemetry.controllers[i].advice = lineOf_[i]->advice();
     }

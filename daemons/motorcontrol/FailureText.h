@@ -1,6 +1,7 @@
 #pragma once
 
-#include "protocol/roboclaw/Bus.h"
+#include "protocol/drive/Bus.h"
+#include "protocol/drive/MotorDevice.h"
 
 #include <QString>
 
@@ -8,6 +9,6 @@ namespace hermes::motorcontrol {
 
 /// How a controller fails to answer a command, for people: "answers, but not command 78 (encoders)".
 /// heard: it has answered others.
-QString failureText(roboclaw::Command command, roboclaw::Bus::Result result, bool heard);
+QString failureText(const drive::MotorDevice::Name &name, drive::Bus::Result result, bool heard);
 
 } // namespace hermes::motorcontrol

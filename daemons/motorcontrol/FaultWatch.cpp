@@ -35,7 +35,7 @@ void FaultWatch::configure(const MotorSettings &settings) {
 
 void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now) {
     telemetry.levels = {};
-    for (int i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < telemetry.controllers.size(); ++i) {
         const Telemetry::Controller &told = telemetry.controllers[i];
         if (!told.ready || !told.readings.complete)
             continue;
@@ -47,7 +47,7 @@ void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now
             if (level == Level::Fault)
                 drive.fault(fault, QString("%1: %2").arg(told.name, text()));
         };
-        const ControllerReadings &r = told.readings;
+        const drive::Readings &r = told.readings;
         judge(0, watch.battery, r.battery_v, "battery", [&] {
             return QString("the battery has %1 V, at least %2 V are needed")
                 .arg(r.battery_v)

@@ -5,7 +5,7 @@
 
 namespace hermes::motorcontrol {
 
-using roboclaw::Bus;
+using drive::Bus;
 
 namespace {
 
@@ -54,12 +54,12 @@ double LineMaster::deadline() const {
     return busyUntil() > now_ ? busyUntil() : std::numeric_limits<double>::infinity();
 }
 
-const roboclaw::Bytes *LineMaster::poll(double now) {
+const drive::Bytes *LineMaster::poll(double now) {
     now_ = now;
     bus_.poll(now); // ends what is late
     if (bus_.isIdle() && now >= bus_.pauseUntil() && !submitStop() && now >= bus_.quietUntil())
         submitNext();
-    const roboclaw::Bytes *out = bus_.poll(now);
+    const drive::Bytes *out = bus_.poll(now);
     tellWhetherHeld(now);
     return out;
 }
@@ -129,10 +129,7 @@ bool LineMaster::submit(std::size_t place, Task task, Bus::Urgency urgency) {
         return false;
     waitsPatiently_ = asked->isPatient();
     return bus_.submit(
-        asked->request,
-        [this, place, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
-            finished(place, task, outcome);
-        },
+        asked->request, [this, place, task](const Bus::Outcome &outcome) { finished(place, task, outcome); },
         urgency, asked->timeout_s);
 }
 

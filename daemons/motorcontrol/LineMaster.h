@@ -20,12 +20,12 @@ public:
     void setClosed(const QString &reason);
     /// What is to be written now, or nullptr. Call it after feed(), at deadline(), and when a controller
     /// wants something.
-    const roboclaw::Bytes *poll(double now);
+    const drive::Bytes *poll(double now);
     void feed(const std::uint8_t *data, std::size_t size, double now);
     /// When poll() has to be called at the latest; infinite when nothing is pending.
     double deadline() const;
 
-    const roboclaw::Bus::Counts &counts(const MotorController &controller) const {
+    const drive::Bus::Counts &counts(const MotorController &controller) const {
         return bus_.counts(controller.address());
     }
     quint64 strayBytes() const { return bus_.strayBytes(); }
@@ -48,14 +48,13 @@ private:
     void submitNext();
     bool submitInRound();
     bool submitToFailing();
-    bool submit(std::size_t place, Task task,
-                roboclaw::Bus::Urgency urgency = roboclaw::Bus::Urgency::Normal);
-    void finished(std::size_t place, Task task, const roboclaw::Bus::Outcome &outcome);
+    bool submit(std::size_t place, Task task, drive::Bus::Urgency urgency = drive::Bus::Urgency::Normal);
+    void finished(std::size_t place, Task task, const drive::Bus::Outcome &outcome);
     void tellWhetherHeld(double now);
 
     std::vector<Place> places_;
     std::size_t first_ = 0; // whose turn it is to go first
-    roboclaw::Bus bus_;
+    drive::Bus bus_;
     bool waitsPatiently_ = false;
     double now_ = 0;
 };

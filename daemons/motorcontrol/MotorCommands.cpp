@@ -2,6 +2,8 @@
 #include "daemons/motorcontrol/MotorControl.h"
 #include "protocol/wire/Fields.h"
 
+#include <algorithm>
+
 namespace hermes::motorcontrol {
 namespace {
 
@@ -120,6 +122,8 @@ void MotorControl::declareMotorCommands() {
             WheelValues speeds{};
             for (int i = 0; i < wheelCount; ++i)
                 speeds[i] = call.number(wheelNames[i]);
+            if (loop.telemetry().controllers.size() == 1) // it turns two wheels
+                std::copy_n(speeds.begin(), 2, speeds.begin() + 2);
             return nullOr(loop.drive().driveWheels(call.client, speeds, ageOf(call), monotonicNow()));
         });
     for (const char *name : wheelNames)

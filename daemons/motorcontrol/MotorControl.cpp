@@ -34,9 +34,10 @@ constexpr int niceness = -11; // where it may: what must stop the robot does not
 } // namespace
 
 MotorControl::MotorControl()
-    : Daemon({"motorcontrol", "Motor control",
-              "Drives four wheels through two RoboClaw controllers, tells where they have brought the robot, "
-              "and stops when anything breaks"}) {
+    : Daemon(
+          {"motorcontrol", "Motor control",
+           "Drives the wheels through two RoboClaws or an Arduino, tells where they have brought the robot, "
+           "and stops when anything breaks"}) {
     feedWatchdogMyself();
     declareMotorSettings([this](const Field &field) { addSetting(field); });
     settings().addRule(checkMotorSettings);

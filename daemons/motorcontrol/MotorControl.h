@@ -11,7 +11,7 @@
 
 namespace hermes::motorcontrol {
 
-/// The daemon hermes-motorcontrol: drives four wheels through two RoboClaw controllers. Receives and answers
+/// The daemon hermes-motorcontrol: drives the wheels through their controllers. Receives and answers
 /// in the main thread; a DriveLoop in its own thread does the rest.
 class MotorControl : public Daemon {
     Q_OBJECT
@@ -55,6 +55,7 @@ private:
     void restoreStop();
     void keepStop();
     void updateHealth();
+    QString runOnOf(std::size_t controller) const;
     void tellControllers();
     void tellMeasures();
     void tellCycle();

@@ -1,6 +1,8 @@
 #include "daemons/motorcontrol/MotorController.h"
 
 #include "daemons/motorcontrol/FailureText.h"
+#include "protocol/drive/ArduinoDevice.h"
+#include "protocol/roboclaw/Device.h"
 #include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
@@ -9,9 +11,9 @@
 
 namespace hermes::motorcontrol {
 
-using roboclaw::Bus;
-using roboclaw::Command;
-using roboclaw::Request;
+using drive::Bus;
+using drive::Command;
+using Kind = Command::Kind;
 
 namespace {
 
@@ -26,14 +28,30 @@ constexpr double longestStep_s = 0.04; // a cycle that came later: this program 
 
 constexpr double dutyPause_s = 10; // a request that is not answered holds up a stop on its line
 
+constexpr double rounding_s = 1e-6;
+
 constexpr std::array<qint32, 2> zero{};
+
+std::unique_ptr<drive::MotorDevice> makeDevice(const ControllerAddress &address) {
+    if (address.kind == DeviceKind::Arduino)
+        return std::make_unique<drive::ArduinoDevice>();
+    return std::make_unique<roboclaw::Device>(std::uint8_t(address.address));
+}
+
+QString placeOf(const ControllerAddress &address) {
+    return address.kind == DeviceKind::Arduino
+               ? address.url
+               : QString("0x%1 on %2").arg(address.address, 0, 16).arg(address.url);
+}
 
 } // namespace
 
 MotorController::MotorController(int number, const ControllerAddress &address, int onLine)
     : place_(address)
-    , name_(QString("controller %1 (0x%2 on %3)").arg(number).arg(address.address, 0, 16).arg(address.url))
-    , onLine_(onLine) {}
+    , name_(QString("controller %1 (%2)").arg(number).arg(placeOf(address)))
+    , onLine_(onLine)
+    , device_(makeDevice(address))
+    , timeoutAtMost_s_(device_->timeout().atMost_s) {}
 
 void MotorController::configure(const MotorSettings &settings) {
     const double countsPerRadian = settings.countsPerTurn / (2 * vectorlib::pi);
@@ -41,16 +59,18 @@ void MotorController::configure(const MotorSettings &settings) {
         1u, quint32(std::llround(settings.emergencyDeceleration / settings.wheelRadius * countsPerRadian)));
     watch_.setThreshold(settings.encoder.moving * countsPerRadian);
     disobeyAfter_s_ = settings.encoder.hold_s;
-    if (!setup_.differs(settings))
+    fullSpeed_ = settings.pid.qpps;
+    promised_s_ = settings.serialTimeout_s;
+    if (!device_->configure({settings.pid, promised_s_}) && keepsPromise())
         return;
-    setup_.configure(settings);
-    timeoutAtMost_s_ = std::max(timeoutAtMost_s_, setup_.timeout_s());
+    timeoutAtMost_s_ = std::max(timeoutAtMost_s_, device_->timeout().seconds);
     if (state_ != State::Stopping)
         lose("is being set up with new settings");
 }
 
 void MotorController::lineClosed(const QString &reason) {
     heard_ = timeoutKnown_ = false;
+    device_->forgetLine();
     lose(reason);
     silentUntil_ = nextSetup_ = 0;
 }
@@ -90,7 +110,7 @@ double MotorController::silence_s() const {
 }
 
 double MotorController::brakingTime() const {
-    const double speed = std::min(watch_.speed(), overspeed * setup_.fullSpeed()); // counts may jump
+    const double speed = std::min(watch_.speed(), overspeed * fullSpeed_); // counts may jump
     return standMargin_s + watch_.window_s() + 1.5 * speed / deceleration_;
 }
 
@@ -116,18 +136,19 @@ void MotorController::beginCycle(double now) {
     if (!isReady())
         return;
     overruns_ += wantsEncoders_;
-    wantsEncoders_ = wantsSlow_ = true;
+    wantsEncoders_ = true;
+    wantsSlow_ = device_->slowReadings() > 0;
 }
 
 void MotorController::watchAnswers() {
     if (clock_ - lastAnswer_ > lostAfter_s)
         heard_ = false;
     if (clock_ - lastObeyed_ > lostAfter_s)
-        lose(failureText(Command::SpeedAccel, failure_, heard_));
+        lose(failureOf({Kind::SetSpeeds}));
     else if (clock_ - lastCounts_ > lostAfter_s)
-        lose(failureText(Command::ReadEncoders, failure_, heard_));
-    else if (clock_ - lastSlow_ > slowLostAfter_s)
-        lose(failureText(ControllerReadings::slowCommand(slow_), failure_, heard_));
+        lose(failureOf({Kind::ReadEncoders}));
+    else if (device_->slowReadings() > 0 && clock_ - lastSlow_ > slowLostAfter_s)
+        lose(failureOf({Kind::ReadSlow, slow_}));
 }
 
 void MotorController::watchStandstill() {
@@ -148,17 +169,20 @@ bool MotorController::isToStop() const {
     return isReady() && toldToTurn_ && speeds_ == zero;
 }
 
-MotorController::Ask MotorController::ask(Command command, double timeout_s,
-                                          const roboclaw::Values &values) const {
-    return {*Request::make(address(), command, values), timeout_s};
+MotorController::Ask MotorController::ask(const Command &command, double timeout_s) const {
+    return {command, {&device_->reader(), device_->bytes(command), address()}, timeout_s};
+}
+
+QString MotorController::failureOf(const Command &command) const {
+    return failureText(device_->nameOf(command), failure_, heard_);
 }
 
 std::optional<MotorController::Ask> MotorController::next(Task task, double now) {
     const auto asked = due(task, now);
     if (!asked)
         return asked;
-    asked_ = asked->request.command;
-    if (*asked_ == Command::SpeedAccel || *asked_ == Command::Duty) {
+    asked_ = asked->command;
+    if (asked_->kind == Kind::SetSpeeds || asked_->kind == Kind::CutPower) {
         sent_ = commanded_;
         toldToTurn_ = isReady() && speeds_ != zero;
         setPointSent_ = now;
@@ -177,7 +201,7 @@ std::optional<MotorController::Ask> MotorController::due(Task task, double now) 
     case State::SetUp:
         if (task != Task::Background)
             return std::nullopt;
-        return Ask{setup_.request(address()), setupTimeout_s};
+        return ask({Kind::SetUp, setupStep_}, setupTimeout_s);
     case State::Ready:
         break;
     }
@@ -189,14 +213,14 @@ std::optional<MotorController::Ask> MotorController::dueStop(Task task, double n
         return std::nullopt;
     switch (stopStep_) {
     case StopStep::Tell: // with the ramp, and not waiting for long
-        return barred_ ? ask(Command::Duty, shortestReplyTimeout_s, {0, 0})
-                       : ask(Command::SpeedAccel, shortestReplyTimeout_s, {deceleration_, 0, 0});
+        return ask(barred_ ? Command{Kind::CutPower} : Command{Kind::SetSpeeds, 0, zero, deceleration_},
+                   shortestReplyTimeout_s);
     case StopStep::SetTimeout:
-        return ask(Command::SetSerialTimeout, shortestReplyTimeout_s, {setup_.timeoutTenths()});
+        return ask({Kind::SetTimeout}, shortestReplyTimeout_s);
     case StopStep::CutPower:
-        return ask(Command::Duty, silence_s(), {0, 0});
+        return ask({Kind::CutPower}, silence_s());
     case StopStep::Look:
-        return ask(Command::ReadEncoders, silence_s());
+        return ask({Kind::ReadEncoders}, silence_s());
     }
     return std::nullopt;
 }
@@ -205,15 +229,15 @@ std::optional<MotorController::Ask> MotorController::dueReady(Task task) const {
     switch (task) {
     case Task::SetPoint:
         if (obeyed_ != commanded_)
-            return ask(Command::SpeedAccel, replyTimeout_s_, {deceleration_, speeds_[0], speeds_[1]});
+            return ask({Kind::SetSpeeds, 0, speeds_, deceleration_}, replyTimeout_s_);
         break;
     case Task::Encoders:
         if (wantsEncoders_)
-            return ask(Command::ReadEncoders, replyTimeout_s_);
+            return ask({Kind::ReadEncoders}, replyTimeout_s_);
         break;
     case Task::Background:
         if (wantsSlow_)
-            return ask(ControllerReadings::slowCommand(slow_), replyTimeout_s_);
+            return ask({Kind::ReadSlow, slow_}, replyTimeout_s_);
         break;
     }
     return std::nullopt;
@@ -245,8 +269,8 @@ void MotorController::keepSilent(const Bus::Outcome &outcome) {
     silentUntil_ = outcome.sent + silence_s();
 }
 
-void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome, double now) {
-    if (command == Command::SetSerialTimeout) {
+void MotorController::stopAnswered(const Command &command, const Bus::Outcome &outcome, double now) {
+    if (command.kind == Kind::SetTimeout) {
         stopStep_ = StopStep::CutPower;
         return;
     }
@@ -260,16 +284,16 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
         stopStep_ = nextAttempt();
         if (isFirstStop_) // it is told again at once
             return;
-        error_ = failureText(command, failure_, heard_);
+        error_ = failureOf(command);
         return keepSilent(outcome); // what came in spite of it may be late, or another one's
     }
-    if (command != Command::ReadEncoders) {
+    if (command.kind != Kind::ReadEncoders) {
         stopStep_ = StopStep::Look;
         if (isFirstStop_)
             brakeUntil_ = now + brakingTime();
         return watch_.acknowledged();
     }
-    watch_.read({quint32(outcome.reply[0]), quint32(outcome.reply[1])}, outcome.received);
+    watch_.read(device_->counts(), outcome.received);
     nextStop_ = now + readingPause_s;
     if (watch_.isMoving()) {
         if (now < brakeUntil_)
@@ -282,8 +306,8 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
     if (!watch_.stands() || now < nextSetup_)
         return;
     state_ = State::SetUp;
-    setup_.restart();
-    replies_ = 0;
+    setupStep_ = 0;
+    replyTimes_.clear();
 }
 
 void MotorController::failSetup(const QString &reason, double now) {
@@ -291,17 +315,24 @@ void MotorController::failSetup(const QString &reason, double now) {
     nextSetup_ = now + setupPause_s;
 }
 
-void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome, double now) {
-    if (outcome.result != Bus::Result::Done && command == Command::ReadPwm)
-        return setup_.skip(), missSlow();
+void MotorController::setupAnswered(const Command &command, const Bus::Outcome &outcome, double now) {
+    if (outcome.result != Bus::Result::Done && !device_->isVital(command))
+        return ++setupStep_, missSlow();
     if (outcome.result != Bus::Result::Done)
-        return failSetup(failureText(command, failure_, heard_), now);
-    replyTimes_[replies_++] = outcome.received - outcome.sent;
-    const QString fault = setup_.take(outcome, readings_);
-    if (!fault.isEmpty())
-        return failSetup(fault, now);
-    if (!setup_.isDone())
+        return failSetup(failureOf(command), now);
+    replyTimes_.push_back(outcome.received - outcome.sent);
+    const std::string fault = device_->take(command, readings_);
+    version_ = QString::fromLatin1(device_->version().c_str());
+    if (!fault.empty())
+        return failSetup(QString::fromLatin1(fault.c_str()), now);
+    if (++setupStep_ < device_->setupSteps())
         return;
+    if (!keepsPromise())
+        return failSetup(QString("stops by itself %1 s after its last command, and that cannot be set: "
+                                 "controllers.timeout_s promises %2 s")
+                             .arg(device_->timeout().seconds)
+                             .arg(promised_s_),
+                         now);
     // A round of the line: set-point and encoders of each, and a slow reading.
     const double reply = usualReplyTime(), round = reply * (2 * onLine_ + 1);
     if (round * leastRate_Hz > 1)
@@ -314,18 +345,23 @@ void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome
     becomeReady();
 }
 
+bool MotorController::keepsPromise() const {
+    return device_->timeout().seconds <= promised_s_ + rounding_s;
+}
+
 double MotorController::usualReplyTime() {
-    const auto middle = replyTimes_.begin() + replies_ / 2;
-    std::nth_element(replyTimes_.begin(), middle, replyTimes_.begin() + replies_);
+    const auto middle = replyTimes_.begin() + std::ptrdiff_t(replyTimes_.size() / 2);
+    std::nth_element(replyTimes_.begin(), middle, replyTimes_.end());
     return *middle;
 }
 
 void MotorController::becomeReady() {
     state_ = State::Ready;
     error_.clear();
-    timeoutAtMost_s_ = setup_.timeout_s();
+    timeoutAtMost_s_ = device_->timeout().seconds;
     timeoutKnown_ = true; // it was read back
     lastAnswer_ = lastObeyed_ = lastCounts_ = lastSlow_ = lastDuty_ = clock_;
+    countsAsked_ = 0;
     speeds_ = zero;
     toldToTurn_ = false;
     standBy_ = clock_ + disobeyAfter_s_ + timeoutMargin_s;
@@ -334,10 +370,24 @@ void MotorController::becomeReady() {
     slow_ = 0;
 }
 
+void MotorController::takeCounts(const Bus::Outcome &outcome) {
+    const auto before = std::exchange(readings_.counts, device_->counts());
+    const double gap = outcome.received - std::exchange(countsAsked_, outcome.sent); // at most
+    readings_.countsTime = outcome.received;
+    for (std::size_t i = 0; i < before.size() && device_->timeout().isFixed; ++i) {
+        if (std::abs(double(qint32(readings_.counts[i] - before[i]))) > overspeed * fullSpeed_ * gap)
+            return ++readings_.restarts, lose("its counts have jumped: it has restarted");
+    }
+    watch_.read(readings_.counts, outcome.received);
+    lastCounts_ = clock_;
+    rate_.add(clock_);
+    wantsEncoders_ = false;
+}
+
 void MotorController::nextSlow() {
     wantsSlow_ = false;
-    slow_ = (slow_ + 1) % ControllerReadings::slowCount;
-    if (!ControllerReadings::isVital(slow_) && !readings_.duty && clock_ < nextDuty_)
+    slow_ = (slow_ + 1) % device_->slowReadings();
+    if (!device_->isVital({Kind::ReadSlow, slow_}) && !readings_.duty && clock_ < nextDuty_)
         ++slow_; // the last one is vital
 }
 
@@ -348,39 +398,31 @@ void MotorController::missSlow() {
     nextDuty_ = clock_ + dutyPause_s;
 }
 
-void MotorController::readyAnswered(Command command, const Bus::Outcome &outcome) {
+void MotorController::readyAnswered(const Command &command, const Bus::Outcome &outcome) {
     if (outcome.result != Bus::Result::Done) {
-        if (command == Command::ReadPwm)
+        if (!device_->isVital(command))
             missSlow(), nextSlow();
         return; // all else is repeated with what is then due
     }
-    if (command == Command::SpeedAccel) {
+    if (command.kind == Kind::SetSpeeds) {
         lastObeyed_ = clock_;
         obeyed_ = sent_;
         if (!toldToTurn_)
             watch_.acknowledged();
         return;
     }
-    if (command == Command::ReadEncoders) {
-        readings_.counts = {quint32(outcome.reply[0]), quint32(outcome.reply[1])};
-        readings_.countsTime = outcome.received;
-        watch_.read(readings_.counts, outcome.received);
-        lastCounts_ = clock_;
-        rate_.add(clock_);
-        wantsEncoders_ = false;
-        return;
-    }
-    readings_.takeSlow(slow_, outcome);
-    if (command == Command::ReadPwm)
+    if (command.kind == Kind::ReadEncoders)
+        return takeCounts(outcome);
+    const std::string fault = device_->take(command, readings_);
+    if (!device_->isVital(command))
         lastDuty_ = clock_;
     nextSlow();
-    if (slow_ == 0) {
+    if (slow_ == 0)
         lastSlow_ = clock_;
-        const QString fault = setup_.timeoutFault(readings_.timeoutTenths);
-        timeoutKnown_ = fault.isEmpty();
-        if (!fault.isEmpty())
-            lose(fault + "; it was without power, or somebody else has set it");
-    }
+    if (fault.empty())
+        return;
+    timeoutKnown_ = false;
+    lose(QString::fromLatin1(fault.c_str()) + "; it was without power, or somebody else has set it");
 }
 
 } // namespace hermes::motorcontrol

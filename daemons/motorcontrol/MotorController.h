@@ -1,16 +1,18 @@
 #pragma once
 
-#include "daemons/motorcontrol/ControllerReadings.h"
-#include "daemons/motorcontrol/ControllerSetup.h"
+#include "daemons/motorcontrol/MotorSettings.h"
 #include "daemons/motorcontrol/ReadingRate.h"
 #include "daemons/motorcontrol/StandstillWatch.h"
+#include "protocol/drive/Bus.h"
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace hermes::motorcontrol {
 
-/// One RoboClaw. Decides what to ask, never sends: its line calls next() when it is free, and finished() with
-/// the answer.
+/// One motor controller. Decides what to ask, never sends: its line calls next() when it is free, and
+/// finished() with the answer. What is said then is its device's business.
 ///
 /// Whatever may turn its motors is stopped first: a controller that is new, was lost, or does not stand
 /// though it was told to, is sent nothing but set-points of zero until it has acknowledged one and its
@@ -25,15 +27,14 @@ public:
     static constexpr int taskCount = 3;
     static constexpr double lostAfter_s = 0.25;  ///< without answers
     static constexpr double slowLostAfter_s = 3; ///< without one of the slow readings
-    static constexpr double longestTimeout_s =
-        0.5; ///< that the settings allow; what a controller may have from before
-    static constexpr double leastRate_Hz = 10; ///< of set-points and readings: slower nothing is driven
-    static constexpr double overspeed = 1.5;   ///< times full duty: faster no motor turns
+    static constexpr double leastRate_Hz = 10;   ///< of set-points and readings: slower nothing is driven
+    static constexpr double overspeed = 1.5;     ///< times full duty: faster no motor turns
 
     /// A request, and how long its answer is waited for (seconds). For one that is patient nothing else is
     /// driven.
     struct Ask {
-        roboclaw::Request request;
+        drive::Command command;
+        drive::Request request;
         double timeout_s;
         bool isPatient() const { return timeout_s > longestDrivingReplyTimeout_s; }
     };
@@ -59,7 +60,7 @@ public:
     bool isToStop() const;
     /// The request that is due for this task, if any.
     std::optional<Ask> next(Task task, double now);
-    void finished(const roboclaw::Bus::Outcome &outcome, double now);
+    void finished(const drive::Bus::Outcome &outcome, double now);
     /// Nothing may be sent on its line before: it stops by its own time-out.
     double silentUntil() const { return silentUntil_; }
 
@@ -83,8 +84,10 @@ public:
     const QString &url() const { return place_.url; }
     /// Why it is not ready.
     const QString &error() const { return error_; }
-    const QString &version() const { return setup_.version(); }
-    const ControllerReadings &readings() const { return readings_; }
+    const QString &version() const { return version_; }
+    const drive::Readings &readings() const { return readings_; }
+    /// After which it stops by itself when it is told nothing, once it is set up.
+    double timeout_s() const { return device_->timeout().seconds; }
     /// Cycles whose encoders were not read in time.
     quint64 overruns() const { return overruns_; }
 
@@ -101,12 +104,15 @@ private:
     std::optional<Ask> due(Task task, double now) const;
     std::optional<Ask> dueStop(Task task, double now) const;
     std::optional<Ask> dueReady(Task task) const;
-    void stopAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
-    void setupAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
-    void readyAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome);
+    void stopAnswered(const drive::Command &command, const drive::Bus::Outcome &outcome, double now);
+    void setupAnswered(const drive::Command &command, const drive::Bus::Outcome &outcome, double now);
+    void readyAnswered(const drive::Command &command, const drive::Bus::Outcome &outcome);
     /// Of the answers to the set-up; the program or the machine may have stood still in some of them.
     double usualReplyTime();
     void becomeReady();
+    /// Its own time-out is no longer than the settings promise.
+    bool keepsPromise() const;
+    void takeCounts(const drive::Bus::Outcome &outcome);
     void nextSlow();
     /// A slow reading that is not vital was not answered.
     void missSlow();
@@ -114,20 +120,25 @@ private:
     double brakingTime() const;
     bool isToldToStand() const { return stopStep_ != StopStep::Tell; }
     /// How it is told again to stand.
-    StopStep nextAttempt() const { return timeoutKnown_ ? StopStep::CutPower : StopStep::SetTimeout; }
-    void keepSilent(const roboclaw::Bus::Outcome &outcome);
+    StopStep nextAttempt() const {
+        return timeoutKnown_ || device_->timeout().isFixed ? StopStep::CutPower : StopStep::SetTimeout;
+    }
+    void keepSilent(const drive::Bus::Outcome &outcome);
     void watchStandstill();
     void watchAnswers();
     void lose(const QString &reason);
     void failSetup(const QString &reason, double now);
-    Ask ask(roboclaw::Command command, double timeout_s, const roboclaw::Values &values = {}) const;
+    Ask ask(const drive::Command &command, double timeout_s) const;
+    QString failureOf(const drive::Command &command) const;
     /// Longer than the controller's own time-out.
     double silence_s() const;
 
     ControllerAddress place_;
     QString name_;
     int onLine_;
-    ControllerSetup setup_;
+    std::unique_ptr<drive::MotorDevice> device_;
+    double fullSpeed_ = drive::VelocityPid().qpps; // counts/s
+    double promised_s_ = 0;                        // until it stops by itself
     StandstillWatch watch_;
     ReadingRate rate_{leastRate_Hz};
     quint32 deceleration_ = 1; // counts/s^2
@@ -142,32 +153,34 @@ private:
 
     // Stopping and set-up.
     StopStep stopStep_ = StopStep::Tell;
-    bool isFirstStop_ = true;                                 // since it was lost
-    bool barred_ = false, timeoutKnown_ = false;              // its time-out was read back
-    double setPointSent_ = 0;                                 // monotonic
-    double brakeUntil_ = 0;                                   // monotonic: so long its wheels may turn
-    double timeoutAtMost_s_ = longestTimeout_s;               // that it may have
-    double silentUntil_ = 0, nextStop_ = 0, nextSetup_ = 0;   // monotonic
-    std::array<double, ControllerSetup::steps> replyTimes_{}; // seconds
-    std::size_t replies_ = 0;
+    bool isFirstStop_ = true;                               // since it was lost
+    bool barred_ = false, timeoutKnown_ = false;            // its time-out was read back
+    double setPointSent_ = 0;                               // monotonic
+    double brakeUntil_ = 0;                                 // monotonic: so long its wheels may turn
+    double timeoutAtMost_s_;                                // that it may have
+    double silentUntil_ = 0, nextStop_ = 0, nextSetup_ = 0; // monotonic
+    int setupStep_ = 0;
+    std::vector<double> replyTimes_; // seconds
+    QString version_;
 
     // What is asked, and since when nothing was heard; by clock_.
-    std::optional<roboclaw::Command> asked_;                      // while the answer is still wanted
-    int failures_ = 0;                                            // in a row
-    roboclaw::Bus::Result failure_ = roboclaw::Bus::Result::Done; // the last one
-    bool heard_ = false; // it has answered something since it was silent
+    std::optional<drive::Command> asked_;                   // while the answer is still wanted
+    int failures_ = 0;                                      // in a row
+    drive::Bus::Result failure_ = drive::Bus::Result::Done; // the last one
+    bool heard_ = false;                                    // it has answered something since it was silent
     double lastAnswer_ = 0, lastObeyed_ = 0, lastCounts_ = 0, lastSlow_ = 0;
     double lastDuty_ = 0, nextDuty_ = 0; // while it is not known it is asked again then
 
     // Ready.
     double replyTimeout_s_ = 0;
+    double countsAsked_ = 0; // monotonic; 0: not since it is ready
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted
     bool toldToTurn_ = false;                       // by the last one that was sent
     std::array<qint32, 2> speeds_{};
     double standBy_ = 0; // by clock_: until then it must stand; while its set-point is zero
     int slow_ = 0;
-    ControllerReadings readings_;
+    drive::Readings readings_;
     quint64 overruns_ = 0;
 };
 

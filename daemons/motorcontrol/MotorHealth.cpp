@@ -46,11 +46,21 @@ void MotorControl::updateHealth() {
     tellStop();
 }
 
+// Of a controller whose time-out cannot be set: what that means.
+QString MotorControl::runOnOf(std::size_t controller) const {
+    if (active_.controllers[controller].kind == DeviceKind::RoboClaw)
+        return {};
+    const double timeout_s = told_.controllers[controller].timeout_s;
+    return QString("; when this program dies it stops by itself after %1 s, up to %2 m farther")
+        .arg(timeout_s)
+        .arg(active_.longestWay_m(timeout_s), 0, 'f', 1);
+}
+
 void MotorControl::tellControllers() {
-    for (int i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < told_.controllers.size(); ++i) {
         const Telemetry::Controller &c = told_.controllers[i];
         const QString advice = c.advice.isEmpty() ? QString() : "; " + c.advice;
-        const QString text = c.name + ": " + (c.ready ? c.version : c.error) + advice;
+        const QString text = c.name + ": " + (c.ready ? c.version : c.error) + advice + runOnOf(i);
         const quint64 faults = c.counts.timeouts + c.counts.crcErrors + c.counts.unexpected;
         const HealthLevel past = answers_[i].level(double(faults));
         const HealthLevel level = !c.ready             ? HealthLevel::Failed
@@ -77,6 +87,8 @@ void MotorControl::tellMeasures() {
     const auto measured = [&](int item, const char *name, double value, const char *key, const char *unit,
                               const Threshold::Settings &limits, bool warns = false,
                               const QString &more = QString()) {
+        if (active_.controllers[0].kind == DeviceKind::Arduino)
+            return health().set(name, HealthLevel::Ok, "an Arduino does not measure it");
         if (!known)
             return health().set(name, HealthLevel::Stale, "no controller has reported it");
         const HealthLevel level = toHealth(told_.levels[item]);
@@ -134,6 +146,9 @@ bool MotorControl::isReady() const {
 
 MotorState MotorControl::state() const {
     const WheelLayout &layout = active_.drive.layout;
+    double timeout_s = 0;
+    for (const Telemetry::Controller &c : told_.controllers)
+        timeout_s = std::max(timeout_s, c.timeout_s);
     return {isReady(),
             standingOf(told_),
             told_.latch.has(Drive::emergencyCause),
@@ -144,7 +159,8 @@ MotorState MotorControl::state() const {
             layout.twist(told_.setPoint),
             wheelsOf(told_, layout),
             told_.counterJumps,
-            told_.controllers,
+            active_.longestWay_m(timeout_s),
+            {told_.controllers.begin(), told_.controllers.end()},
             cycleOf(told_),
             gauge_.state()};
 }

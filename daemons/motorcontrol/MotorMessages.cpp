@@ -11,8 +11,8 @@
 namespace hermes {
 
 // A struct of the protocol: its fields are looked for here.
-Fields<roboclaw::Bus::Counts> fieldsOf(Of<roboclaw::Bus::Counts>) {
-    using C = roboclaw::Bus::Counts;
+Fields<drive::Bus::Counts> fieldsOf(Of<drive::Bus::Counts>) {
+    using C = drive::Bus::Counts;
     return Fields<C>()
         .add("requests", &C::sent, "Sent, repetitions too")
         .add("answers", &C::done, "That were taken")
@@ -54,7 +54,7 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
     PowerMessage message;
     message.battery = battery;
     for (const Telemetry::Controller &controller : t.controllers) {
-        const ControllerReadings &r = controller.readings;
+        const drive::Readings &r = controller.readings;
         QStringList meanings;
         for (quint32 bit = 1; bit != 0; bit <<= 1) {
             if (r.status & bit)
@@ -68,15 +68,15 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
 
 Result<BatteryReading> batteryOf(const Telemetry &t) {
     BatteryReading reading;
-    for (std::size_t i = 0; i < controllerCount; ++i) {
+    for (std::size_t i = 0; i < t.controllers.size(); ++i) {
         const Telemetry::Controller &controller = t.controllers[i];
-        const ControllerReadings &r = controller.readings;
+        const drive::Readings &r = controller.readings;
         if (!controller.ready || !r.complete) // what its motors draw is not known
             return Error(ErrorCode::NotReady, "no controller tells voltage and current");
         if (!r.duty)
             return Error(ErrorCode::DeviceFault,
                          controller.name + ' ' +
-                             failureText(roboclaw::Command::ReadPwm, roboclaw::Bus::Result::TimedOut, true));
+                             failureText({"48 (duties)"}, drive::Bus::Result::TimedOut, true));
         reading.voltages[i] = r.battery_v;
         for (std::size_t motor = 0; motor < 2; ++motor) // a bridge takes what its duty lets through
             reading.motors_a += std::abs(r.current_a[motor] * (*r.duty)[motor]);
@@ -95,12 +95,11 @@ CycleState cycleOf(const Telemetry &t) {
 Standing standingOf(const Telemetry &t) {
     Standing standing;
     QStringList texts;
-    for (std::size_t i = 0; i < controllerCount; ++i) {
-        const Telemetry::Controller &c = t.controllers[i];
-        standing.controllers[i] = {c.name, c.stands, {}};
+    for (const Telemetry::Controller &c : t.controllers) {
+        standing.controllers.push_back({c.name, c.stands, {}});
         if (c.stands)
             continue;
-        QString &reason = standing.controllers[i].reason;
+        QString &reason = standing.controllers.back().reason;
         reason =
             c.error.isEmpty()
                 ? QString("its wheels turn, or it was not read since: its line may be silent for another one")
@@ -167,6 +166,7 @@ Fields<Telemetry::Controller> fieldsOf(Of<Telemetry::Controller>) {
         .add("version", &C::version, "Of its firmware")
         .include(&C::counts)
         .add("stray_bytes", &C::strayBytes, "On its line, when none was awaited")
+        .add("timeout_s", &C::timeout_s, "Without a command for so long it stops by itself", "s")
         .add("rate_hz", &C::rate_Hz, "Of readings that its line gives; 0: not known", "Hz")
         .add("overruns", &C::overruns, "Cycles that began before the encoders of the last were read");
 }
@@ -184,6 +184,9 @@ Fields<MotorState> fieldsOf(Of<MotorState>) {
         .add("set_point", &S::setPoint, "The velocity on the way there")
         .add("wheels", &S::wheels, "As in the topic wheels")
         .add("counter_jumps", &S::counterJumps, "Times that a controller lost its counts")
+        .add("longest_way_m", &S::longestWay_m,
+             "From motion.vx, when this program dies: until the controllers stop by themselves, and braking",
+             "m")
         .add("controllers", &S::controllers, "Each, with its traffic")
         .add("cycle", &S::cycle, "How punctual it is")
         .add("battery", &S::battery, "How full it is, and how long it lasts");

@@ -26,7 +26,7 @@ struct Standing {
         QString reason; ///< why not
     };
     StandConfirmation all;
-    std::array<Controller, controllerCount> controllers;
+    std::vector<Controller> controllers;
 };
 
 /// How punctual the drive loop is.
@@ -47,7 +47,8 @@ struct MotorState {
     Twist2D twist, target, setPoint;
     WheelsMessage wheels;
     quint64 counterJumps = 0;
-    std::array<Telemetry::Controller, controllerCount> controllers;
+    double longestWay_m = 0;
+    std::vector<Telemetry::Controller> controllers;
     CycleState cycle;
     BatteryState battery;
 };

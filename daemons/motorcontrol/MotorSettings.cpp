@@ -2,6 +2,8 @@
 
 #include "common/interface/InterfaceUrl.h"
 #include "common/settings/SettingsTable.h"
+#include "protocol/drive/ArduinoDevice.h"
+#include "protocol/roboclaw/Device.h"
 #include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
@@ -24,7 +26,7 @@ struct WheelPlace {
 /// The settings, and what is checked and made of them.
 struct MotorTable : SettingsTable {
     MotorSettings s;
-    QString layout = "mecanum";
+    QString kind = "roboclaw", layout = "mecanum";
     WheelGeometry frame;
     std::array<WheelPlace, wheelCount> wheels{{{1, 1}, {1, 2}, {2, 1}, {2, 2}}};
     double motorShare = 0.95;
@@ -41,10 +43,20 @@ private:
     void addFaults();
     void addBattery();
     void checkWatch();
+    void checkDevices();
+    bool isArduino() const { return kind == "arduino"; }
+    /// The wheels that have a motor of their own: all, or those in front.
+    int driven() const { return isArduino() ? 2 : wheelCount; }
 };
 
 MotorTable::MotorTable() {
     group("Controllers");
+    add("controllers.kind", kind,
+        "What they are: two RoboClaws, or one Arduino with the text protocol of ros_arduino_bridge that "
+        "turns "
+        "two wheels")
+        .choices({"roboclaw", "arduino"})
+        .appliesOnRestart();
     for (int i = 0; i < controllerCount; ++i) {
         const QString at = QString("controllers.%1.").arg(i + 1);
         add(qPrintable(at + "url"), s.controllers[i].url,
@@ -56,7 +68,9 @@ MotorTable::MotorTable() {
             .appliesOnRestart();
     }
     add("controllers.timeout_s", s.serialTimeout_s,
-        "Without a byte for so long the controllers stop by themselves", "s", 0.1, 0.5)
+        "Without a byte for so long the controllers stop by themselves; an Arduino, which cannot be told, "
+        "without a set-point for 2 s",
+        "s", 0.1, 2)
         .step(0.1);
     group("PID");
     add("pid.p", s.pid.p, "Proportional part of the controllers' velocity control", "", 0, 1000);
@@ -142,13 +156,13 @@ bool isLine(const QString &url) {
 }
 
 void MotorTable::check() {
-    const auto &[first, second] = s.controllers;
+    const ControllerAddress &first = s.controllers[0], &second = s.controllers[1];
     for (const ControllerAddress &controller : s.controllers)
         require(isLine(controller.url), controller.url,
                 "a line, as serial:///dev/ttyACM0?baud=115200 or, of a serial server, tcp://HOST:PORT");
-    require(first.url != second.url || first.address != second.address, second.address,
+    require(isArduino() || first.url != second.url || first.address != second.address, second.address,
             "another address than that of controller 1, which is on the same line");
-    for (auto wheel = wheels.begin(); wheel != wheels.end(); ++wheel)
+    for (auto wheel = wheels.begin(); wheel != wheels.begin() + driven(); ++wheel)
         require(std::none_of(wheels.begin(), wheel,
                              [wheel](const WheelPlace &other) {
                                  return other.controller == wheel->controller && other.motor == wheel->motor;
@@ -161,6 +175,25 @@ void MotorTable::check() {
     notBelow(s.temperature.fault, s.temperature.warning);
     notAbove(s.encoder.moving, s.encoder.commanded);
     checkWatch();
+    checkDevices();
+}
+
+// What the controllers can do.
+void MotorTable::checkDevices() {
+    using drive::ArduinoDevice;
+    if (!isArduino())
+        return require(s.serialTimeout_s <= roboclaw::Device::longestTimeout_s, s.serialTimeout_s,
+                       QString("at most %1 s").arg(roboclaw::Device::longestTimeout_s));
+    require(s.serialTimeout_s >= ArduinoDevice::timeout_s, s.serialTimeout_s,
+            QString("%1 s: an Arduino stops by itself no sooner").arg(ArduinoDevice::timeout_s));
+    require(layout == "differential", layout, "differential: an Arduino turns two wheels");
+    for (int i = 0; i < driven(); ++i)
+        require(wheels[i].controller == 1, wheels[i].controller, "1: there is one Arduino");
+    const double slowest = s.encoder.commanded * s.countsPerTurn / (2 * vectorlib::pi);
+    require(
+        slowest >= ArduinoDevice::framesPerSecond, s.encoder.commanded,
+        QString("at least %1 rad/s: an Arduino turns its wheels by whole counts in a thirtieth of a second")
+            .arg(s.encoder.commanded * ArduinoDevice::framesPerSecond / slowest, 0, 'g', 3));
 }
 
 // What watches the wheels sees each motion that matters, in time, and takes no braking for a fault
@@ -195,6 +228,11 @@ MotorSettings MotorTable::made() {
     std::transform(wheels.begin(), wheels.end(), s.wheels.begin(), [](const WheelPlace &wheel) {
         return WheelMount{wheel.controller - 1, wheel.motor - 1, wheel.reversed ? -1.0 : 1.0};
     });
+    if (isArduino()) {
+        s.controllers.resize(1);
+        s.controllers[0].kind = DeviceKind::Arduino;
+        std::copy_n(s.wheels.begin(), 2, s.wheels.begin() + 2); // behind: as in front
+    }
     s.current.hold_s = s.temperature.hold_s = s.battery.hold_s;
     s.encoder.deceleration = s.emergencyDeceleration / s.wheelRadius / 2; // motors lag behind
     return s;

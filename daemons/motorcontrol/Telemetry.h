@@ -13,12 +13,21 @@ struct Telemetry {
         QString name, error, version, interface;
         QString advice; ///< what a person should do about its line; empty when nothing
         bool ready = false;
-        bool stands = false; ///< has confirmed it: MotorController::stands()
-        double rate_Hz = 0;  ///< of readings; 0: not known
-        ControllerReadings readings;
-        roboclaw::Bus::Counts counts;
+        bool stands = false;  ///< has confirmed it: MotorController::stands()
+        double timeout_s = 0; ///< after which it stops by itself; see MotorController
+        double rate_Hz = 0;   ///< of readings; 0: not known
+        drive::Readings readings;
+        drive::Bus::Counts counts;
         quint64 strayBytes = 0; ///< on its line: they came when none was awaited
         quint64 overruns = 0;
+    };
+
+    /// Those that the robot has; they need no heap.
+    struct Controllers : std::array<Controller, controllerCount> {
+        std::size_t count = controllerCount;
+        std::size_t size() const { return count; }
+        iterator end() { return begin() + count; }
+        const_iterator end() const { return begin() + count; }
     };
 
     double stamp = 0, mono = 0; ///< of the readings behind pose and speeds
@@ -29,7 +38,7 @@ struct Telemetry {
     WheelValues target{}, setPoint{}, speeds{}, turns{}; ///< rad/s; turns: rad since the start
     double slip = 0;                                     ///< m/s
     quint64 counterJumps = 0;                            ///< motions that were no motions and were left out
-    std::array<Controller, controllerCount> controllers;
+    Controllers controllers;
     CycleStatistics cycle;
     bool realtime = false; ///< the cycle goes before all ordinary threads
     QString haltCause, haltReason;

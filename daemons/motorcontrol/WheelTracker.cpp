@@ -9,9 +9,7 @@ namespace hermes::motorcontrol {
 namespace {
 
 constexpr double silence_s = MotorController::lostAfter_s;
-// Without commands for so long wheels stand, even if they had their largest speed: the controllers' time-out
-// and the time that braking takes. No reading is so exact in its time as shortestRun_s.
-constexpr double longestRun_s = 1, shortestRun_s = 0.1;
+constexpr double shortestRun_s = 0.1; // no reading is so exact in its time
 
 // Both counters begin again.
 bool wasReset(const std::array<quint32, 2> &before, const std::array<quint32, 2> &now) {
@@ -22,18 +20,19 @@ bool wasReset(const std::array<quint32, 2> &before, const std::array<quint32, 2>
 } // namespace
 
 void WheelTracker::configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn,
-                             double maxSpeed) {
+                             double maxSpeed, double longestRun_s) {
     wheels_ = wheels;
     radiansPerCount_ = 2 * vectorlib::pi / countsPerTurn;
     maxSpeed_ = maxSpeed;
+    longestRun_s_ = longestRun_s;
 }
 
 bool WheelTracker::isPlausible(double turn, double gap) const {
-    return std::abs(turn) <= maxSpeed_ * std::clamp(gap, shortestRun_s, longestRun_s);
+    return std::abs(turn) <= maxSpeed_ * std::clamp(gap, shortestRun_s, longestRun_s_);
 }
 
 std::optional<WheelMotion>
-WheelTracker::update(const std::array<const ControllerReadings *, controllerCount> &readings) {
+WheelTracker::update(const std::array<const drive::Readings *, controllerCount> &readings) {
     for (int i = 0; i < controllerCount; ++i) {
         if (readings[i]->countsTime <= times_[i])
             return std::nullopt;
@@ -41,10 +40,12 @@ WheelTracker::update(const std::array<const ControllerReadings *, controllerCoun
     const auto countsBefore = counts_;
     const auto timesBefore = times_;
     const auto setupsBefore = setups_;
+    const auto restartsBefore = restarts_;
     for (int i = 0; i < controllerCount; ++i) {
         counts_[i] = readings[i]->counts;
         times_[i] = readings[i]->countsTime;
         setups_[i] = readings[i]->setups;
+        restarts_[i] = readings[i]->restarts;
     }
     if (std::find(timesBefore.begin(), timesBefore.end(), 0.0) != timesBefore.end())
         return std::nullopt;
@@ -60,7 +61,8 @@ WheelTracker::update(const std::array<const ControllerReadings *, controllerCoun
         motion.turns[i] = wheel.sign * counts * radiansPerCount_;
         motion.speeds[i] = motion.turns[i] / gap;
         const bool wasSilent = gap > silence_s || setups_[wheel.controller] != setupsBefore[wheel.controller];
-        const bool reset = wasSilent && wasReset(countsBefore[wheel.controller], counts_[wheel.controller]);
+        const bool reset = restarts_[wheel.controller] != restartsBefore[wheel.controller] ||
+                           (wasSilent && wasReset(countsBefore[wheel.controller], counts_[wheel.controller]));
         motion.plausible = motion.plausible && !reset && isPlausible(motion.turns[i], gap);
     }
     if (!motion.plausible)

@@ -20,22 +20,23 @@ struct WheelMotion {
 /// again: that is found by its counters, or by a motion that no wheel can do.
 class WheelTracker {
 public:
-    /// maxSpeed: rad/s that no wheel exceeds.
-    void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double maxSpeed);
+    /// maxSpeed: rad/s that no wheel exceeds. longestRun_s: without commands for so long wheels stand, even
+    /// if they had their largest speed: the controllers' time-out and the time that braking takes.
+    void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double maxSpeed,
+                   double longestRun_s = 1);
 
     /// Nothing until every controller has been read again, or at the first reading.
-    std::optional<WheelMotion>
-    update(const std::array<const ControllerReadings *, controllerCount> &readings);
+    std::optional<WheelMotion> update(const std::array<const drive::Readings *, controllerCount> &readings);
 
 private:
     bool isPlausible(double turn, double gap) const;
 
     std::array<WheelMount, wheelCount> wheels_;
     double radiansPerCount_ = 0;
-    double maxSpeed_ = 0;
+    double maxSpeed_ = 0, longestRun_s_ = 1;
     std::array<std::array<quint32, 2>, controllerCount> counts_{};
     std::array<double, controllerCount> times_{}; // 0: not read yet
-    std::array<int, controllerCount> setups_{};
+    std::array<int, controllerCount> setups_{}, restarts_{};
 };
 
 } // namespace hermes::motorcontrol

@@ -114,9 +114,9 @@ constexpr std::size_t crcSize = 2;
 
 } // namespace
 
-void ReplyParser::begin(const Request &request) {
-    layout_ = layoutOf(std::uint8_t(request.command));
-    requestCrc_ = crc16(request.bytes.data(), request.bytes.size());
+void ReplyParser::begin(const Bytes &request) {
+    layout_ = layoutOf(request[1]);
+    requestCrc_ = crc16(request.data(), request.size());
     bytes_.clear();
     reply_ = Reply();
     dialect_ = Dialect::Usual;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "protocol/drive/ReplyReader.h"
 #include "protocol/roboclaw/Command.h"
 
 #include <array>
@@ -23,28 +24,7 @@ constexpr std::uint16_t crc16(const std::uint8_t *data, std::size_t size, std::u
     return crc;
 }
 
-/// The bytes of one packet, without allocation.
-class Bytes {
-public:
-    const std::uint8_t *data() const { return data_.data(); }
-    std::size_t size() const { return size_; }
-    bool empty() const { return size_ == 0; }
-    std::uint8_t operator[](std::size_t i) const { return data_[i]; }
-    /// Beyond the capacity it is ignored; no packet is so long.
-    void push(std::uint8_t byte) {
-        if (size_ < data_.size())
-            data_[size_++] = byte;
-    }
-    void push16(std::uint16_t value) {
-        push(std::uint8_t(value >> 8));
-        push(std::uint8_t(value));
-    }
-    void clear() { size_ = 0; }
-
-private:
-    std::array<std::uint8_t, 64> data_{};
-    std::size_t size_ = 0;
-};
+using drive::Bytes;
 
 /// The numbers of a packet in the order of its fields.
 class Values {
@@ -110,29 +90,20 @@ Values unpack(std::string_view fields, const std::uint8_t *data);
 /// the direction (fact sheet, section 5).
 std::int32_t signedSpeed(const Reply &reply);
 
-/// Reads the answer to one request, byte for byte. Knows no time: the caller gives up when an answer is late,
-/// and tells when the line has fallen silent.
-class ReplyParser {
+/// Reads the answers of a controller; after Done reply() holds the last one.
+class ReplyParser : public drive::ReplyReader {
 public:
-    enum class Result {
-        Incomplete,
-        Done,      ///< reply() holds the answer
-        BadCrc,    ///< the answer, or the request on its way, was damaged
-        Unexpected ///< no acknowledgement, or a text without its end
-    };
-
-    /// Awaits the answer to this request and forgets what came before.
-    void begin(const Request &request);
-    /// One byte more. What follows the end of an answer must not be fed.
-    Result feed(std::uint8_t byte);
-    /// The line has been silent for 10 ms or more: what came is all. Done when it is a whole answer of the
-    /// firmware whose answer is shorter (ReadStatus with 16 bits, ReadMainLimits).
-    Result silence();
+    void begin(const Bytes &request) override;
+    void begin(const Request &request) { begin(request.bytes); }
+    Result feed(std::uint8_t byte) override;
+    /// Done when it is a whole answer of the firmware whose answer is shorter (ReadStatus with 16 bits,
+    /// ReadMainLimits).
+    Result silence() override;
+    std::size_t received() const override { return bytes_.size(); }
 
     const Reply &reply() const { return reply_; }
     /// Which of the layouts the answer has.
     Dialect dialect() const { return dialect_; }
-    std::size_t received() const { return bytes_.size(); }
 
 private:
     Result feedText();

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/BatteryGauge.h"
 #include "daemons/motorcontrol/MotorMessages.h"
 #include "daemons/simulator/Drivetrain.h"
+#include "protocol/roboclaw/Device.h"
 #include "protocol/wire/Fields.h"
 
 using namespace hermes;
@@ -125,13 +126,17 @@ private Q_SLOTS:
     }
 
     void dutiesAreSharesOfOne() {
-        int readPwm = 0;
-        while (ControllerReadings::slowCommand(readPwm) != roboclaw::Command::ReadPwm)
-            ++readPwm;
-        roboclaw::Bus::Outcome outcome;
-        outcome.reply.values = {-32768, 32767};
-        ControllerReadings readings;
-        readings.takeSlow(readPwm, outcome);
+        roboclaw::Device device(0x80);
+        drive::Command read{drive::Command::Kind::ReadSlow};
+        while (device.isVital(read))
+            ++read.number;
+        const auto request = roboclaw::Request::make(0x80, roboclaw::Command::ReadPwm);
+        const auto answer = roboclaw::encodeReply(*request, {-32768, 32767});
+        device.reader().begin(device.bytes(read));
+        for (std::size_t i = 0; i < answer->size(); ++i)
+            device.reader().feed((*answer)[i]);
+        drive::Readings readings;
+        QVERIFY(device.take(read, readings).empty());
         QVERIFY(readings.duty == (std::array{-1.0, 1.0}));
     }
 

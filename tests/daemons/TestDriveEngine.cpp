@@ -75,7 +75,7 @@ private:
     static quint64 failures(VirtualDrive &drive) {
         quint64 all = drive.line.strayBytes();
         for (int i = 0; i < controllerCount; ++i) {
-            const roboclaw::Bus::Counts &counts = drive.line.counts(drive.engine.controller(i));
+            const auto &counts = drive.line.counts(drive.engine.controller(i));
             all += counts.timeouts + counts.crcErrors + counts.unexpected;
         }
         return all;

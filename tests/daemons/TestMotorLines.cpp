@@ -2,13 +2,15 @@
 #include "common/interface/SerialInterface.h"
 #include "daemons/simulator/DeviceLines.h"
 #include "daemons/simulator/Simulation.h"
-#include "protocol/roboclaw/Bus.h"
+#include "protocol/drive/Bus.h"
+#include "protocol/roboclaw/Packet.h"
 
 #include <cerrno>
 
 using namespace hermes;
 using namespace hermes::simulator;
 using namespace hermes::roboclaw;
+using drive::Bus;
 
 /// The host's and the device's end of a serial line, with true bytes between them.
 struct Robot {
@@ -19,6 +21,7 @@ struct Robot {
                                   std::size_t(bytes.size()), now);
     }};
     Bus bus;
+    ReplyParser parser;
     std::unique_ptr<SerialInterface> serial;
     QTimer timer;
 
@@ -49,8 +52,8 @@ struct Robot {
     Bus::Outcome ask(std::uint8_t address, Command command, const Values &values = {}) {
         Bus::Outcome result;
         bool ended = false;
-        bus.submit(*Request::make(address, command, values),
-                   [&](const Request &, const Bus::Outcome &outcome) {
+        bus.submit({&parser, Request::make(address, command, values)->bytes, address},
+                   [&](const Bus::Outcome &outcome) {
                        result = outcome;
                        ended = true;
                    });
@@ -98,7 +101,7 @@ private Q_SLOTS:
         QVERIFY(robot.connectEnds());
         const auto version = robot.ask(0x80, Command::ReadVersion);
         QCOMPARE(version.result, Bus::Result::Done);
-        QCOMPARE(QByteArray(version.reply.text.data()), QByteArray("RoboClaw 2x45A v4.2.8"));
+        QCOMPARE(QByteArray(robot.parser.reply().text.data()), QByteArray("RoboClaw 2x45A v4.2.8"));
         std::vector<double> waits;
         for (int i = 0; i < 200; ++i) {
             const std::uint8_t address = i % 2 ? 0x80 : 0x81;
@@ -144,7 +147,7 @@ private Q_SLOTS:
         QTRY_VERIFY(robot.serial->isOpen());
         const auto counts = robot.ask(0x80, Command::ReadEncoders);
         QCOMPARE(counts.result, Bus::Result::Done);
-        QCOMPARE(counts.reply[0], std::int64_t(1234));
+        QCOMPARE(robot.parser.reply()[0], std::int64_t(1234));
     }
 
     void motorsAtAnotherSpeedHearAndAnswerGarbage() {

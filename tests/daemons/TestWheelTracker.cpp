@@ -58,11 +58,11 @@ private:
     std::optional<WheelMotion> read(double time, quint32 first, quint32 second) {
         readings_[0].counts = {first, first};
         readings_[1].counts = {second, second};
-        for (ControllerReadings &readings : readings_)
+        for (drive::Readings &readings : readings_)
             readings.countsTime = time;
         return tracker_.update({&readings_[0], &readings_[1]});
     }
 
     WheelTracker tracker_;
-    std::array<ControllerReadings, 2> readings_;
+    std::array<drive::Readings, 2> readings_;
 };

@@ -1,9 +1,10 @@
 #include "tests/fuzz/FuzzInput.h"
 
-#include "protocol/roboclaw/Bus.h"
+#include "protocol/drive/Bus.h"
 #include "protocol/roboclaw/Packet.h"
 
 using namespace hermes::roboclaw;
+using hermes::drive::Bus;
 
 namespace {
 
@@ -33,6 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     FuzzInput in(data, size);
     RequestParser device(in.flag() ? Dialect::Usual : Dialect::Other);
     Bus bus;
+    ReplyParser parser;
     double now = 0;
     std::uint64_t submitted = 0, ended = 0;
     for (int i = 0; in.left() > 0 && i < 500; ++i) {
@@ -48,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
                               takeValues(in, layout->isRead ? layout->arguments : layout->fields));
             FUZZ_REQUIRE(request);
             submitted += bus.submit(
-                *request, [&ended](const Request &, const Bus::Outcome &) { ++ended; },
+                {&parser, request->bytes, request->address}, [&ended](const Bus::Outcome &) { ++ended; },
                 Bus::Urgency(in.flag()));
         } else if (kind % 8 == 1) {
             bus.cancel();

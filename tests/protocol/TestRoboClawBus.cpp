@@ -1,7 +1,8 @@
-#include "protocol/roboclaw/Bus.h"
+#include "protocol/drive/Bus.h"
 #include "protocol/roboclaw/Packet.h"
 
 using namespace hermes::roboclaw;
+using hermes::drive::Bus;
 
 class TestRoboClawBus : public QObject {
     Q_OBJECT
@@ -12,19 +13,24 @@ class TestRoboClawBus : public QObject {
             : bus(options) {}
 
         Bus bus;
+        ReplyParser parser;
         double now = 0;
         std::vector<std::string> ended; ///< "COMMAND result attempts"
         std::vector<int> sent;          ///< commands
 
         bool submit(Command command, const Values &values = {}, Bus::Urgency urgency = Bus::Urgency::Normal,
                     std::uint8_t address = 0x80) {
-            const auto handler = [this](const Request &request, const Bus::Outcome &outcome) {
+            const auto handler = [this, command](const Bus::Outcome &outcome) {
                 static const char *const results[] = {"done",       "timed out", "bad CRC",
                                                       "unexpected", "cancelled", "line closed"};
-                ended.push_back(std::to_string(int(request.command)) + ' ' + results[int(outcome.result)] +
-                                ' ' + std::to_string(outcome.attempts));
+                ended.push_back(std::to_string(int(command)) + ' ' + results[int(outcome.result)] + ' ' +
+                                std::to_string(outcome.attempts));
             };
-            return bus.submit(*Request::make(address, command, values), handler, urgency);
+            return bus.submit(request(command, values, address), handler, urgency);
+        }
+        hermes::drive::Request request(Command command, const Values &values = {},
+                                       std::uint8_t address = 0x80) {
+            return {&parser, Request::make(address, command, values)->bytes, address};
         }
         bool poll() {
             const Bytes *bytes = bus.poll(now);
@@ -210,11 +216,10 @@ private Q_SLOTS:
         Line line;
         std::int64_t status = -1;
         auto dialect = Dialect::Usual;
-        line.bus.submit(*Request::make(0x80, Command::ReadStatus),
-                        [&](const Request &, const Bus::Outcome &o) {
-                            status = o.reply[0];
-                            dialect = o.dialect;
-                        });
+        line.bus.submit(line.request(Command::ReadStatus), [&](const Bus::Outcome &) {
+            status = line.parser.reply()[0];
+            dialect = line.parser.dialect();
+        });
         QVERIFY(line.poll());
         line.feed("08048D1A");
         line.now = line.bus.deadline();
@@ -240,12 +245,11 @@ private Q_SLOTS:
     void handlersMaySubmit() {
         Line line;
         int left = 5;
-        std::function<void(const Request &, const Bus::Outcome &)> again = [&](const Request &request,
-                                                                               const Bus::Outcome &) {
+        Bus::Handler again = [&](const Bus::Outcome &) {
             if (--left > 0)
-                line.bus.submit(request, again);
+                line.bus.submit(line.request(Command::ResetEncoders), again);
         };
-        line.bus.submit(*Request::make(0x80, Command::ResetEncoders), again);
+        line.bus.submit(line.request(Command::ResetEncoders), again);
         while (line.poll())
             line.feed("FF");
         QCOMPARE(left, 0);

@@ -1,15 +1,22 @@
 #pragma once
 
-#include "protocol/roboclaw/Packet.h"
+#include "protocol/drive/ReplyReader.h"
 
 #include <array>
 #include <deque>
 #include <functional>
 #include <utility>
 
-namespace hermes::roboclaw {
+namespace hermes::drive {
 
-/// The host's side of one line with up to eight controllers: sends one request at a time, awaits its answer,
+/// Bytes to a device, and who reads its answer; the reader must live until then.
+struct Request {
+    ReplyReader *reader = nullptr;
+    Bytes bytes;
+    std::uint8_t address = 0; ///< modulo 8 it tells which device on the line it is
+};
+
+/// The host's side of one line with up to eight devices: sends one request at a time, awaits its answer,
 /// repeats it when the answer is late or damaged, and counts. Knows no clock and no line: the caller gives
 /// the time (seconds of any monotonic clock), writes what poll() gives and feeds what it reads. A request may
 /// be carried out twice when its acknowledgement is lost; all commands that set something allow it.
@@ -19,15 +26,13 @@ public:
         double replyTimeout =
             0.03; ///< from sending to the whole answer; seconds. FTDI adapters hold bytes 16 ms
         double quiet =
-            0.011; ///< silence after a failure; seconds. A controller drops a part of a packet after 10 ms
+            0.011; ///< silence after a failure; seconds. A RoboClaw drops a part of a packet after 10 ms
         int retries = 2;
         std::size_t queue = 64; ///< requests that may wait
     };
     enum class Result { Done, TimedOut, BadCrc, Unexpected, Cancelled, LineClosed };
     struct Outcome {
         Result result = Result::Done; ///< of the last attempt
-        Reply reply;                  ///< only when Done
-        Dialect dialect = Dialect::Usual;
         int attempts = 0;
         double sent = 0;     ///< when the last attempt was sent
         double received = 0; ///< when its answer was whole
@@ -42,7 +47,8 @@ public:
         std::uint64_t failed = 0; ///< requests given up
     };
     enum class Urgency { Normal, First };
-    using Handler = std::function<void(const Request &, const Outcome &)>;
+    /// When it is called with Done, the reader of the request holds the answer.
+    using Handler = std::function<void(const Outcome &)>;
 
     Bus() = default;
     explicit Bus(const Options &options)
@@ -50,7 +56,7 @@ public:
 
     /// Queues a request; handler is called once, from feed(), poll(), cancel() or setOpen(). False, and
     /// handler is not called, when too many wait. First goes before all that are not, and their repetitions,
-    /// and does not wait for the end of foreign bytes: a controller does not hear them.
+    /// and does not wait for the end of foreign bytes: a device does not hear them.
     /// replyTimeout: seconds; that of the options when it is 0.
     bool submit(const Request &request, Handler handler = {}, Urgency urgency = Urgency::Normal,
                 double replyTimeout = 0);
@@ -73,7 +79,7 @@ public:
     double quietUntil() const { return resume_; }
     /// The same of what is First.
     double pauseUntil() const { return pause_; }
-    /// Requests to one address, 0x80 to 0x87.
+    /// Requests to one address.
     const Counts &counts(std::uint8_t address) const { return counts_[address % 8]; }
     /// Bytes that came when none was awaited.
     std::uint64_t strayBytes() const { return stray_; }
@@ -88,12 +94,12 @@ private:
     };
 
     std::deque<Entry>::iterator behindUrgent();
-    void attemptEnded(ReplyParser::Result result, double now);
+    void attemptEnded(ReplyReader::Result result, double now);
     void attemptFailed(Result result, double now);
     void endAll(Result result) {
         const std::deque<Entry> ended = std::exchange(queue_, {}); // handlers may submit
         for (const Entry &entry : ended)
-            finish(entry, {result, {}, Dialect::Usual, entry.attempts, 0, 0});
+            finish(entry, {result, entry.attempts, 0, 0});
     }
     void finish(Entry entry, const Outcome &outcome);
     double earliest(const Entry &entry) const { return entry.urgency == Urgency::First ? pause_ : resume_; }
@@ -102,7 +108,6 @@ private:
     Options options_;
     std::deque<Entry> queue_;
     Entry current_; ///< while awaiting
-    ReplyParser parser_;
     bool open_ = true;
     bool awaiting_ = false;
     bool repeats_ = true; ///< the current one was not cancelled
@@ -115,4 +120,4 @@ private:
     std::uint64_t stray_ = 0;
 };
 
-} // namespace hermes::roboclaw
+} // namespace hermes::drive

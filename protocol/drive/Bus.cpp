@@ -1,9 +1,9 @@
-#include "protocol/roboclaw/Bus.h"
+#include "protocol/drive/Bus.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace hermes::roboclaw {
+namespace hermes::drive {
 
 namespace {
 
@@ -38,7 +38,7 @@ void Bus::setOpen(bool open) {
 void Bus::finish(Entry entry, const Outcome &outcome) {
     ++(outcome.result == Result::Done ? countsOf(entry).done : countsOf(entry).failed);
     if (entry.handler)
-        entry.handler(entry.request, outcome);
+        entry.handler(outcome);
 }
 
 const Bytes *Bus::poll(double now) {
@@ -46,9 +46,9 @@ const Bytes *Bus::poll(double now) {
         endAll(Result::LineClosed);
         return nullptr;
     }
-    if (awaiting_ && parser_.received() > 0 && now - lastByte_ >= options_.quiet) {
+    if (awaiting_ && current_.request.reader->received() > 0 && now - lastByte_ >= options_.quiet) {
         lastByte_ = never; // once for each silence
-        attemptEnded(parser_.silence(), now);
+        attemptEnded(current_.request.reader->silence(), now);
     }
     if (awaiting_ && now - sent_ >= current_.replyTimeout)
         attemptFailed(Result::TimedOut, now);
@@ -60,7 +60,7 @@ const Bytes *Bus::poll(double now) {
     sent_ = now;
     ++countsOf(current_).sent;
     countsOf(current_).retries += current_.attempts++ > 0;
-    parser_.begin(current_.request);
+    current_.request.reader->begin(current_.request.bytes);
     return &current_.request.bytes;
 }
 
@@ -74,22 +74,22 @@ void Bus::feed(const std::uint8_t *data, std::size_t size, double now) {
             continue;
         }
         lastByte_ = now;
-        attemptEnded(parser_.feed(data[i]), now);
+        attemptEnded(current_.request.reader->feed(data[i]), now);
     }
 }
 
-void Bus::attemptEnded(ReplyParser::Result result, double now) {
+void Bus::attemptEnded(ReplyReader::Result result, double now) {
     switch (result) {
-    case ReplyParser::Result::Incomplete:
+    case ReplyReader::Result::Incomplete:
         return;
-    case ReplyParser::Result::BadCrc:
+    case ReplyReader::Result::BadCrc:
         return attemptFailed(Result::BadCrc, now);
-    case ReplyParser::Result::Unexpected:
+    case ReplyReader::Result::Unexpected:
         return attemptFailed(Result::Unexpected, now);
-    case ReplyParser::Result::Done:
+    case ReplyReader::Result::Done:
         awaiting_ = false;
         Entry entry = std::move(current_);
-        const Outcome outcome{Result::Done, parser_.reply(), parser_.dialect(), entry.attempts, sent_, now};
+        const Outcome outcome{Result::Done, entry.attempts, sent_, now};
         finish(std::move(entry), outcome);
     }
 }
@@ -106,14 +106,14 @@ void Bus::attemptFailed(Result result, double now) {
     if (repeats_ && entry.attempts <= options_.retries)
         queue_.insert(entry.urgency == Urgency::First ? queue_.begin() : behindUrgent(), std::move(entry));
     else
-        finish(entry, {result, {}, Dialect::Usual, entry.attempts, sent_, now});
+        finish(entry, {result, entry.attempts, sent_, now});
 }
 
 double Bus::deadline() const {
     if (!awaiting_)
         return queue_.empty() ? never : earliest(queue_.front());
     const double timeout = sent_ + current_.replyTimeout;
-    return parser_.received() > 0 ? std::min(timeout, lastByte_ + options_.quiet) : timeout;
+    return current_.request.reader->received() > 0 ? std::min(timeout, lastByte_ + options_.quiet) : timeout;
 }
 
-} // namespace hermes::roboclaw
+} // namespace hermes::drive
