@@ -5,7 +5,6 @@
 
 #include <QEventLoop>
 #include <QTimer>
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -16,9 +15,9 @@ QString textOf(const Result<QJsonValue> &answer) {
     return answer ? "accepted" : QString("%1 (%2)").arg(answer.error().message).arg(answer.error().code);
 }
 
-bool isMoving(const OdometryRecord::Entry &entry, const OdometryRecord::Entry &before) {
-    const Twist2D &twist = entry.data.twist;
-    const Pose2D moved = before.data.pose.inverse() * entry.data.pose;
+bool isMoving(const OdometryMessage &message, const Pose2D &before) {
+    const Twist2D &twist = message.twist;
+    const Pose2D moved = before.inverse() * message.pose;
     return std::hypot(twist.vx, twist.vy) > 0.01 || std::abs(twist.omega) > 0.03 ||
            std::hypot(moved.x, moved.y) > 5e-4 || std::abs(moved.theta) > 2e-3;
 }
@@ -28,14 +27,6 @@ bool isMoving(const OdometryRecord::Entry &entry, const OdometryRecord::Entry &b
 Conformance::Conformance(const Arguments &arguments)
     : arguments_(arguments) {
     QObject::connect(&signals_, &SignalWatcher::received, &signals_, [this] { isEnded_ = true; });
-}
-
-void Conformance::must(const QString &what, bool holds, const QString &expected, const QString &found) {
-    tell(holds ? "ok" : "fail", what, expected, found);
-}
-
-void Conformance::should(const QString &what, bool holds, const QString &expected, const QString &found) {
-    tell(holds ? "ok" : "warn", what, expected, found);
 }
 
 void Conformance::tell(const QString &level, const QString &what, const QString &expected,
@@ -63,35 +54,16 @@ void Conformance::refused(const QString &what, const Result<QJsonValue> &answer,
          "refused with " + numbers.join(" or "), textOf(answer));
 }
 
-void Conformance::stamps(const std::vector<double> &stamps, std::vector<double> ages, double oldest_s) {
-    constexpr double clockError_s = 0.02;
-    double step = stamps[1] - stamps[0];
-    for (std::size_t i = 1; i < stamps.size(); ++i)
-        step = std::min(step, stamps[i] - stamps[i - 1]);
-    std::sort(ages.begin(), ages.end());
-    const double usual = ages[ages.size() / 2];
-    must("stamps", step > 0 && ages.front() > -clockError_s && usual < oldest_s,
-         QString("each later than the one before, 0 to %1 s old by the clock of this computer")
-             .arg(oldest_s, 0, 'f', 2),
-         QString("%1 s later at least; %2 s old when they come, %3 s at least")
-             .arg(step, 0, 'f', 3)
-             .arg(usual, 0, 'f', 3)
-             .arg(ages.front(), 0, 'f', 3));
-}
-
 Result<void> Conformance::connectTo(Client &client, const QString &name) {
     const auto address = daemonAddress(name, arguments_.host);
     return address ? connectOnce(client, *address, arguments_.timeout) : address.error();
-}
-
-Result<QJsonValue> Conformance::call(Client &client, const QString &method, const QJsonObject &params) {
-    return client.callAndWait(method, params, arguments_.timeout);
 }
 
 void Conformance::pass(double seconds) {
     QEventLoop loop;
     QObject::connect(&signals_, &SignalWatcher::received, &loop, &QEventLoop::quit);
     QTimer::singleShot(int(std::ceil(seconds * 1000)), Qt::PreciseTimer, &loop, &QEventLoop::quit);
+    isEnded_ = isEnded_ || readerIsGone();
     if (!isEnded_)
         loop.exec();
 }
@@ -112,7 +84,7 @@ double Conformance::standsAfter(const OdometryRecord &odometry, double since, do
     double last = since;
     for (std::size_t next = 1; monotonicNow() < since + most_s && !isEnded_; pass(0.02)) {
         for (; next < all.size(); ++next)
-            if (all[next].came > since && isMoving(all[next], all[next - 1]))
+            if (all[next].came > since && isMoving(all[next].data, all[next - 1].data.pose))
                 last = all[next].came;
         if (!all.empty() && all.back().came > last + still_s)
             return last - since;
@@ -122,7 +94,8 @@ double Conformance::standsAfter(const OdometryRecord &odometry, double since, do
 
 Result<void> Conformance::result() const {
     if (isEnded_)
-        return Error(ErrorCode::NotReady, "ended by a signal before all was tried");
+        return Error(ErrorCode::NotReady,
+                     "ended before all was tried, by a signal or because nobody reads this");
     const QString counts = QString("%1 hold, %2 warnings").arg(told_.value("ok")).arg(told_.value("warn"));
     if (const int failures = told_.value("fail"); failures > 0)
         return Error(ErrorCode::DeviceFault, QString("%1 do not hold; %2").arg(failures).arg(counts));
