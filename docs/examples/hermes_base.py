@@ -59,6 +59,10 @@ class Base(Daemon):
         if self.driver is self.client:
             self.end_control()
 
+    def gone(self, client):
+        if client is self.driver:
+            self.end_control()
+
     def drive(self, vx, vy, omega, stamp):
         if self.latched:
             raise Refusal(-32005, "the emergency stop is latched; motor.reset_estop releases it")
@@ -79,7 +83,7 @@ class Base(Daemon):
 
     async def emergency_stop(self, wait_s, client):  # pylint: disable=unused-argument
         self.presser = self.client if self.presser is self.client or not self.latched else None  # who alone pressed it
-        self.stopped = self.driver or self.stopped
+        self.stopped = self.stopped if self.latched else self.driver
         self.latched, self.pressed = True, time.monotonic()
         self.end_control()
         return await self.standing(wait_s)

@@ -129,6 +129,7 @@ class Daemon:
             for number in [n for n, s in self.subscriptions.items() if s["client"] is client]:
                 del self.subscriptions[number]
             client.close()
+            self.gone(client)
 
     async def _answer(self, line):
         """The reply to a request; None: it is a notification."""
@@ -153,6 +154,9 @@ class Daemon:
         if isinstance(request, dict) and "id" not in request:
             return None
         return {"id": request["id"] if isinstance(request, dict) else None, **reply}
+
+    def gone(self, client):
+        """Is called when a client has gone, which was self.client in its commands."""
 
     def rpc_discover(self):
         methods = [{"name": name, "summary": summary, "result": {"name": "result", "schema": {}},

@@ -113,7 +113,9 @@ private:
             widest = std::max(widest, viewOf(scan));
             return pointsOf(scan) < 2 || viewOf(scan) > 0;
         });
-        most("field of view", QString("%1 degrees in all, or partial: true").arg(widest, 0, 'f', 0),
+        should("field of view", widest >= 90, "90 degrees at least",
+               QString("%1 degrees").arg(widest, 0, 'f', 0));
+        most("scans with it", "all, or partial: true",
              [&](Scan scan) { return scan.header.partial || viewOf(scan) > 0.7 * widest; });
     }
 

@@ -34,7 +34,7 @@ void Conformance::tell(const QString &level, const QString &what, const QString 
     if (isEnded_)
         return;
     ++told_[level];
-    const QString known = found.isEmpty() ? level == "ok" ? "so it is" : "it is not so" : found;
+    const QString known = found.isEmpty() ? level == "ok" ? "as expected" : "not so" : found;
     const QString rest = level == "ok" ? QString() : ", expected: " + expected;
     print(arguments_, QJsonObject{{"level", level}, {"what", what}, {"found", known}, {"expected", expected}},
           printable(QString("%1  %2: %3%4").arg(level, -4).arg(what, known, rest)));

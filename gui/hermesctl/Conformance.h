@@ -19,10 +19,11 @@ struct TopicRecord {
     Client &client;
     std::vector<Entry> all{};
     QString fault{}; ///< of the last message that is none
+    int handle = 0;
 
     TopicRecord(Client &daemon, const QString &topic)
         : client(daemon) {
-        client.subscribe(topic, {{"queue", 100}}, [this](const TopicUpdate &update) {
+        handle = client.subscribe(topic, {{"queue", 100}}, [this](const TopicUpdate &update) {
             ReadReport report;
             auto message = readMessage<Message>(update.data, report);
             double stamp = update.stamp;
@@ -34,6 +35,7 @@ struct TopicRecord {
                 all.push_back({monotonicNow(), stamp, stampNow() - stamp, std::move(*message)});
         });
     }
+    ~TopicRecord() { client.unsubscribe(handle); }
     TopicRecord(const TopicRecord &) = delete;
     TopicRecord &operator=(const TopicRecord &) = delete;
 
@@ -65,7 +67,7 @@ protected:
         must(topic, isThere && unreadable.isEmpty(), "messages as in docs/own-base.md, all numbers finite",
              unreadable.isEmpty() ? QString("%1 messages").arg(record.all.size()) : unreadable);
         if (isThere)
-            must(topic + "'s rate", record.rate_hz() >= least_hz, QString("%1 Hz at least").arg(least_hz),
+            must("rate of " + topic, record.rate_hz() >= least_hz, QString("%1 Hz at least").arg(least_hz),
                  QString("%1 Hz").arg(record.rate_hz(), 0, 'f', 1));
         return isThere;
     }
@@ -81,7 +83,10 @@ protected:
         const double mean = sum / double(record.all.size());
         must("stamps", step > 0 && youngest > -0.02 && mean < oldest_s,
              QString("each later than the one before, 0 to %1 s old by the clock here").arg(oldest_s),
-             QString("%1 s later at least; %2 s old, %3 s at least").arg(step).arg(mean).arg(youngest));
+             QString("%1 s later at least; %2 s old, %3 s at least")
+                 .arg(step, 0, 'f', 3)
+                 .arg(mean, 0, 'f', 3)
+                 .arg(youngest, 0, 'f', 3));
     }
 
     /// Connects to the daemon of that name. Error: who did not answer and why.

@@ -29,7 +29,7 @@ FAULTS = {
     "NaN accepted": ("motor", "motor.drive with NaN and 1e999 is refused"),
     "odometry not finite": ("motor", "odometry"),
     "odometry from the future": ("motor", "stamps"),
-    "odometry too rarely": ("motor", "odometry's rate"),
+    "odometry too rarely": ("motor", "rate of odometry"),
     "old commands": ("motor", "motor.drive with an old stamp"),
     "mirrored scans": ("base", "sense of rotation"),
     "clockwise scans": ("scanner", "counter-clockwise"),
