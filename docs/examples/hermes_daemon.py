@@ -20,8 +20,9 @@ class Refusal(Exception):
 
 
 class Daemon:
-    """A daemon with a name, settings {name: JSON schema with a default}, topics {name: what it has} and commands. A command is a
-    function that `method` has decorated; what it returns is the result, and Refusal is an error."""
+    """A daemon with a name, settings {name: JSON schema with a default}, topics {name: what it has} and commands. The setting "a.b" is
+    b of the group a. A command is a function that `method` has decorated; what it returns is the result, and Refusal is an error. One
+    that waits is an async function: others are served meanwhile."""
 
     def __init__(self, name, title, settings, topics, version="1.0"):
         self.name, self.title, self.version = name, title, version
@@ -119,7 +120,7 @@ class Daemon:
             while line and not client.transport.is_closing():
                 line = await reader.readline()
                 self.client = client
-                reply = self._answer(line) if line.strip() else None
+                reply = await self._answer(line) if line.strip() else None
                 if reply and not send(client, reply):
                     client.transport.abort()  # does not read its replies
         except (OSError, ValueError, asyncio.CancelledError):  # gone, a line beyond the limit, the end
@@ -128,8 +129,9 @@ class Daemon:
             for number in [n for n, s in self.subscriptions.items() if s["client"] is client]:
                 del self.subscriptions[number]
             client.close()
+            self.gone(client)
 
-    def _answer(self, line):
+    async def _answer(self, line):
         """The reply to a request; None: it is a notification."""
         request = None
         try:
@@ -141,7 +143,8 @@ class Daemon:
             check(schemas, values, -32602)
             if missing := [n for n in schemas if n not in values]:
                 raise Refusal(-32602, f"missing: {', '.join(missing)}")
-            reply = {"result": function(**values)}
+            result = function(**values)
+            reply = {"result": await result if asyncio.iscoroutine(result) else result}
         except Refusal as error:
             reply = {"error": dict(zip(("code", "message", "data"), error.args))}
         except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -151,6 +154,9 @@ class Daemon:
         if isinstance(request, dict) and "id" not in request:
             return None
         return {"id": request["id"] if isinstance(request, dict) else None, **reply}
+
+    def gone(self, client):
+        """Is called when a client has gone, which was self.client in its commands."""
 
     def rpc_discover(self):
         methods = [{"name": name, "summary": summary, "result": {"name": "result", "schema": {}},
@@ -170,19 +176,32 @@ class Daemon:
         self.ending.set()
 
     def settings_schema(self):
-        return {"type": "object", "properties": self.schemas}
+        return grouped({"type": "object", "properties": {}, **{
+            "properties." + name.replace(".", ".properties."): schema for name, schema in self.schemas.items()}})
 
     def settings_get(self, path):
-        if path and path not in self.settings:
-            raise Refusal(-32602, f"path: {path} is unknown, there is {', '.join(self.settings)}")
-        return self.settings[path] if path else self.settings
+        value = grouped(self.settings)
+        for name in path.split(".") if path else ():
+            if not isinstance(value, dict) or name not in value:
+                raise Refusal(-32602, f"path: {path} is unknown, there is {', '.join(self.settings)}")
+            value = value[name]
+        return value
 
     def settings_set(self, values):
+        values = self.ungrouped(values)
         check(self.schemas, values, -32003)
         changed = [name for name, value in values.items() if self.settings[name] != value]
         self.settings.update(values)
-        self.publish("settings", self.settings)
+        self.publish("settings", grouped(self.settings))
         return {"changed": changed, "restart": []}
+
+    def ungrouped(self, values, before=""):
+        """{"a": {"b": 1}} as {"a.b": 1}, for settings."""
+        flat = {}
+        for name, value in values.items():
+            path = before + name
+            flat.update(self.ungrouped(value, path + ".") if isinstance(value, dict) and path not in self.schemas else {path: value})
+        return flat
 
     def settings_reset(self, paths):
         return self.settings_set({name: self.schemas[name]["default"] for name in paths or self.schemas})
@@ -193,7 +212,7 @@ class Daemon:
         kept = {name: value for name, value in self.settings.items() if value != self.schemas[name]["default"]}
         try:
             with open(self.options.config + ".new", "w", encoding="utf-8") as file:
-                json.dump(kept, file)
+                json.dump(grouped(kept), file)
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(file.name, self.options.config)  # a full disk leaves the old one
@@ -232,6 +251,18 @@ def setting(text):
         return name, from_json(value)
     except ValueError:
         return name, value
+
+
+def grouped(flat):
+    """{"a.b": 1} as {"a": {"b": 1}}."""
+    values = {}
+    for path, value in flat.items():
+        *groups, name = path.split(".")
+        place = values
+        for group in groups:
+            place = place.setdefault(group, {})
+        place[name] = value
+    return values
 
 
 def finite(text):

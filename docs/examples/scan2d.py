@@ -45,12 +45,13 @@ def work():
     while scans:
         stamp, beams = scans.popleft()
         side = -1 if settings["upside_down"] else 1
-        points = [point for point in beams if math.isfinite(point[0]) and settings["min_range_m"] <= point[1] <= settings["max_range_m"]]
+        points = sorted((side * angle, distance, seconds) for angle, distance, seconds in beams  # counter-clockwise
+                        if math.isfinite(angle) and settings["min_range_m"] <= distance <= settings["max_range_m"])
         laser.publish("scan2d", {
             "stamp": stamp, "turn": turn,
             "rays": round(len(beams) * 360 / settings["field_of_view_deg"]),  # as many as in a full turn
             "x": [round(distance * math.cos(angle), 4) for angle, distance, _ in points],
-            "y": [round(distance * math.sin(angle) * side, 4) for angle, distance, _ in points],
+            "y": [round(distance * math.sin(angle), 4) for angle, distance, _ in points],
             "t": [round(seconds, 5) for _, _, seconds in points]}, stamp)
         turn, newest = turn + 1, time.monotonic()
     if time.monotonic() - newest < 1:

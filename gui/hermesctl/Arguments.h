@@ -20,6 +20,7 @@ struct Arguments {
     int days = 2 * 365; ///< that keys are valid
     int port = 0;       ///< 0: the usual one
     QString role;
+    QString base; ///< the motor control that turns a scanner
     double speed = 1;
     double for_s = 0;              ///< 0: without end
     QStringList given;             ///< names of all options, as they came

@@ -60,6 +60,9 @@ Result<void> watch(Client &client, const Arguments &arguments);
 Result<void> drive(Client &client, const Arguments &arguments);
 /// Error: no velocity, and no terminal for keys.
 Result<void> checkDrive(const Arguments &arguments);
+/// Tries what a robot base or a laser scanner of another maker has to do, and tells what does not hold.
+Result<void> conformMotor(Client &client, const Arguments &arguments);
+Result<void> conformScanner(Client &client, const Arguments &arguments);
 /// "vx", "vy", "omega".
 const QStringList &velocityNames();
 

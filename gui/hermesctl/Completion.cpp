@@ -137,7 +137,7 @@ private:
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option == "--format")
             return plain({"csv", "tum", "carmen", "mcap"}, before);
-        if (option == "--recorder")
+        if (option == "--recorder" || option == "--base")
             return daemons(before);
         if (option != "--daemons" && option != "--without")
             return {};

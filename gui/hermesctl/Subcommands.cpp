@@ -117,6 +117,10 @@ const std::vector<Subcommand> &subcommands() {
          "drives with this velocity (m/s, rad/s) for 10 s, for --for S, or until Ctrl-C; without one, by "
          "keys",
          "--for", drive, checkDrive},
+        {"conform motor D", "tries what a robot base of your own has to do, which turns its wheels", "--yes",
+         conformMotor},
+        {"conform scanner D", "tries what a laser scanner of your own has to do", "--yes --base",
+         conformScanner},
         {"log D", "the last records of the log (--count N; --follow: new ones too)", "--count --follow",
          showLog},
         {"doc D", "the reference of a daemon in Markdown (doc --all: of all daemons)", "--all --daemons",

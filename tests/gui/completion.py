@@ -85,7 +85,7 @@ class Completion(ThermometerCase):
     def test_candidates(self):
         self.assertEqual(candidates("re"), ["record", "replay"])
         self.assertEqual(candidates("record st"), ["start", "stop", "status"])
-        self.assertEqual(candidates("call scan"), ["scanmatcher"])
+        self.assertEqual(candidates("call scanm"), ["scanmatcher"])
         self.assertIn("127.0.0.1:7450", candidates("call 127"))
         self.assertIn("10.0.0.7:7450", candidates("--host 10.0.0.7 call 10"))
         self.assertIn("thermometer.read", candidates(f"call {self.address} "))
@@ -100,8 +100,12 @@ class Completion(ThermometerCase):
         self.assertEqual(candidates("watch --rate "), [])
         self.assertEqual(candidates("drive motorcontrol vx=1 "), ["vy=", "omega="])
         self.assertEqual(candidates("setup --l"), ["--list"])
+        self.assertEqual(candidates("conform "), ["motor", "scanner"])
+        self.assertEqual(candidates("conform motor motorc"), ["motorcontrol"])
+        self.assertEqual(candidates("conform scanner scanner --base motorc"), ["motorcontrol"])
+        self.assertEqual(candidates("conform scanner scanner --b"), ["--base"])
         self.assertEqual(candidates("drive motorcontrol --f"), ["--force", "--for"])
-        self.assertEqual(candidates("record start --daemons supervisor,scan"), ["supervisor,scanmatcher"])
+        self.assertEqual(candidates("record start --daemons supervisor,scanm"), ["supervisor,scanmatcher"])
 
     def test_hosts(self):
         """Those of earlier connections, the last one first, and robots that keys were issued for."""
