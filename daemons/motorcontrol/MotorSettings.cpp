@@ -68,8 +68,8 @@ MotorTable::MotorTable() {
             .appliesOnRestart();
     }
     add("controllers.timeout_s", s.serialTimeout_s,
-        "Without a byte for so long the controllers stop by themselves; an Arduino, which cannot be told, "
-        "without a set-point for 2 s",
+        "Without a byte for so long the controllers stop by themselves; an Arduino 2 s after its last "
+        "set-point",
         "s", 0.1, 2)
         .step(0.1);
     group("PID");
@@ -185,7 +185,7 @@ void MotorTable::checkDevices() {
         return require(s.serialTimeout_s <= roboclaw::Device::longestTimeout_s, s.serialTimeout_s,
                        QString("at most %1 s").arg(roboclaw::Device::longestTimeout_s));
     require(s.serialTimeout_s >= ArduinoDevice::timeout_s, s.serialTimeout_s,
-            QString("%1 s: an Arduino stops by itself no sooner").arg(ArduinoDevice::timeout_s));
+            QString("at least %1 s: an Arduino stops by itself no sooner").arg(ArduinoDevice::timeout_s));
     require(layout == "differential", layout, "differential: an Arduino turns two wheels");
     for (int i = 0; i < driven(); ++i)
         require(wheels[i].controller == 1, wheels[i].controller, "1: there is one Arduino");
