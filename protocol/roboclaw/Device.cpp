@@ -49,7 +49,7 @@ bool isRoboClaw(std::string version) {
 } // namespace
 
 bool Device::configure(const drive::DeviceSettings &settings) {
-    const int tenths = tenthsOf(settings.timeout_s);
+    const int tenths = tenthsOf(std::min(settings.timeout_s, longestTimeout_s));
     const bool differs = !(settings.pid == pid_) || tenths != timeoutTenths_;
     pid_ = settings.pid;
     timeoutTenths_ = tenths;

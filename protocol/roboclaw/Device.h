@@ -27,7 +27,7 @@ public:
     /// "RoboClaw 2x45A v4.2.8"
     const std::string &version() const override { return version_; }
 
-    static constexpr double longestTimeout_s = 0.5; ///< that the settings allow
+    static constexpr double longestTimeout_s = 0.5; ///< whatever the settings say
 
 private:
     Request request(const drive::Command &command) const;

@@ -449,6 +449,13 @@ private Q_SLOTS:
         QCOMPARE(bench.emulator(1).serialTimeout(), 0.2);
     }
 
+    // As the settings may have it for a controller of another kind, which waits for a restart.
+    void noTimeoutIsLongerThanHalfASecond() {
+        ControllerBench bench(1, 2);
+        QVERIFY(bench.runUntil([&] { return bench.areReady(); }));
+        QCOMPARE(bench.emulator(0).serialTimeout(), 0.5);
+    }
+
 private:
     static constexpr qint32 fast = 30000; // counts/s: half a metre a second
     static constexpr double silence_s = 0.3;
