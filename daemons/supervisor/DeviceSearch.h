@@ -14,8 +14,8 @@ public:
     struct Options {
         QStringList ports;       ///< serial lines beside those that the system lists
         QStringList controllers; ///< devices that settings name as those of motor controllers
-        bool ask =
-            false; ///< silent lines are asked for a RoboClaw or a scanner, also those of unknown devices
+        bool ask = false; ///< silent lines are asked for a RoboClaw, an Arduino or a scanner, also those of
+                          ///< unknown devices
         quint16 lidarPort = 0, positionPort = 0;
     };
     /// In a thread of the search.

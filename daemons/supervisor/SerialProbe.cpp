@@ -3,6 +3,7 @@
 #include "common/Time.h"
 #include "common/interface/AnySpeed.h"
 #include "daemons/supervisor/PortUsers.h"
+#include "protocol/drive/ArduinoDevice.h"
 #include "protocol/nmea/SentenceParser.h"
 #include "protocol/roboclaw/Packet.h"
 #include "protocol/scan/ScannerModel.h"
@@ -25,7 +26,7 @@ constexpr int controllerBauds[] = {115200, 38400, 460800}; // the same
 constexpr int listen_ms = 1200;                            // a receiver says something each second
 constexpr int answer_ms = 60, patientAnswer_ms = 200; // 50 bytes, and an adapter that holds them for 16 ms
 constexpr int longestScanner_ms = 4000, scannerStep_ms = 10; // until its motor turns
-constexpr int slice_ms = 50;                // between two looks whether to give up
+constexpr int slice_ms = 50;                                 // between two looks whether to give up
 constexpr int allAddresses = roboclaw::lastAddress - roboclaw::firstAddress + 1;
 
 /// The first whole sentence; empty: none.
@@ -67,7 +68,7 @@ FoundSerial SerialProbe::run() {
         found_.kind = mayAsk_.controller ? "silent" : "not_asked";
         if (mayAsk_.controller)
             ask();
-        if (mayAsk_.scanner && found_.kind != "roboclaw")
+        if (mayAsk_.others && found_.kind != "roboclaw" && !askArduino())
             findScanner(false);
     }
     if (found_.kind == "talker")
@@ -168,6 +169,31 @@ bool SerialProbe::listen() {
         found_.kind = "talker";
         found_.text = "talks by itself, but not in NMEA sentences; it was asked nothing";
     }
+    return true;
+}
+
+/// True: it tells its encoders. Opening its line may have restarted it, which takes about as long as the
+/// questions before.
+bool SerialProbe::askArduino() {
+    constexpr drive::Command::Kind encoders = drive::Command::Kind::ReadEncoders;
+    setBaud(drive::ArduinoDevice::usualBaud);
+    drive::ArduinoDevice device;
+    const drive::Bytes request = device.bytes({encoders});
+    device.reader().begin(request);
+    if (::write(port_, request.data(), request.size()) != ssize_t(request.size()))
+        isGone_ = errno != EAGAIN;
+    auto result = drive::ReplyReader::Result::Incomplete;
+    int taken = 0;
+    receive(patientAnswer_ms, [&](const QByteArray &all) {
+        while (taken < all.size() && result == drive::ReplyReader::Result::Incomplete)
+            result = device.reader().feed(std::uint8_t(all[taken++]));
+        return result != drive::ReplyReader::Result::Incomplete;
+    });
+    if (result != drive::ReplyReader::Result::Done)
+        return false;
+    found_.kind = "arduino";
+    found_.text = QString::fromStdString(device.version());
+    found_.baud = drive::ArduinoDevice::usualBaud;
     return true;
 }
 

@@ -11,13 +11,14 @@ namespace hermes::supervisor {
 
 /// Looks what is at the far end of one serial line, in a thread that may wait. It listens first; only a line
 /// that is silent is asked: for the version of a RoboClaw (command 21, two bytes), which moves nothing, then
-/// whether it is a scanner of those that are asked. A line that another program has open is left alone.
+/// whether it is an Arduino with a base, or a scanner of those that are asked. A line that another program
+/// has open is left alone.
 class SerialProbe {
 public:
     /// What may be asked for: without either nothing is sent. What scanners are asked would turn the motors
     /// of a RoboClaw in simple serial mode.
     struct Permission {
-        bool controller = false, scanner = false;
+        bool controller = false, others = false;
     };
 
     /// isCancelled: gives up soon when it becomes true.
@@ -40,6 +41,7 @@ private:
     /// True: somebody talks by themselves, and found_ says who.
     bool listen();
     void ask();
+    bool askArduino();
     void findScanner(bool isOneWay);
     bool askAt(int baud, int timeout_ms);
 

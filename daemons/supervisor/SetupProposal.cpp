@@ -4,6 +4,7 @@
 #include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
 #include "daemons/supervisor/SupervisedProcess.h"
+#include "protocol/drive/ArduinoDevice.h"
 #include "protocol/roboclaw/Command.h"
 
 #include <QFileInfo>
@@ -88,8 +89,8 @@ private:
     Findings withoutSimulated(Findings findings) {
         const auto isReal = [](const auto &one) { return !one.simulated; };
         const auto isDevice = [](const FoundSerial &line) {
-            return !line.simulated &&
-                   (line.kind == "roboclaw" || line.kind == "nmea" || line.kind == "scanner");
+            return !line.simulated && (line.kind == "roboclaw" || line.kind == "arduino" ||
+                                       line.kind == "nmea" || line.kind == "scanner");
         };
         const auto &[serial, lidars, problems, restarted] = findings;
         const bool isRobot = std::any_of(serial.begin(), serial.end(), isDevice) ||
@@ -119,6 +120,8 @@ private:
     void motors(const std::vector<FoundSerial> &lines) {
         const std::vector<Controller> found = controllersAt(lines);
         const auto numbers = numbered(found);
+        if (found.empty() && arduino(lines))
+            return;
         if (found.size() != 2)
             note(QString("%1 RoboClaws were found, two drive a robot (each needs an address of its own on "
                          "its line)")
@@ -132,6 +135,23 @@ private:
         }
         start("motorcontrol");
         drives_ = true;
+    }
+
+    /// The first of them drives two wheels; false: there is none.
+    bool arduino(const std::vector<FoundSerial> &lines) {
+        const auto line = std::find_if(lines.begin(), lines.end(),
+                                       [](const FoundSerial &one) { return one.kind == "arduino"; });
+        if (line == lines.end())
+            return false;
+        set("motorcontrol.controllers.kind", "arduino");
+        set("motorcontrol.controllers.timeout_s", drive::ArduinoDevice::timeout_s);
+        set("motorcontrol.controllers.1.url", urlOf(line->path, line->baud));
+        set("motorcontrol.frame.layout", "differential");
+        note("an Arduino stops by itself only 2 s after its last command (docs/safety.md); frame.*, "
+             "frame.counts_per_turn and pid.qpps are those of your base");
+        start("motorcontrol");
+        drives_ = true;
+        return true;
     }
 
     /// Which is which stays as it is. Others get the numbers that are left, where it is clear which they are.

@@ -17,9 +17,7 @@ std::vector<QStringList> rowsOf(const Findings &found, const QString &howToAsk) 
             for (const int address : line.addresses)
                 details.append(QString("address %1").arg(address));
         if (line.kind == "not_asked")
-            details.append(
-                QString("silent; %1 asks it whether it is a RoboClaw or a scanner, wheels off the ground")
-                    .arg(howToAsk));
+            details.append(QString("silent; %1 asks it what it is, wheels off the ground").arg(howToAsk));
         if (line.simulated)
             details.append("of the simulator");
         details.append(line.about);

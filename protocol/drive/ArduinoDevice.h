@@ -15,6 +15,7 @@ namespace hermes::drive {
 /// told to stand, it takes the power away: wheels brake as the H-bridge and the floor do.
 class ArduinoDevice : public MotorDevice, private ReplyReader {
 public:
+    static constexpr int usualBaud = 57600;
     static constexpr double timeout_s = 2;        ///< AUTO_STOP_INTERVAL
     static constexpr double framesPerSecond = 30; ///< PID_RATE; set-points are whole counts a frame
 

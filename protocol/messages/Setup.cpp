@@ -11,7 +11,8 @@ Fields<FoundSerial> fieldsOf(Of<FoundSerial>) {
         .add("device", &S::device, "Its name of today")
         .addMaybe("about", &S::about, "What the system knows of the adapter, or empty")
         .add("kind", &S::kind,
-             "A RoboClaw; NMEA sentences; a laser scanner of one plane; something else that talks by itself; "
+             "A RoboClaw; an Arduino with the text protocol of a base; NMEA sentences; a laser scanner of "
+             "one plane; something else that talks by itself; "
              "something that answers, "
              "but not as a RoboClaw; silent, also when asked; silent and not asked; in use by another "
              "program, and left alone; cannot be opened")

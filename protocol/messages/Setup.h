@@ -15,16 +15,18 @@ struct FoundSerial {
     QString about;              ///< what the system knows of the adapter, or empty
     QString kind;               ///< one of kinds()
     QString text;               ///< the version of a controller, a sentence, or why there is nothing
-    QString model;              ///< of a scanner, as the setting scanner.model has it; empty: it is none
     int baud = 0;               ///< at which it was understood; 0: it was not
     std::vector<int> addresses; ///< at which a controller answered
     bool anyAddress = false;    ///< it answers at all of them, as one on USB does
     bool simulated = false;     ///< a process of the supervisor is at the far end
+    QString model;              ///< of a scanner, as the setting scanner.model has it; empty: it is none
 
-    /// "roboclaw", "nmea", "scanner" (a laser scanner of one plane), "talker" (says something else by itself), "other" (answers, but not as a
-    /// RoboClaw), "silent", "not_asked" (silent, and nothing was sent to it), "in_use", "failed".
+    /// "roboclaw", "arduino" (a base with its text protocol), "nmea", "scanner" (a laser scanner of one
+    /// plane), "talker" (says something else by itself), "other" (answers, but not as a RoboClaw), "silent",
+    /// "not_asked" (silent, and nothing was sent to it), "in_use", "failed".
     static QStringList kinds() {
-        return {"roboclaw", "nmea", "scanner", "talker", "other", "silent", "not_asked", "in_use", "failed"};
+        return {"roboclaw", "arduino", "nmea",      "scanner", "talker",
+                "other",    "silent",  "not_asked", "in_use",  "failed"};
     }
 };
 

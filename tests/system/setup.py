@@ -127,18 +127,23 @@ class Setup(unittest.TestCase):
         self.assertRegex(table, r"not_asked +\S+silent")
         self.assertEqual(silent.heard, b"")
 
-    def test_finds_scanners(self):
+    def test_finds_scanners_and_a_base_with_an_arduino(self):
         lines = {model: os.path.join(self.folder, model) for model in ("ld06", "rplidar-a1", "ydlidar-x4")}
         for model, line in lines.items():
             self.start("simulator", {"world": WORLD, "lidar.port": 0, "scanner.model": model, "scanner.link": line})
-        put(os.path.join(self.folder, "scanmatcher.json"), {})
-        self.supervisor(lines.values(), [self.sleeper(name) for name in ("scanner", "scanmatcher")])
+        base = os.path.join(self.folder, "base")
+        self.start("simulator", {"world": WORLD, "lidar.port": 0, "motors.kind": "arduino", "motors.link": base, "frame.layout": "differential"})
+        self.supervisor([*lines.values(), base], [self.sleeper(name) for name in ("motorcontrol", "scanner", "scanmatcher")])
         _, serial = self.found()
         self.assertEqual([serial[line]["kind"] for line in lines.values()], ["scanner", "not_asked", "not_asked"])
         _, serial = self.found("--yes")
         for model, line in lines.items():
             self.assertEqual((serial[line]["kind"], serial[line]["model"]), ("scanner", model), serial)
+        self.assertEqual(serial[base]["kind"], "arduino", serial)
         self.ctl("--yes")
+        motors = self.file("motorcontrol")
+        self.assertEqual((motors["controllers"]["kind"], motors["frame"]["layout"]), ("arduino", "differential"))
+        self.assertEqual(motors["controllers"]["1"]["url"], f"serial://{base}?baud=57600")
         self.assertEqual(self.file("scanner")["scanner"], {"url": f"serial://{lines['ld06']}", "model": "ld06"})
         self.assertEqual(self.file("scanmatcher")["source"]["address"], "127.0.0.1:7470")
 

@@ -46,7 +46,7 @@ QTreeWidgetItem *rowOf(const QStringList &texts) {
 QString spokenKind(const QString &kind) {
     static const QHash<QString, QString> words{
         {"roboclaw", SetupPanel::tr("motors")},        {"nmea", SetupPanel::tr("GPS receiver")},
-        {"scanner", SetupPanel::tr("scanner")},
+        {"arduino", SetupPanel::tr("motors")},         {"scanner", SetupPanel::tr("scanner")},
         {"talker", SetupPanel::tr("unknown, talks")},  {"other", SetupPanel::tr("unknown, answers")},
         {"not_asked", SetupPanel::tr("not asked")},    {"in_use", SetupPanel::tr("in use")},
         {"failed", SetupPanel::tr("cannot be opened")}};
