@@ -116,6 +116,8 @@ const scan::ScannerModel *LiveScanner::model() const {
 }
 
 void LiveScanner::act(const scan::HostAction &action) {
+    if (action.reopen)
+        openedMono_ = 0; // it begins anew
     if (action.send.empty() && !action.dtr && !action.reopen)
         return;
     port_->with([action](Interface &line) {

@@ -2,9 +2,16 @@
 
 #include <QtMath>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hermes::scanner {
+
+/// Whatever the index of a recording says.
+static std::int64_t bounded(std::int64_t time_ns) {
+    constexpr std::int64_t latest_ns = std::int64_t(1) << 61;
+    return std::clamp<std::int64_t>(time_ns, 0, latest_ns);
+}
 
 ScanReader::ScanReader(const scan::ScannerModel &model, scan::RevolutionAssembler::Sink sink)
     : model_(model)
@@ -27,7 +34,7 @@ bool ScanReader::process(const std::function<bool()> &mayGoOn) {
             if (chunk.lostBefore > 0 || chunk.isJump)
                 protocol_->jump();
             protocol_->feed({batch_.bytes.data() + nextByte_, chunk.size},
-                            {chunk.arrival.stamp_ns, chunk.arrival.mono_ns});
+                            {bounded(chunk.arrival.stamp_ns), bounded(chunk.arrival.mono_ns)});
             nextByte_ += chunk.size;
         }
     }
@@ -40,16 +47,19 @@ void ScanReader::take(const scan::Revolution &revolution) {
     const std::int64_t before_ns = std::exchange(lastBegin_ns_, begin_ns);
     if (begin_ns != 0)
         beams_ = revolution.beams.size();
-    if (begin_ns != 0 && before_ns != 0)
+    if (begin_ns > before_ns && before_ns != 0)
         period_s_ = double(begin_ns - before_ns) * 1e-9;
     sink_(revolution);
 }
 
 /// In a full revolution, of which a sweep is a part.
 static quint64 raysOf(const scan::Revolution &revolution) {
+    double span_deg = 0;
+    for (std::size_t i = 1; i < revolution.beams.size(); ++i)
+        span_deg +=
+            std::abs(std::remainder(revolution.beams[i].angle_deg - revolution.beams[i - 1].angle_deg, 360));
     const double beams = double(revolution.beams.size());
-    const double span_deg = std::abs(revolution.beams.back().angle_deg - revolution.beams.front().angle_deg);
-    return span_deg > 0 && beams > 1 ? quint64(std::lround((beams - 1) * 360 / span_deg)) : quint64(beams);
+    return span_deg > 1 && beams > 1 ? quint64(std::lround((beams - 1) * 360 / span_deg)) : quint64(beams);
 }
 
 ScanMessage toScanMessage(const scan::Revolution &revolution, bool replayed) {

@@ -137,7 +137,7 @@ ChunkQueue *Scanner::replayedQueue(const QString &port, const QJsonObject &sidec
     for (const QJsonValue &file : sidecar.value("files").toArray()) {
         const scan::ScannerModel *const model =
             scan::findScannerModel(file["scanner"].toString().toStdString());
-        if (file["port"] != port || !model)
+        if (file["port"] != port || !model || replayed_) // one scanner
             continue;
         replayed_ = std::make_unique<ScanReader>(
             *model, [this](const scan::Revolution &revolution) { publishScan(revolution, true); });

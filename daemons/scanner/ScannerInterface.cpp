@@ -25,6 +25,10 @@ void Scanner::declareSettings() {
         const Result<InterfaceUrl> url = InterfaceUrl::parse(text);
         const bool fits = url && ((url->scheme == "serial" && !url->path.isEmpty()) ||
                                   (url->scheme == "tcp" && !url->host.isEmpty() && url->port != 0));
+        const QString model = values["scanner"].toObject()["model"].toString();
+        const scan::ScannerModel *const told = scan::findScannerModel(model.toStdString());
+        if (fits && told && url->scheme == "serial" && told->baud == 0)
+            return {{"scanner.url", text, "tcp://HOST:PORT, as a " + model + " has no serial line"}};
         if (text.isEmpty() || fits)
             return {};
         return {{"scanner.url", text, "serial:///DEVICE or tcp://HOST:PORT, or nothing"}};

@@ -25,8 +25,8 @@ constexpr int talkerBauds[] = {9600, 4800, 38400, 115200}; // the usual one firs
 constexpr int controllerBauds[] = {115200, 38400, 460800}; // the same
 constexpr int listen_ms = 1200;                            // a receiver says something each second
 constexpr int answer_ms = 60, patientAnswer_ms = 200; // 50 bytes, and an adapter that holds them for 16 ms
-constexpr int longestScanner_ms = 4000, scannerStep_ms = 10; // until its motor turns
-constexpr int slice_ms = 50;                                 // between two looks whether to give up
+constexpr int longest_ms = 14000, longestScanner_ms = 4000, scannerStep_ms = 10; // until its motor turns
+constexpr int slice_ms = 50; // between two looks whether to give up
 constexpr int allAddresses = roboclaw::lastAddress - roboclaw::firstAddress + 1;
 
 /// The first whole sentence; empty: none.
@@ -59,6 +59,7 @@ QString versionIn(const roboclaw::Request &request, const QByteArray &bytes) {
 } // namespace
 
 FoundSerial SerialProbe::run() {
+    begun_.start();
     found_.path = candidate_.path;
     found_.device = candidate_.device;
     found_.about = candidate_.about;
@@ -128,6 +129,17 @@ void SerialProbe::setBaud(int baud) {
     ::tcflush(port_, TCIOFLUSH);
 }
 
+void SerialProbe::send(std::string_view bytes) {
+    if (!bytes.empty() && ::write(port_, bytes.data(), bytes.size()) != ssize_t(bytes.size()))
+        isGone_ = errno != EAGAIN;
+}
+
+/// Some lines have none.
+void SerialProbe::setDtr(bool on) {
+    const int signal = TIOCM_DTR;
+    (void)::ioctl(port_, on ? TIOCMBIS : TIOCMBIC, &signal);
+}
+
 template <typename Enough>
 QByteArray SerialProbe::receive(int most_ms, const Enough &enough) {
     QByteArray bytes;
@@ -180,8 +192,7 @@ bool SerialProbe::askArduino() {
     drive::ArduinoDevice device;
     const drive::Bytes request = device.bytes({encoders});
     device.reader().begin(request);
-    if (::write(port_, request.data(), request.size()) != ssize_t(request.size()))
-        isGone_ = errno != EAGAIN;
+    send({reinterpret_cast<const char *>(request.data()), request.size()});
     auto result = drive::ReplyReader::Result::Incomplete;
     int taken = 0;
     receive(patientAnswer_ms, [&](const QByteArray &all) {
@@ -189,6 +200,8 @@ bool SerialProbe::askArduino() {
             result = device.reader().feed(std::uint8_t(all[taken++]));
         return result != drive::ReplyReader::Result::Incomplete;
     });
+    if (result == drive::ReplyReader::Result::Incomplete)
+        result = device.reader().silence();
     if (result != drive::ReplyReader::Result::Done)
         return false;
     found_.kind = "arduino";
@@ -207,10 +220,13 @@ void SerialProbe::findScanner(bool isOneWay) {
         const auto scanner = model->make(*model, revolutions);
         scanner->opened(Moment::now().mono_ns);
         QElapsedTimer waiting;
-        for (waiting.start(); waiting.elapsed() < longestScanner_ms && !isGone_ && !isCancelled_;) {
-            const std::string asked = isOneWay ? std::string() : scanner->next(Moment::now().mono_ns).send;
-            if (!asked.empty() && ::write(port_, asked.data(), asked.size()) != ssize_t(asked.size()))
-                isGone_ = errno != EAGAIN;
+        for (waiting.start(); waiting.elapsed() < longestScanner_ms && begun_.elapsed() < longest_ms &&
+                              !isGone_ && !isCancelled_;) {
+            const scan::HostAction asked =
+                isOneWay ? scan::HostAction() : scanner->next(Moment::now().mono_ns);
+            if (asked.dtr)
+                setDtr(*asked.dtr);
+            send(asked.send);
             const QByteArray bytes = receive(scannerStep_ms, [](const QByteArray &) { return true; });
             const Moment now = Moment::now();
             if (!bytes.isEmpty())
@@ -218,6 +234,11 @@ void SerialProbe::findScanner(bool isOneWay) {
             const scan::Search verdict = scan::verdictOf(*model, *scanner, double(waiting.elapsed()) * 1e-3);
             if (verdict == scan::Search::GoesOn)
                 continue;
+            if (!scanner->identity().serial.empty()) { // the next search hears it else
+                send(scanner->farewell());
+                receive(slice_ms,
+                        [](const QByteArray &) { return false; }); // before the line has another speed
+            }
             if (verdict == scan::Search::Other)
                 break;
             const std::string &device = scanner->identity().model;

@@ -3,8 +3,10 @@
 #include "daemons/supervisor/SerialCandidates.h"
 #include "protocol/messages/Setup.h"
 
+#include <QElapsedTimer>
 #include <atomic>
 #include <optional>
+#include <string_view>
 #include <termios.h>
 
 namespace hermes::supervisor {
@@ -41,6 +43,8 @@ private:
     /// True: somebody talks by themselves, and found_ says who.
     bool listen();
     void ask();
+    void send(std::string_view bytes);
+    void setDtr(bool on);
     bool askArduino();
     void findScanner(bool isOneWay);
     bool askAt(int baud, int timeout_ms);
@@ -49,6 +53,7 @@ private:
     const Permission mayAsk_;
     const std::atomic<bool> &isCancelled_;
     FoundSerial found_;
+    QElapsedTimer begun_;
     int port_ = -1;
     bool isGone_ = false;
     std::optional<termios> before_; // its settings

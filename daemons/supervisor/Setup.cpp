@@ -157,9 +157,11 @@ DeviceSearch::Options Setup::searchOptions(bool ask) const {
         if (others)
             others->append(url->path);
     };
+    const bool isArduino =
+        valueAt(current, "motorcontrol.controllers.kind") == "arduino"; // asked as one, if at all
     for (const char *controller : {"1", "2"})
         add(valueAt(current, QString("motorcontrol.controllers.%1.url").arg(controller)),
-            &options.controllers);
+            isArduino ? nullptr : &options.controllers);
     for (const QJsonValue &port : valueAt(current, "seriallogger.ports").toArray())
         add(port["url"], nullptr);
     return options;

@@ -133,6 +133,10 @@ private:
             set(group + "url", urlOf(controller.path, controller.baud));
             set(group + "address", controller.address);
         }
+        if (valueAt(base_, "motorcontrol.controllers.kind") == "arduino") {
+            set("motorcontrol.controllers.kind", "roboclaw");
+            set("motorcontrol.controllers.timeout_s", drive::DeviceSettings().timeout_s);
+        }
         start("motorcontrol");
         drives_ = true;
     }

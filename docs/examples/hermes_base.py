@@ -29,6 +29,7 @@ class Base(Daemon):
         super().__init__(name, title, {**SETTINGS, **dict(settings)}, {"odometry": "Where the wheels have moved the robot"})
         self.wheels, self.x, self.y, self.theta, self.way, self.mono = wheels, 0.0, 0.0, 0.0, 0.0, time.monotonic()
         self.driver, self.driver_name, self.lease_s, self.heard = None, None, 0, 0  # who has the control
+        self.commanded = 0  # when the wheels were told to turn
         self.latched, self.presser, self.stopped, self.pressed = False, None, None, 0  # the emergency stop
         for name, summary, function, parameters in (
                 ("control.acquire", "Gives this client the control", self.acquire,
@@ -72,7 +73,7 @@ class Base(Daemon):
             raise Refusal(-32005, "the command is late, or the clocks disagree")
         if abs(vx) > self.settings["motion.vx"] or vy or abs(omega) > self.settings["motion.omega"]:
             raise Refusal(-32007, f"{vx} m/s, {vy} m/s to the left, {omega} rad/s are beyond motion.*")
-        self.heard = time.monotonic()
+        self.heard = self.commanded = time.monotonic()
         self.wheels.turn(vx, omega)
 
     async def stop(self, wait_s, client):  # pylint: disable=unused-argument
@@ -122,7 +123,7 @@ class Base(Daemon):
         middle = self.theta + omega * passed / 2
         self.x, self.y = self.x + vx * passed * math.cos(middle), self.y + vx * passed * math.sin(middle)
         self.theta, self.way = math.remainder(self.theta + omega * passed, 2 * math.pi), self.way + (abs(vx) + abs(omega)) * passed
-        if now - self.heard > self.settings["safety.command_timeout_s"]:
+        if now - self.commanded > self.settings["safety.command_timeout_s"]:  # taking the control again is no command
             self.wheels.turn(0, 0)
         if now - self.heard > self.lease_s:
             self.end_control()

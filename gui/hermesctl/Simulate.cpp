@@ -14,6 +14,8 @@
 namespace hermes::ctl {
 namespace {
 
+constexpr int sickPort = 2112;
+
 /// A world that came with the programs, in an installation or a source tree.
 QString usualWorld(const QString &programs) {
     for (const char *place : {"/../share/hermes/worlds/", "/../../../deploy/worlds/"})
@@ -39,11 +41,15 @@ QMap<QString, QJsonObject> settingsOf(const Arguments &arguments, const QString 
           {"map", QJsonObject{{"folder", here + "/maps"}}}}},
         {"recorder", {{"record", record}}}};
     if (hasScanner) {
-        settings["simulator"]["scanner"] = QJsonObject{{"model", arguments.scanner}, {"link", laser}};
+        const bool isOnNetwork = arguments.scanner.startsWith("sick-"); // SICK's have no serial line
+        QJsonObject simulated{{"model", arguments.scanner}}, read{{"model", arguments.scanner}};
+        simulated[isOnNetwork ? "port" : "link"] = isOnNetwork ? QJsonValue(sickPort) : QJsonValue(laser);
+        read["url"] = isOnNetwork ? QString("tcp://127.0.0.1:%1").arg(sickPort) : "serial://" + laser;
+        if (isOnNetwork)
+            read["model"] = arguments.scanner.contains("tim") ? "sick-tim5xx" : "sick-lms1xx";
+        settings["simulator"]["scanner"] = simulated;
         settings["simulator"]["lidar"] = QJsonObject{{"port", 0}};
-        settings["scanner"] = {
-            {"scanner", QJsonObject{{"url", "serial://" + laser}, {"model", arguments.scanner}}},
-            {"record", record}};
+        settings["scanner"] = {{"scanner", read}, {"record", record}};
     } else {
         settings["velodynelogger"] = {{"source", QJsonObject{{"address", "127.0.0.1"}}}, {"record", record}};
     }
@@ -114,6 +120,8 @@ Result<void> simulate(const Arguments &arguments) {
     if (const Result<void> written = write(programs, folder.path(), settings); !written)
         return written;
     QProcess supervisor;
+    SignalWatcher signals(nullptr); // before there is anything to end
+    QObject::connect(&signals, &SignalWatcher::received, &supervisor, &QProcess::terminate);
     supervisor.setProcessChannelMode(QProcess::ForwardedChannels);
     supervisor.start(programs + "/hermes-supervisor", {"--config", folder.path() + "/supervisor.json"});
     if (!supervisor.waitForStarted())
@@ -122,8 +130,6 @@ Result<void> simulate(const Arguments &arguments) {
                  "hermesctl drive motorcontrol drives it, hermes-gui shows it, Ctrl-C ends it")
              .arg(world, QStringList(settings.keys()).join(", "), QDir::currentPath()));
     QEventLoop loop;
-    SignalWatcher signals(nullptr);
-    QObject::connect(&signals, &SignalWatcher::received, &supervisor, &QProcess::terminate);
     QObject::connect(&supervisor, qOverload<int, QProcess::ExitStatus>(&QProcess::finished), &loop,
                      &QEventLoop::quit);
     loop.exec();

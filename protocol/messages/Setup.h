@@ -19,7 +19,7 @@ struct FoundSerial {
     std::vector<int> addresses; ///< at which a controller answered
     bool anyAddress = false;    ///< it answers at all of them, as one on USB does
     bool simulated = false;     ///< a process of the supervisor is at the far end
-    QString model;              ///< of a scanner, as the setting scanner.model has it; empty: it is none
+    QString model = {};         ///< of a scanner, as the setting scanner.model has it; empty: it is none
 
     /// "roboclaw", "arduino" (a base with its text protocol), "nmea", "scanner" (a laser scanner of one
     /// plane), "talker" (says something else by itself), "other" (answers, but not as a RoboClaw), "silent",
@@ -32,10 +32,10 @@ struct FoundSerial {
 
 /// A lidar whose packets came.
 struct FoundLidar {
-    QString address; ///< whence they came
-    QString model;   ///< as "VLP-16"; empty: an unknown one
-    QString key;     ///< as the setting decode.model of hermes-velodynelogger has it; empty: an unknown one
-    int port = 0;    ///< at which they came
+    QString address;    ///< whence they came
+    QString model = {}; ///< as "VLP-16"; empty: an unknown one
+    QString key;  ///< as the setting decode.model of hermes-velodynelogger has it; empty: an unknown one
+    int port = 0; ///< at which they came
     double rate_hz = 0;     ///< of data packets
     bool positions = false; ///< it sends position packets, too
     bool simulated = false; ///< it is the simulator of the supervisor

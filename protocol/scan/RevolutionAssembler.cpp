@@ -6,12 +6,15 @@
 namespace hermes::scan {
 namespace {
 
-constexpr std::size_t maxBeams = 100000; // of a head that does not turn
+constexpr std::size_t maxBeams = 100000;          // of a head that does not turn
+constexpr std::int64_t longestGap_ns = 500000000; // between two beams
 
 } // namespace
 
 void RevolutionAssembler::addClockwise(double head_deg, double angle_deg, float range_m,
                                        std::uint8_t intensity, std::int64_t stamp_ns) {
+    if (!revolution_.beams.empty() && std::abs(stamp_ns - revolution_.beams.back().stamp_ns) > longestGap_ns)
+        jump(); // a clock was set
     if (spins_ && (head_deg_ - head_deg > 180 || revolution_.beams.size() >= maxBeams))
         deliver();
     revolution_.partial = revolution_.partial || !spins_; // it begins anywhere
@@ -25,6 +28,8 @@ void RevolutionAssembler::lose(std::uint64_t packets) {
     revolution_.lostPackets += packets;
     revolution_.partial = true;
     counts_.lostPackets += packets;
+    if (!spins_ && revolution_.beams.empty())
+        revolution_.number += packets;
 }
 
 void RevolutionAssembler::jump() {

@@ -50,7 +50,8 @@ public:
     /// A beam of a sweep, counter-clockwise; endSweep() gives them.
     void add(const Beam &beam) { revolution_.beams.push_back(beam); }
     void endSweep() { deliver(); }
-    /// Packets are missing between the last beam and the next; 0: nobody knows how many.
+    /// Packets are missing between the last beam and the next; 0: nobody knows how many. Of sweeps each is
+    /// one.
     void lose(std::uint64_t packets);
     /// What follows is of another time: the revolution under way is given as a partial one.
     void jump();

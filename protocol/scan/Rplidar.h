@@ -17,7 +17,7 @@ public:
     void jump() override;
     std::string prerequisite() const override;
     void prepare(const std::string &prerequisite) override;
-    /// Its motor stands then, too.
+    /// Its motor stands then, too, unless DTR turns it.
     std::string farewell() const override;
 
 private:

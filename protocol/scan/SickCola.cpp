@@ -128,7 +128,8 @@ void SickCola::takeChannels(std::size_t at, Channel &ranges, Channel &intensitie
 
 bool SickCola::isPossible(const Channel &channel) {
     return std::abs(channel.scale) < 1000 && std::abs(channel.offset) < 1e6 &&
-           std::abs(channel.start_deg) <= 360;
+           std::abs(channel.start_deg) <= 360 && channel.step_deg >= 0 &&
+           channel.count * channel.step_deg <= 361;
 }
 
 /// Counter-clockwise, ahead is at 90 degrees. The stamp is of the head's zero index, which it passes at the

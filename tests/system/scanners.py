@@ -17,6 +17,7 @@ EDGES = json.loads(text_of(WORLD))["edges"]
 ALL = """ld06 stl27l rplidar-a1 rplidar-a3 rplidar-c1 rplidar-s2 ydlidar-x2 ydlidar-x4 ydlidar-tmini ydlidar-tg30 hokuyo-urg04lx
 hokuyo-ust10lx"""
 MODELS = os.environ.get("HERMES_SCANNERS", "ld06 rplidar-a1").replace("all", ALL).split()
+RAYS = {"hokuyo-urg04lx": 1024, "hokuyo-ust10lx": 1440, "ld06": 450}  # in a full revolution, of which a sweep is a part
 PULLS = int(os.environ.get("HERMES_KILLS", "3"))
 SECONDS = float(os.environ.get("HERMES_SECONDS", "0"))
 CHECKED = ("ld", "stl", "rplidar-a", "rplidar-s", "ydlidar", "hokuyo")  # models whose packets have a checksum
@@ -82,6 +83,8 @@ class Scanners(unittest.TestCase):
                 scans = Listener(self.process.port, "scan2d")
                 scans.wait(5)
                 still = list(scans.messages)
+                if model in RAYS:
+                    self.assertEqual(still[-1]["data"]["rays"], RAYS[model])
                 far = sorted(wall_distance(x, y) for x, y in self.points(still, begin))
                 self.assertGreater(len(far), 1000)
                 print(f"{model}: points are {1e3 * far[len(far) // 2]:.1f} mm off the walls, the median; 98 % {1e3 * far[int(0.98 * len(far))]:.1f}")

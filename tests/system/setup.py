@@ -136,6 +136,7 @@ class Setup(unittest.TestCase):
         self.supervisor([*lines.values(), base], [self.sleeper(name) for name in ("motorcontrol", "scanner", "scanmatcher")])
         _, serial = self.found()
         self.assertEqual([serial[line]["kind"] for line in lines.values()], ["scanner", "not_asked", "not_asked"])
+        self.found("--yes")  # which leaves nobody talking
         _, serial = self.found("--yes")
         for model, line in lines.items():
             self.assertEqual((serial[line]["kind"], serial[line]["model"]), ("scanner", model), serial)
