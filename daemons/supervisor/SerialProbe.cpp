@@ -234,7 +234,7 @@ void SerialProbe::findScanner(bool isOneWay) {
             const scan::Search verdict = scan::verdictOf(*model, *scanner, double(waiting.elapsed()) * 1e-3);
             if (verdict == scan::Search::GoesOn)
                 continue;
-            if (!scanner->identity().serial.empty()) { // the next search hears it else
+            if (!isOneWay && scanner->counts().packets > 0) { // the next search hears it else
                 send(scanner->farewell());
                 receive(slice_ms,
                         [](const QByteArray &) { return false; }); // before the line has another speed

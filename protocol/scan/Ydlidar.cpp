@@ -187,4 +187,8 @@ void Ydlidar::addBeam(const std::uint8_t *beam, double head_deg, std::int64_t st
                               kind_ == Kind::Tmini ? beam[0] : std::uint8_t(0), stamp_ns);
 }
 
+std::string Ydlidar::farewell() const {
+    return isOneWay_ ? std::string() : "\xA5\x65";
+}
+
 } // namespace hermes::scan

@@ -19,6 +19,7 @@ public:
     Ydlidar(Kind kind, const ScannerModel &model, RevolutionAssembler &revolutions);
 
     void jump() override;
+    std::string farewell() const override;
 
 private:
     enum Step { Wake, Stop, Info, Health, Reset, Begin, Scan };
