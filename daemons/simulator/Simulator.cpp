@@ -37,10 +37,9 @@ QString toText(LidarFault::Kind kind) {
 } // namespace
 
 Simulator::Simulator()
-    : Daemon(
-          {"simulator", "Simulator",
-           "A simulated robot in a world of walls: an HDL-32E that sends packets over UDP; on "
-           "pseudo-terminals two RoboClaws or an Arduino, a GPS receiver and a 2D scanner"})
+    : Daemon({"simulator", "Simulator",
+              "A simulated robot in a world of walls: an HDL-32E that sends packets over UDP; on "
+              "pseudo-terminals two RoboClaws or an Arduino, a GPS receiver and a 2D scanner"})
     , pump_([this](const Simulation::Truth &truth) { later([this, truth] { publishTruth(truth); }); },
             [this](const std::string &sentences) {
                 later([this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); });
