@@ -3,12 +3,13 @@
 #include "common/interface/InterfaceUrl.h"
 #include "common/interface/SerialInterface.h"
 
+#include <QElapsedTimer>
 #include <future>
 
 namespace hermes::scanner {
 namespace {
 
-constexpr int period_ms = 10;
+constexpr int period_ms = 10, longestWork_ms = 5;
 constexpr std::chrono::milliseconds farewellTimeout{100};
 
 } // namespace
@@ -82,8 +83,13 @@ void LiveScanner::tryNext() {
     start();
 }
 
+/// What sends faster than it can be read leaves time for all else.
 void LiveScanner::filled() {
-    reader_->process();
+    QElapsedTimer working;
+    working.start();
+    if (!reader_->process([&working] { return working.elapsed() < longestWork_ms; }))
+        QMetaObject::invokeMethod(
+            this, [this] { filled(); }, Qt::QueuedConnection);
     step();
 }
 

@@ -47,7 +47,8 @@ void ScanReader::take(const scan::Revolution &revolution) {
     const std::int64_t before_ns = std::exchange(lastBegin_ns_, begin_ns);
     if (begin_ns != 0)
         beams_ = revolution.beams.size();
-    if (begin_ns > before_ns && before_ns != 0)
+    constexpr std::int64_t longest_ns = 1500000000; // else it was interrupted
+    if (begin_ns > before_ns && begin_ns - before_ns < longest_ns && before_ns != 0)
         period_s_ = double(begin_ns - before_ns) * 1e-9;
     sink_(revolution);
 }

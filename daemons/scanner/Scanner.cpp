@@ -182,6 +182,8 @@ void Scanner::noteScanner() {
     const ScanReader &reader = live_->reader();
     const scan::ScannerModel *const model = live_->model();
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (recording_.isActive() && !prerequisite_["prerequisite"].toString().isEmpty())
+        return; // that of its first bytes
     prerequisite_ = {{"scanner", (model ? *model : reader.model()).name},
                      {"prerequisite", QString::fromStdString(reader.protocol().prerequisite())}};
 }
@@ -240,6 +242,9 @@ void Scanner::updateHealth() {
 std::pair<HealthLevel, QString> Scanner::sensorHealth() {
     if (!source_.error().isEmpty())
         return {HealthLevel::Failed, source_.error()};
+    if (replayed_ && source_.state() == State::Ended)
+        return {HealthLevel::Warn, source_.name() + " has been played to its end; source.open {live: true} shows the "
+                                                    "scanner again"};
     if (replayed_)
         return {HealthLevel::Ok, "scans come from " + source_.name() +
                                      ", not from the scanner; that is read and recorded all the same"};

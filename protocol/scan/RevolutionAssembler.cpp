@@ -15,7 +15,9 @@ void RevolutionAssembler::addClockwise(double head_deg, double angle_deg, float 
                                        std::uint8_t intensity, std::int64_t stamp_ns) {
     if (!revolution_.beams.empty() && std::abs(stamp_ns - revolution_.beams.back().stamp_ns) > longestGap_ns)
         jump(); // a clock was set
-    if (spins_ && (head_deg_ - head_deg > 180 || revolution_.beams.size() >= maxBeams))
+    if (spins_ && revolution_.beams.size() >= maxBeams)
+        jump();
+    if (spins_ && head_deg_ - head_deg > 180)
         deliver();
     revolution_.partial = revolution_.partial || !spins_; // it begins anywhere
     spins_ = true;

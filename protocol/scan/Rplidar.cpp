@@ -133,7 +133,7 @@ std::size_t Rplidar::takeAnswer(std::string_view bytes) {
     const std::uint32_t length = longWord(data + 2);
     const int form = data[6];
     if (RplidarPackets::isForm(form)) {
-        if ((length & ~0x3FFFFFFFU) != streams)
+        if (length != (streams | RplidarPackets::sizeOf(form))) // a capsule may begin alike
             return 0;
         const double told_us = sample_us_ > 0 ? sample_us_ : rates_us_[form == 0x81 ? 0 : 1];
         packets_.begin(form, isPeriod(told_us) ? told_us : packets_.sample_us());

@@ -15,6 +15,7 @@ public:
 
     /// From now on come packets of this form, a beam each so many microseconds.
     void begin(int form, double sample_us);
+    static std::size_t sizeOf(int form); ///< bytes of its packets; 0: there is none
     static bool isForm(int form) { return sizeOf(form) > 0; }
     int form() const { return form_; } ///< 0: none
     double sample_us() const { return clock_.sample_ns() * 1e-3; }
@@ -37,7 +38,6 @@ private:
         std::uint8_t intensity = 0;
     };
 
-    static std::size_t sizeOf(int form);
     static int beamsOf(int form);
     void decode(const std::uint8_t *bytes, const std::uint8_t *following);
     void decodeUltra(const std::uint8_t *bytes, const std::uint8_t *following);
