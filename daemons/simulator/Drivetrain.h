@@ -1,7 +1,6 @@
 #pragma once
 
 #include "daemons/simulator/ArduinoEmulator.h"
-#include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
 #include <algorithm>
@@ -77,11 +76,9 @@ public:
     explicit Drivetrain(const Options &options)
         : options_(options)
         , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
+        , arduino_(options.arduino)
         , battery_(options.battery)
-        , random_(options.seed) {
-        if (options.arduino)
-            arduino_.emplace(*options.arduino);
-    }
+        , random_(options.seed) {}
 
     /// Bytes from a line (0 or 1), now: seconds of any clock; gives what is answered, in order.
     std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
