@@ -37,10 +37,9 @@ QString toText(LidarFault::Kind kind) {
 } // namespace
 
 Simulator::Simulator()
-    : Daemon(
-          {"simulator", "Simulator",
-           "A simulated robot in a world of line segments: an HDL-32E that sends packets over UDP, "
-           "two RoboClaws or an Arduino that drive it, a GPS receiver and a 2D scanner on pseudo-terminals"})
+    : Daemon({"simulator", "Simulator",
+              "A simulated robot in a world of line segments: an HDL-32E that sends packets over UDP, "
+              "motor controllers, a GPS receiver and a 2D scanner on pseudo-terminals"})
     , pump_([this](const Simulation::Truth &truth) { later([this, truth] { publishTruth(truth); }); },
             [this](const std::string &sentences) {
                 later([this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); });

@@ -99,8 +99,8 @@ Fields<RoboClawEmulator::Counts> fieldsOf(Of<RoboClawEmulator::Counts>) {
 Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
     using E = EmulatorState;
     return Fields<E>()
-        .add("status", &E::status, "Bits of errors and warnings")
-        .add("temperature_c", &E::temperature_c, "Of the controller", "degC")
+        .add("status", &E::status, "Bits of errors and warnings, of a RoboClaw")
+        .add("temperature_c", &E::temperature_c, "Of a RoboClaw", "degC")
         .add("serial_timeout_s", &E::serialTimeout_s, "It stops then; 0: never", "s")
         .include(&E::counts);
 }
