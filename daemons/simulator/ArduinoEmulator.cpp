@@ -1,5 +1,6 @@
 #include "daemons/simulator/ArduinoEmulator.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace hermes::simulator {

@@ -2,6 +2,10 @@
 
 #include "daemons/simulator/RoboClawEmulator.h"
 
+#include <array>
+#include <random>
+#include <string>
+
 namespace hermes::simulator {
 
 /// A microcontroller with two motors as it looks from its serial line: the text protocol of ROS Arduino

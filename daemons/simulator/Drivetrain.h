@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemons/simulator/ArduinoEmulator.h"
+#include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
 #include <algorithm>

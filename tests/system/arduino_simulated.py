@@ -22,6 +22,7 @@ class Arduino(SerialPort):
         termios.tcsetattr(self.port, termios.TCSANOW, settings)
 
     def ask(self, command, limit_s=5):
+        termios.tcflush(self.port, termios.TCIFLUSH)  # what came too late for an earlier one
         os.write(self.port, command.encode() + b"\r")
         answer = b""
         deadline = time.monotonic() + limit_s
