@@ -209,9 +209,9 @@ ScannerMessage Scanner::state() const {
         return state;
     const ScanReader &reader = shown();
     const scan::ScannerIdentity &identity = reader.protocol().identity();
-    if (const scan::ScannerModel *const model = replayed_ ? &reader.model() : live_->model())
-        state.model = model->name;
     if (replayed_ || live_->isFound()) {
+        const scan::ScannerModel *const named = replayed_ ? nullptr : live_->model();
+        state.model = (named ? *named : reader.model()).name; // some that speak alike cannot be told apart
         state.device = known(identity.model);
         state.firmware = known(identity.firmware);
         state.serial = known(identity.serial);
@@ -243,8 +243,9 @@ std::pair<HealthLevel, QString> Scanner::sensorHealth() {
     if (!source_.error().isEmpty())
         return {HealthLevel::Failed, source_.error()};
     if (replayed_ && source_.state() == State::Ended)
-        return {HealthLevel::Warn, source_.name() + " has been played to its end; source.open {live: true} shows the "
-                                                    "scanner again"};
+        return {HealthLevel::Warn, source_.name() +
+                                       " has been played to its end; source.open {live: true} shows the "
+                                       "scanner again"};
     if (replayed_)
         return {HealthLevel::Ok, "scans come from " + source_.name() +
                                      ", not from the scanner; that is read and recorded all the same"};

@@ -21,47 +21,45 @@ ArduinoEmulator::ArduinoEmulator(const Options &options)
         channel.setPid(pid);
 }
 
-std::string ArduinoEmulator::receive(char byte) {
-    if (isDead() || faults_.deaf)
-        return {};
-    std::string answer;
-    for (const char heard : damaged({byte}))
-        answer += hear(heard);
-    return faults_.mute ? std::string() : damaged(answer);
-}
-
-std::string ArduinoEmulator::hear(char byte) {
-    if (byte == '\r') {
-        const std::string answer = execute() + "\r\n";
-        heard_ = {};
+RoboClawEmulator::Answer ArduinoEmulator::receive(char byte) {
+    RoboClawEmulator::Answer answer{{}, faults_.delay};
+    if (faults_.silent || faults_.deaf || startsIn_ > 0)
         return answer;
-    }
-    if (byte == ' ') {
+    byte = damaged(byte);
+    if (byte == '\r') {
+        const std::string text = execute() + "\r\n";
+        heard_ = {};
+        if (!chance(faults_.drop)) {
+            for (const char told : text)
+                answer.bytes.push(std::uint8_t(damaged(told)));
+        }
+    } else if (byte == ' ') {
         heard_.blanks = std::min(heard_.blanks + 1, heard_.texts.size());
     } else if (heard_.blanks == 0) {
         heard_.letter = byte;
-    } else {
-        std::string &text = heard_.texts[heard_.blanks - 1];
+    } else if (std::string &text = heard_.texts[heard_.blanks - 1]; text.size() < longestText) {
         text += byte;
-        if (text.size() > longestText) // beyond its memory: what that does is not known
-            restart();
+    } else { // beyond its memory: what that does is not known
+        restart();
     }
-    return {};
+    return answer;
 }
 
 std::string ArduinoEmulator::execute() {
     const auto number = [this](std::size_t i) {
         return double(std::strtol(heard_.texts[i].c_str(), nullptr, 10));
     };
+    const auto count = [this](int motor) { // of 32 bits
+        return std::to_string(std::int32_t(std::uint32_t(channel(motor).count())));
+    };
     ++counts_.requests;
     switch (heard_.letter) {
     case 'm':
         silence_ = 0;
+        mode_ = Mode::Speed;
         speeds_ = {number(0) / frame, number(1) / frame}; // from the next frame on
         if (speeds_[0] == 0 && speeds_[1] == 0)
             cutPower();
-        else
-            mode_ = Mode::Speed;
         return "OK";
     case 'o':
         silence_ = 0;
@@ -70,7 +68,7 @@ std::string ArduinoEmulator::execute() {
             channels_[i].driveDuty(number(i) / largestPwm);
         return "OK";
     case 'e':
-        return std::to_string(count(0)) + ' ' + std::to_string(count(1));
+        return count(0) + ' ' + count(1);
     case 'r':
         for (MotorChannel &channel : channels_)
             channel.setCount(0);
@@ -92,34 +90,27 @@ void ArduinoEmulator::cutPower() {
         channel.stop();
 }
 
-std::string ArduinoEmulator::damaged(const std::string &bytes) {
-    std::string left;
-    for (const char byte : bytes) {
-        if (!chance(faults_.loss))
-            left += char(byte ^ (chance(faults_.corrupt) ? 1 << random_() % 8 : 0));
-    }
-    return left;
+char ArduinoEmulator::damaged(char byte) {
+    return char(byte ^ (chance(faults_.corrupt) ? 1 << random_() % 8 : 0));
 }
 
 void ArduinoEmulator::advance(double seconds, double voltage) {
     silence_ += seconds;
     startsIn_ = std::max(0.0, startsIn_ - seconds);
-    if (isDead())
+    const bool timedOut = mode_ != Mode::Off && silence_ >= options_.timeout && !faults_.stuckTimeout;
+    counts_.timeouts += timedOut;
+    if (timedOut || faults_.silent)
         cutPower();
-    if (mode_ != Mode::Off && silence_ >= options_.timeout && !faults_.stuckTimeout) {
-        ++counts_.timeouts;
-        cutPower();
-    }
     frameLeft_ -= seconds;
     const bool begins = frameLeft_ <= 0;
     frameLeft_ = begins ? std::max(0.0, frameLeft_ + frame) : frameLeft_;
     for (std::size_t i = 0; i < channels_.size(); ++i) {
-        MotorChannel &channel = channels_[i];
+        MotorChannel &motor = channels_[i];
         if (begins && mode_ == Mode::Speed)
-            channel.driveSpeed(speeds_[i]);
-        channel.advance(seconds, voltage, !options_.coasts || mode_ == Mode::Speed || channel.target() != 0);
+            motor.driveSpeed(speeds_[i]);
+        motor.advance(seconds, voltage, !options_.coasts || mode_ == Mode::Speed || motor.target() != 0);
         if (startsIn_ > 0)
-            channel.setCount(0);
+            motor.setCount(0);
     }
 }
 
@@ -127,7 +118,6 @@ void ArduinoEmulator::restart() {
     cutPower();
     heard_ = {};
     startsIn_ = restartTime;
-    ++counts_.restarts;
 }
 
 } // namespace hermes::simulator

@@ -21,10 +21,7 @@ std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::u
     };
     for (std::size_t i = 0; i < size; ++i) {
         if (arduino_) {
-            RoboClawEmulator::Answer answer{{}, arduino_->faults().delay};
-            for (const char byte : arduino_->receive(char(data[i])))
-                answer.bytes.push(std::uint8_t(byte));
-            if (!answer.bytes.empty())
+            if (const auto answer = arduino_->receive(char(data[i])); !answer.bytes.empty())
                 add(answer);
             continue;
         }

@@ -77,11 +77,9 @@ public:
     explicit Drivetrain(const Options &options)
         : options_(options)
         , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
+        , arduino_(options.arduino)
         , battery_(options.battery)
-        , random_(options.seed) {
-        if (options.arduino)
-            arduino_.emplace(*options.arduino);
-    }
+        , random_(options.seed) {}
 
     /// Bytes from a line (0 or 1), now: seconds of any clock; gives what is answered, in order.
     std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,

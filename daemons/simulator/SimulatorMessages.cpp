@@ -99,28 +99,10 @@ Fields<RoboClawEmulator::Counts> fieldsOf(Of<RoboClawEmulator::Counts>) {
 Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
     using E = EmulatorState;
     return Fields<E>()
-        .add("status", &E::status, "Bits of errors and warnings")
-        .add("temperature_c", &E::temperature_c, "Of the controller", "degC")
+        .add("status", &E::status, "Bits of errors and warnings, of a RoboClaw")
+        .add("temperature_c", &E::temperature_c, "Of a RoboClaw", "degC")
         .add("serial_timeout_s", &E::serialTimeout_s, "It stops then; 0: never", "s")
         .include(&E::counts);
-}
-
-Fields<ArduinoEmulator::Counts> fieldsOf(Of<ArduinoEmulator::Counts>) {
-    using C = ArduinoEmulator::Counts;
-    return Fields<C>()
-        .add("requests", &C::requests, "Carried out")
-        .add("unknown", &C::unknown, "Commands that it does not know")
-        .add("timeouts", &C::timeouts, "Times that silence stopped the motors")
-        .add("restarts", &C::restarts, "Of its program");
-}
-
-Fields<ArduinoState> fieldsOf(Of<ArduinoState>) {
-    using A = ArduinoState;
-    return Fields<A>()
-        .add("encoders", &A::encoders, "Counts on the left, on the right")
-        .add("pwm", &A::pwm, "Of 255, on the left, on the right")
-        .add("timeout_s", &A::timeout_s, "Without a command that drives it stops then", "s")
-        .include(&A::counts);
 }
 
 Fields<LineState> fieldsOf(Of<LineState>) {
@@ -150,7 +132,6 @@ Fields<DrivetrainState> fieldsOf(Of<DrivetrainState>) {
     return Fields<D>()
         .add("wheels_rps", &D::wheels_rps, "Front left, front right, rear left, rear right, forward", "rad/s")
         .add("controllers", &D::controllers, "Each")
-        .add("arduino", &D::arduino, "That drives instead")
         .add("battery_v", &D::battery_v, "Voltage", "V")
         .add("battery_charge", &D::batteryCharge, "0 to 1")
         .add("lines", &D::lines, "Pseudo-terminals of the controllers");

@@ -28,17 +28,11 @@ struct LoadedWorld {
     quint64 edges = 0, poses = 0;
 };
 
-/// A simulated Arduino that drives the robot.
-struct ArduinoState {
-    std::array<qint32, 2> encoders{}, pwm{};
-    double timeout_s = 0;
-    ArduinoEmulator::Counts counts;
-};
-
 /// A simulated motor controller.
 struct EmulatorState {
-    quint32 status = 0;
-    double temperature_c = 0, serialTimeout_s = 0;
+    std::optional<quint32> status; ///< as the temperature, of a RoboClaw
+    std::optional<double> temperature_c;
+    double serialTimeout_s = 0;
     RoboClawEmulator::Counts counts;
 };
 
@@ -46,7 +40,6 @@ struct EmulatorState {
 struct DrivetrainState {
     std::optional<std::array<double, 4>> wheels_rps;
     std::optional<std::vector<EmulatorState>> controllers;
-    std::optional<ArduinoState> arduino; ///< instead of them
     std::optional<double> battery_v, batteryCharge;
     std::vector<LineState> lines;
 };

@@ -6,8 +6,10 @@ namespace hermes::simulator {
 
 namespace {
 
-void applyFault(RoboClawEmulator &controller, const Call &call) {
-    RoboClawEmulator::Faults &faults = controller.faults();
+void applyFault(Drivetrain &drivetrain, int number, const Call &call) {
+    auto &arduino = drivetrain.arduino();
+    RoboClawEmulator &controller = drivetrain.controller(number);
+    RoboClawEmulator::Faults &faults = arduino ? arduino->faults() : controller.faults();
     const QString kind = call.text("kind");
     if (kind == "none")
         faults = {};
@@ -31,6 +33,8 @@ void applyFault(RoboClawEmulator &controller, const Call &call) {
         faults.stuckTimeout = true;
     else if (kind == "brownout")
         controller.restart(call.number("delay_s"));
+    else if (kind == "restart")
+        arduino->restart();
     else if (kind == "emergency_stop")
         faults.status |= roboclaw::EmergencyStop;
     else if (kind == "over_temperature")
@@ -39,29 +43,6 @@ void applyFault(RoboClawEmulator &controller, const Call &call) {
         faults.status |= roboclaw::OverCurrentWarningM1 | roboclaw::OverCurrentWarningM2;
     else if (kind == "driver")
         faults.status |= roboclaw::DriverFaultM1;
-}
-
-void applyFault(ArduinoEmulator &arduino, const Call &call) {
-    ArduinoEmulator::Faults &faults = arduino.faults();
-    const QString kind = call.text("kind");
-    if (kind == "none")
-        faults = {};
-    else if (kind == "silence")
-        faults.silent = true;
-    else if (kind == "loss")
-        faults.loss = call.number("share");
-    else if (kind == "corrupt")
-        faults.corrupt = call.number("share");
-    else if (kind == "slow")
-        faults.delay = call.number("delay_s");
-    else if (kind == "deaf")
-        faults.deaf = true;
-    else if (kind == "mute")
-        faults.mute = true;
-    else if (kind == "stuck_timeout")
-        faults.stuckTimeout = true;
-    else if (kind == "restart")
-        arduino.restart();
 }
 
 void applyFault(MotorChannel &motor, const Call &call) {
@@ -93,10 +74,8 @@ Result<void> Simulator::setMotorFault(const Call &call) {
             drivetrain.setLatency(second, kind == "adapter" ? call.number("delay_s") : 0);
         else if (device == "controllers")
             drivetrain.setSwapped(kind == "swapped");
-        else if (drivetrain.arduino() && device == "controller1")
-            applyFault(*drivetrain.arduino(), call);
         else if (device.startsWith("controller"))
-            applyFault(drivetrain.controller(second), call);
+            applyFault(drivetrain, second, call);
         else if (device == "battery")
             drivetrain.battery().setCharge(kind == "none" ? 1 : call.number("share"));
         else if (device == "wheels")
@@ -111,19 +90,15 @@ Result<void> Simulator::setMotorFault(const Call &call) {
 DrivetrainState Simulator::motorState(Drivetrain &drivetrain) const {
     DrivetrainState state;
     state.wheels_rps = drivetrain.wheelSpeeds();
-    state.battery_v = drivetrain.battery().voltage();
-    state.batteryCharge = drivetrain.battery().charge();
-    if (const auto &arduino = drivetrain.arduino()) {
-        const auto pwm = [&](int motor) { return qint32(std::lround(arduino->channel(motor).duty() * 255)); };
-        state.arduino = {
-            {arduino->count(0), arduino->count(1)}, {pwm(0), pwm(1)}, arduino->timeout(), arduino->counts()};
-        return state;
-    }
     state.controllers.emplace();
-    for (int i = 0; i < Drivetrain::controllers; ++i) {
+    if (const auto &arduino = drivetrain.arduino())
+        state.controllers->push_back({{}, {}, arduino->timeout(), arduino->counts()});
+    for (int i = 0; i < Drivetrain::controllers && !drivetrain.arduino(); ++i) {
         const RoboClawEmulator &c = drivetrain.controller(i);
         state.controllers->push_back({c.status(), c.temperature(), c.serialTimeout(), c.counts()});
     }
+    state.battery_v = drivetrain.battery().voltage();
+    state.batteryCharge = drivetrain.battery().charge();
     return state;
 }
 
