@@ -251,6 +251,23 @@ private Q_SLOTS:
     }
 
     /// Whoever replays a recording only feeds it.
+    /// One capsule of 256 has a checksum with which it begins as an answer does.
+    void capsuleThatBeginsAsAnAnswer() {
+        Reader reader("rplidar-a1");
+        reader.feed(bytesOf("A5 5A 54 00 00 40 82"), 0);
+        std::string body = capsule(32 * 64).substr(2);
+        body.replace(2, 3, {0x00, 0x40, char(0x85)}); // as the end of a length, and form 85
+        char sum = char(0xA5);
+        for (const char byte : body)
+            sum = char(sum ^ byte);
+        body.back() = char(body.back() ^ sum); // an offset
+        reader.feed(capsule(0x8000), 0);
+        reader.feed("\xA5\x5A" + body, 0.004);
+        reader.feed(capsule(64 * 64), 0.008);
+        QCOMPARE(reader.scanner->prerequisite().substr(0, 2), std::string("82"));
+        QCOMPARE(reader.scanner->counts().packets, std::uint64_t(3));
+    }
+
     void replay() {
         ScannerReader reader("rplidar-a1");
         reader.scanner->prepare("82 125.0");
