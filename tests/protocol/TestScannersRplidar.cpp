@@ -253,7 +253,7 @@ private Q_SLOTS:
     /// Whoever replays a recording only feeds it.
     /// One capsule of 256 has a checksum with which it begins as an answer does.
     void capsuleThatBeginsAsAnAnswer() {
-        Reader reader("rplidar-a1");
+        ScannerReader reader("rplidar-a1");
         reader.feed(bytesOf("A5 5A 54 00 00 40 82"), 0);
         std::string body = capsule(32 * 64).substr(2);
         body.replace(2, 3, {0x00, 0x40, char(0x85)}); // as the end of a length, and form 85
