@@ -25,8 +25,8 @@ void SampleClock::expect(double head_deg, double step_deg) {
 
 /// How many beams it measures is a setting of some models: the host's clock tells, where it is another than
 /// is known of it.
-void SampleClock::followRate(double beams, std::int64_t measured_ns) {
-    const double passed_ns = double(measured_ns - rateSince_ns_);
+void SampleClock::followRate(double beams, std::int64_t mono_ns) {
+    const double passed_ns = double(mono_ns - rateSince_ns_);
     rateBeams_ += beams;
     if (passed_ns >= 0 && passed_ns < rateWindow_ns)
         return;
@@ -34,7 +34,7 @@ void SampleClock::followRate(double beams, std::int64_t measured_ns) {
     const bool isPossible = each_ns > usual_ns_ / 4 && each_ns < usual_ns_ * 4;
     if (passed_ns < 2 * rateWindow_ns && isPossible && std::abs(each_ns / sample_ns_ - 1) > 0.02)
         sample_ns_ = each_ns;
-    rateSince_ns_ = measured_ns;
+    rateSince_ns_ = mono_ns;
     rateBeams_ = 0;
 }
 
@@ -48,7 +48,7 @@ SampleClock::Time SampleClock::take(const Packet &packet) {
         const double tolerance = packet.isBehindGap ? std::min(tolerance_, half) : tolerance_;
         missing = apart - around * std::floor((apart + tolerance) / around);
         if (packet.isBehindGap || missing > tolerance) {
-            const double passed = double(packet.measured_ns - lastMeasured_ns_) / sample_ns_ - packet.beams;
+            const double passed = double(packet.mono_ns - lastMono_ns_) / sample_ns_ - packet.beams;
             missing = std::max(missing, 0.0);
             missing += std::clamp(std::round((passed - missing) / around), 0.0, mostGone) * around;
             const double packets = (missing - std::min(tolerance, half)) / fullBeams_;
@@ -60,9 +60,9 @@ SampleClock::Time SampleClock::take(const Packet &packet) {
         jump();
         lost = 1;
     }
-    followRate(packet.beams + missing, packet.measured_ns);
+    followRate(packet.beams + missing, packet.mono_ns);
     sensor_ns_ = std::fmod(sensor_ns_ + (packet.beams + missing) * sample_ns_, double(period_ns));
-    lastMeasured_ns_ = packet.measured_ns;
+    lastMono_ns_ = packet.mono_ns;
     const HostClock::Time time = clock_.take(std::int64_t(sensor_ns_), packet.measured_ns, 0);
     return {time.stamp_ns, time.bound_ns, lost};
 }

@@ -15,6 +15,7 @@ public:
         int beams = 0;
         bool isBehindGap = false;     ///< something between is damaged
         std::int64_t measured_ns = 0; ///< its last beam, by when the packet came in
+        std::int64_t mono_ns = 0;     ///< the same by a clock that never jumps
     };
     struct Time {
         std::int64_t stamp_ns; ///< of the last beam
@@ -40,7 +41,7 @@ public:
     int fullBeams() const { return fullBeams_; } ///< of the largest packet
 
 private:
-    void followRate(double beams, std::int64_t measured_ns);
+    void followRate(double beams, std::int64_t mono_ns);
 
     static constexpr std::int64_t period_ns = 3600000000000;
 
@@ -51,7 +52,7 @@ private:
     std::optional<double> head_deg_; ///< of the next beam
     double step_deg_ = 0;
     double sensor_ns_ = 0; ///< by the beams that came
-    std::int64_t lastMeasured_ns_ = 0;
+    std::int64_t lastMono_ns_ = 0;
     std::int64_t rateSince_ns_ = 0; ///< the rate is measured since then
     double rateBeams_ = 0;          ///< by so many beams
 };

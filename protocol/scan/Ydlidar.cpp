@@ -159,7 +159,8 @@ std::size_t Ydlidar::takePacket(std::string_view bytes, const Arrival &arrival) 
     const double first_deg = (word(data + 4) >> 1) / 64.0;
     const double width_deg = std::fmod((word(data + 6) >> 1) / 64.0 - first_deg + 360, 360);
     const auto wire_ns = std::int64_t(double(bytes.size()) * byte_ns_);
-    const SampleClock::Time end = clock_.take({first_deg, count, skipped_ > 0, arrival.stamp_ns - wire_ns});
+    const SampleClock::Time end =
+        clock_.take({first_deg, count, skipped_ > 0, arrival.stamp_ns - wire_ns, arrival.mono_ns - wire_ns});
     skipped_ = 0;
     revolutions_.setClockBound(end.bound_ns);
     if (end.lost > 0)
