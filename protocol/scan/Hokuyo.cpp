@@ -207,7 +207,7 @@ void Hokuyo::tellLost(std::int64_t stamp_ns, double period_ns) {
         const double missing = passed_ns < longGap_ns ? std::round(double(passed_ns) / period_ns) - 1 : 0;
         const auto lost = std::uint64_t(std::max(missing, 1.0));
         counts_.damaged += lost;
-        revolutions_.lose(lost);
+        revolutions_.loseSweeps(lost);
         revolutions_.endSweep(); // what follows is whole
     }
     isBroken_ = false;

@@ -30,8 +30,6 @@ void RevolutionAssembler::lose(std::uint64_t packets) {
     revolution_.lostPackets += packets;
     revolution_.partial = true;
     counts_.lostPackets += packets;
-    if (!spins_ && revolution_.beams.empty())
-        revolution_.number += packets;
 }
 
 void RevolutionAssembler::jump() {

@@ -50,9 +50,13 @@ public:
     /// A beam of a sweep, counter-clockwise; endSweep() gives them.
     void add(const Beam &beam) { revolution_.beams.push_back(beam); }
     void endSweep() { deliver(); }
-    /// Packets are missing between the last beam and the next; 0: nobody knows how many. Of sweeps each is
-    /// one.
+    /// Packets are missing between the last beam and the next; 0: nobody knows how many.
     void lose(std::uint64_t packets);
+    /// Whole sweeps are missing before the next.
+    void loseSweeps(std::uint64_t sweeps) {
+        lose(sweeps);
+        revolution_.number += sweeps;
+    }
     /// What follows is of another time: the revolution under way is given as a partial one.
     void jump();
     /// How far the stamps of the beams that follow may be off.

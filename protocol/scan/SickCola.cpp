@@ -175,7 +175,7 @@ bool SickCola::takeScan(const Arrival &arrival) {
 void SickCola::tellLost(std::uint32_t telegram) {
     const std::uint32_t lost = telegram_ ? (telegram - *telegram_ - 1) & 0xFFFF : 0;
     if (lost > 0 && lost < manyLost) {
-        revolutions_.lose(lost);
+        revolutions_.loseSweeps(lost);
         revolutions_.endSweep(); // what follows is whole
     }
     telegram_ = telegram;
