@@ -174,7 +174,7 @@ private Q_SLOTS:
                         random() % 4 == 0 ? "\xA5\x5A\x54\x2C\x81\x82\x40\x00"[random() % 8] : char(random());
                 reader.feed(bytes, n * 0.01);
                 if (!model.isOneWay)
-                    reader.scanner->next(n * 10000000);
+                    reader.scanner->next(n * std::int64_t(10000000));
             }
         }
     }
