@@ -98,7 +98,7 @@ class WrongRobot(Base):
 
     def work(self):
         if self.has("no time-out"):
-            self.heard = time.monotonic()
+            self.commanded = time.monotonic()
         self.ahead += self.wheels.measured()[0] * (time.monotonic() - self.mono)
         self.cycle()
         if time.monotonic() > self.scanned + 0.1:
