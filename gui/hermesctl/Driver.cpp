@@ -116,7 +116,8 @@ void Driver::onRefused(const Error &error) {
 
 void Driver::fail(Error error) {
     if (error.is(ErrorCode::Disconnected)) // says the connection, or a command on its way
-        error.message += "; the motor control stops a robot whose driver has gone";
+        error.message += "; the motor control stops a robot whose driver has gone; if it has ended itself, "
+                         "the controllers stop by their own time-out";
     if (failure_)
         failure_ = error;
     end();

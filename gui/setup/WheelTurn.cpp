@@ -28,7 +28,8 @@ WheelTurn::WheelTurn(Client &motors, QString holder, std::chrono::milliseconds t
     connect(&motors, &Client::disconnected, this, [this](const QString &reason) {
         if (isHolding_)
             fail(Error(ErrorCode::Disconnected,
-                       reason + "; the motor control stops a robot whose driver has gone"));
+                       reason + "; the motor control stops a robot whose driver has gone; if it has ended "
+                                "itself, the controllers stop by their own time-out"));
     });
 }
 
