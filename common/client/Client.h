@@ -138,11 +138,14 @@ private:
     void lookWhoIsThere();
     void failFirst(const Error &error);
     void finish(qint64 id, const Result<QJsonValue> &result);
+    /// A whole number from 0 to 2^53; negative: it is none.
+    static qint64 toCount(const QJsonValue &value);
 
     Channel *channel_ = nullptr;
     QString failure_;
     QString preferred_;
     bool agreeing_ = false;      ///< on a framing
+    bool flushing_ = false;      ///< an urgent request
     QElapsedTimer firstAttempt_; ///< invalid: it has ended
     Rejected refused_;
     int frameBytes_ = frameLimit;

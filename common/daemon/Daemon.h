@@ -86,6 +86,10 @@ protected:
         commands_.add(command);
         forgetDescription();
     }
+    void addCommands(const std::vector<Command> &commands) {
+        for (const Command &command : commands)
+            addCommand(command);
+    }
     void addTopic(const Topic &topic) {
         topics_.declare(topic);
         forgetDescription();

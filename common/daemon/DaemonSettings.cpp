@@ -99,7 +99,7 @@ void Daemon::declareCommonSettings() {
         // At the start launch() says it, when all settings are known.
         return checkListen(settings, !launched_ || settings.value("insecure").toBool());
     });
-    CommonSettings().declare([this](const Field &field) { addSetting(field); });
+    CommonSettings().declareIn(configuration_);
 }
 
 void Daemon::applyCommonSettings() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "protocol/wire/FieldsOf.h"
 
 #include <functional>
 #include <memory>
@@ -17,6 +18,11 @@ public:
     explicit Reply(Sink sink);
 
     void give(Result<QJsonValue> answer) const;
+    /// Answers with a struct that has fields, or with a list of such.
+    template <typename T>
+    void give(const Result<T> &answer) const {
+        give(answer ? Result<QJsonValue>(asJson(*answer)) : Result<QJsonValue>(answer.error()));
+    }
     void result(const QJsonValue &value) const { give(value); }
     void error(const Error &error) const { give(error); }
 

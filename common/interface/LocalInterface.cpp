@@ -2,8 +2,6 @@
 
 #include "common/interface/LocalAddress.h"
 
-#include <cerrno>
-
 namespace hermes {
 
 LocalInterface::LocalInterface(const InterfaceUrl &address, QObject *parent)

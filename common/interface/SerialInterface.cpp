@@ -2,6 +2,8 @@
 
 #include "common/interface/SerialDriver.h"
 
+#include <cerrno>
+
 namespace hermes {
 namespace {
 
@@ -39,6 +41,12 @@ QString choose(const InterfaceUrl &url, const char *option, const char *fallback
         known.append(QLatin1String(choice.text));
     }
     return QString("%1 is \"%2\", expected one of: %3").arg(QLatin1String(option), text, known.join(", "));
+}
+
+/// What the system says of a pseudo-terminal whose other end is gone helps nobody.
+QString reasonOf(const QSerialPort &port) {
+    const QString text = port.errorString();
+    return text == qt_error_string(ENOTTY) ? "it is no serial device, or none any more" : text;
 }
 
 } // namespace
@@ -93,8 +101,8 @@ void SerialInterface::doOpen() {
     if (!port_.open(QIODevice::ReadWrite)) {
         const QString reason =
             port_.error() == QSerialPort::PermissionError
-                ? QString("in use by another program, or not permitted (%1)").arg(port_.errorString())
-                : port_.errorString();
+                ? QString("in use by another program, or not permitted (%1)").arg(reasonOf(port_))
+                : reasonOf(port_);
         return nowClosed(QString("cannot open %1: %2").arg(name(), reason), true);
     }
     port_.clear();
@@ -146,7 +154,7 @@ Result<void> SerialInterface::setSignal(Signal signal, bool on) {
 void SerialInterface::fail(QSerialPort::SerialPortError error) {
     if (error == QSerialPort::NoError || !isOpen())
         return; // doOpen() tells what goes wrong there
-    const QString reason = port_.errorString();
+    const QString reason = reasonOf(port_);
     port_.close();
     nowClosed(QString("%1: the device is gone or failed: %2").arg(name(), reason), true);
 }

@@ -5,7 +5,6 @@
 #include "common/interface/InterfaceRegistry.h"
 #include "common/network/Publisher.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 

@@ -55,7 +55,8 @@ void PortThread::run() {
     errorTimer.start(errorPeriod_ms);
     carrier->open();
     exec();
-    carrier->close("the logger ends");
+    carrier->disconnect(carrier_); // that it ends is no fault of the line
+    carrier->close();
     carrier_ = nullptr;
 }
 

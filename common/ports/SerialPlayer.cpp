@@ -1,8 +1,5 @@
 #include "common/ports/SerialPlayer.h"
 
-#include "common/recording/DiskError.h"
-
-#include <QFileInfo>
 #include <QJsonArray>
 #include <QRegularExpression>
 
@@ -65,6 +62,17 @@ Result<void> SerialPlayer::advance(Track &track) {
         delay_s_ + 2 * length_s_ + slack_s; // whatever the index says: the clocks may differ
     track.time_ns = std::max(track.time_ns, std::int64_t(std::clamp(time_s, 0.0, most_s) * 1e9));
     return {};
+}
+
+ReplaySource::Actions SerialPlayer::actions(const std::function<void()> &live,
+                                            decltype(ReplaySource::Actions::recording) recording,
+                                            std::function<void()> changed) const {
+    const auto openLive = [live](const Call &) -> Result<void> {
+        live();
+        return {};
+    };
+    const auto duration = [this] { return std::optional<double>(duration_s()); };
+    return {openLive, std::move(recording), {}, duration, {}, std::move(changed)};
 }
 
 void SerialPlayer::stop() {

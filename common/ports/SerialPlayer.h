@@ -2,8 +2,7 @@
 
 #include "common/ports/ChunkQueue.h"
 #include "common/ports/SerialLogReader.h"
-#include "common/recording/Playback.h"
-#include "common/recording/StoredRecording.h"
+#include "common/recording/ReplaySource.h"
 
 #include <functional>
 #include <memory>
@@ -28,6 +27,10 @@ public:
                        const QueueOf &queueOf, Filled filled, End end);
     void stop();
     Playback &playback() { return playback_; }
+    /// Of a logger that plays its recordings by this one.
+    ReplaySource::Actions actions(const std::function<void()> &live,
+                                  decltype(ReplaySource::Actions::recording) recording,
+                                  std::function<void()> changed) const;
     double duration_s() const { return delay_s_ + length_s_; }
 
 private:

@@ -4,7 +4,6 @@
 #include "common/ports/SerialRecorder.h"
 #include "common/recording/DiskError.h"
 
-#include <QDir>
 #include <QFile>
 
 #include <algorithm>

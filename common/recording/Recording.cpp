@@ -22,7 +22,8 @@ Error nothingRecorded() {
 
 } // namespace
 
-Recording::Recording(const QString &logger, Settings &settings, Health &health, RecordingWriter &writer)
+Recording::Recording(const QString &logger, Settings &settings, Health &health, RecordingWriter &writer,
+                     Files files)
     : logger_(logger)
     , settings_(settings)
     , health_(health)
@@ -31,6 +32,7 @@ Recording::Recording(const QString &logger, Settings &settings, Health &health, 
     disk_.setMaxThreadCount(1);
     syncs_.setMaxThreadCount(1);
     connect(&timer_, &QTimer::timeout, this, &Recording::check);
+    declareSettings(files);
 }
 
 Recording::~Recording() {

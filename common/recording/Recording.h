@@ -13,23 +13,21 @@
 
 namespace hermes {
 
-/// What every logger shares: the commands record.*, their settings, the session folder with its sidecar, the
-/// guard of the disk, health items "recording" and "disk", and the completion of recordings that were cut
-/// off. What was written is on the disk a second later at most. The logger adds settingFields() and
+/// What every logger shares: the commands record.*, their settings, which it declares, the session folder
+/// with its sidecar, the guard of the disk, health items "recording" and "disk", and the completion of
+/// recordings that were cut off. What was written is on the disk a second later at most. The logger adds
 /// commands() to its own, calls open() and close() with its start and stop, and writes as a RecordingWriter.
 /// Never waits for the disk in the main thread, but in close().
 class Recording : public QObject {
     Q_OBJECT
 public:
+    /// How many files a recording has of each source: one, or a new one after a while.
+    enum class Files { One, Several };
     /// logger: the daemon's name, and that of sidecar and files.
-    Recording(const QString &logger, Settings &settings, Health &health, RecordingWriter &writer);
+    Recording(const QString &logger, Settings &settings, Health &health, RecordingWriter &writer,
+              Files files = Files::One);
     ~Recording() override;
 
-    static std::vector<Field> settingFields();
-    /// For a logger whose recordings go on in new files.
-    static std::vector<Field> rotationFields();
-    /// The free space to warn at lies above that to stop at.
-    static std::vector<SchemaViolation> checkSettings(const QJsonObject &settings);
     std::vector<Command> commands();
 
     /// Asked before one begins, whether it may.
@@ -52,6 +50,7 @@ private:
     enum class Phase { Idle, Starting, Recording, Ending };
     using Done = std::function<void()>;
 
+    void declareSettings(Files files);
     void start(const Call &call, const Reply &reply);
     void stop(const Call &call, const Reply &reply);
     void list(const Reply &reply);

@@ -3,6 +3,7 @@
 
 #include "common/Time.h"
 #include "common/recording/Sidecar.h"
+#include "common/settings/SettingsTable.h"
 #include "protocol/wire/Fields.h"
 
 #include <QDir>
@@ -11,45 +12,36 @@ namespace hermes {
 
 namespace {
 
-Field byteField(const char *name, const char *description, double least, double value) {
-    return Field::integer(name, description)
-        .unit("byte")
-        .range(least, 1e15)
-        .byDefault(value)
-        .group("Recording");
-}
-
-} // namespace
-
-std::vector<Field> Recording::settingFields() {
-    return {Field::text("record.folder", "Where recordings are kept, a folder each; made when missing")
-                .byDefault("recordings")
-                .appliesOnRestart()
-                .group("Recording"),
-            byteField("record.free_floor_bytes", "Free space of the disk at which a recording is ended", 0,
-                      268435456),
-            byteField("record.free_warn_bytes",
-                      "Free space of the disk below which health is at error while recording", 0,
-                      2147483648.0)};
-}
-
-std::vector<Field> Recording::rotationFields() {
-    return {
-        byteField("record.file_bytes", "Largest size of a file of a recording; then it goes on in a new one",
-                  65536, 1e9),
-        Field::number("record.file_s", "Longest time of a file of a recording; then it goes on in a new one")
-            .unit("s")
-            .range(1, 1e9)
-            .byDefault(3600)
-            .group("Recording")};
-}
-
-std::vector<SchemaViolation> Recording::checkSettings(const QJsonObject &settings) {
+/// The free space to warn at lies above that to stop at.
+std::vector<SchemaViolation> checkRoom(const QJsonObject &settings) {
     const QJsonObject record = settings.value("record").toObject();
     const QJsonValue warn = record.value("free_warn_bytes");
     if (warn.toDouble() >= record.value("free_floor_bytes").toDouble())
         return {};
     return {{"record.free_warn_bytes", warn, "at least record.free_floor_bytes"}};
+}
+
+} // namespace
+
+void Recording::declareSettings(Files files) {
+    SettingsTable table;
+    table.group("Recording", SettingsTable::Applies::OnRestart);
+    table.define("record.folder", "recordings",
+                 "Where recordings are kept, a folder each; made when missing");
+    table.group("Recording");
+    table.define("record.free_floor_bytes", 268435456, "Free space of the disk at which a recording is ended",
+                 "byte", 0, 1e15);
+    table.define("record.free_warn_bytes", std::int64_t(1) << 31,
+                 "Free space of the disk below which health is at error while recording", "byte", 0, 1e15);
+    if (files == Files::Several) {
+        table.define("record.file_bytes", 1000000000,
+                     "Largest size of a file of a recording; then it goes on in a new one", "byte", 65536,
+                     1e15);
+        table.define("record.file_s", 3600.0,
+                     "Longest time of a file of a recording; then it goes on in a new one", "s", 1, 1e9);
+    }
+    table.declareIn(settings_);
+    settings_.addRule(checkRoom);
 }
 
 std::vector<Command> Recording::commands() {
@@ -70,8 +62,7 @@ std::vector<Command> Recording::commands() {
             .asyncHandler([this](const Call &call, const Reply &reply) { stop(call, reply); }),
         Command("record.status", "The recording under way or the last")
             .needs(Role::Observer)
-            .gives<RecordingStatus>()
-            .handler([this](const Call &) { return asJson(status()); }),
+            .answers([this](const Call &) { return status(); }),
         Command("record.list", "The recordings in the folder, the latest first")
             .needs(Role::Observer)
             .gives<std::vector<RecordingEntry>>()

@@ -7,6 +7,7 @@ namespace hermes {
 namespace {
 
 constexpr const char *stateNames[]{"none", "live", "replay", "ended"};
+constexpr qint64 roomTimeout_ms = 5000;
 
 Field speedField() {
     return Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible").range(0, 1000);
@@ -32,6 +33,7 @@ void ReplaySource::close() {
 void ReplaySource::opened(State state, const QString &name) {
     state_ = state;
     name_ = name;
+    sinceRoom_.start();
     logInfo("source", what_ + " come from " + name);
 }
 
@@ -43,6 +45,13 @@ ReplaySource::Ended ReplaySource::whenEnded(const Ended &done) {
         };
         QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
     };
+}
+
+bool ReplaySource::mayShow(bool hasRoom) {
+    const bool isPatient = state_ == State::Replay && playback_.options().speed == 0;
+    if (hasRoom || !isPatient)
+        sinceRoom_.start();
+    return hasRoom || !isPatient || sinceRoom_.elapsed() >= roomTimeout_ms;
 }
 
 void ReplaySource::end(const Result<void> &result) {
@@ -90,7 +99,7 @@ void ReplaySource::clientGone(quint64 client) {
     actions_.changed();
 }
 
-Result<QJsonValue> ReplaySource::open(const Call &call) {
+Result<SourceStatus> ReplaySource::open(const Call &call) {
     const bool live = call.has("live") && call.flag("live");
     if (live + call.has("pcap") + call.has("recording") != 1) {
         std::vector<SchemaViolation> ways{
@@ -110,7 +119,7 @@ Result<QJsonValue> ReplaySource::open(const Call &call) {
     actions_.changed();
     if (!result)
         return result.error();
-    return asJson(status());
+    return status();
 }
 
 Result<void> ReplaySource::openRecording(const Call &call) {
@@ -131,36 +140,30 @@ Command ReplaySource::openCommand(const QString &summary) {
                    .byDefault(0))
         .param(Field::boolean("until_gone", "A replay ends when the client that asks for it goes")
                    .byDefault(false))
-        .gives<SourceStatus>()
         .example({{"recording", "drive"}}, QJsonObject{{"state", "replay"}, {"name", "/data/drive"}})
-        .handler([this](const Call &call) { return open(call); });
+        .answers([this](const Call &call) { return open(call); });
 }
 
-Command ReplaySource::pauseCommand() {
-    return whileReplaying(
-        Command("source.pause", "Pauses the replay, or lets it go on")
-            .param(Field::boolean("paused", "Whether it waits").byDefault(true))
-            .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}}),
-        [this](const Call &call) { playback_.setPaused(call.flag("paused")); });
-}
-
-Command ReplaySource::seekCommand() {
-    return whileReplaying(
-        Command("source.seek", "Lets the replay go on from another time; beyond its end it ends. A paused "
-                               "one plays a quarter of a second, and stays paused")
-            .param(Field::number("t_s", "Seconds after the first record, of a recording after its beginning")
-                       .unit("s")
-                       .range(0, 1e7))
-            .example({{"t_s", 60}},
-                     QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}}),
-        [this](const Call &call) { playback_.seek(call.number("t_s")); });
-}
-
-Command ReplaySource::speedCommand() {
-    return whileReplaying(Command("source.speed", "Makes the replay faster or slower")
-                              .param(speedField())
-                              .example({{"speed", 2}}, QJsonObject{{"state", "replay"}, {"speed", 2}}),
-                          [this](const Call &call) { playback_.setSpeed(call.number("speed")); });
+std::vector<Command> ReplaySource::replayCommands() {
+    return {
+        whileReplaying(
+            Command("source.seek", "Lets the replay go on from another time; beyond its end it ends. A "
+                                   "paused one plays a quarter of a second, and stays paused")
+                .param(
+                    Field::number("t_s", "Seconds after the first record, of a recording after its beginning")
+                        .unit("s")
+                        .range(0, 1e7))
+                .example({{"t_s", 60}},
+                         QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}}),
+            [this](const Call &call) { playback_.seek(call.number("t_s")); }),
+        whileReplaying(Command("source.speed", "Makes the replay faster or slower")
+                           .param(speedField())
+                           .example({{"speed", 2}}, QJsonObject{{"state", "replay"}, {"speed", 2}}),
+                       [this](const Call &call) { playback_.setSpeed(call.number("speed")); }),
+        whileReplaying(Command("source.pause", "Pauses the replay, or lets it go on")
+                           .param(Field::boolean("paused", "Whether it waits").byDefault(true))
+                           .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}}),
+                       [this](const Call &call) { playback_.setPaused(call.flag("paused")); })};
 }
 
 Command ReplaySource::whileReplaying(Command command, const std::function<void(const Call &)> &action) {

@@ -6,6 +6,7 @@
 #include "common/settings/Settings.h"
 #include "protocol/messages/Recordings.h"
 
+#include <QElapsedTimer>
 #include <QObject>
 
 namespace hermes {
@@ -47,17 +48,19 @@ public:
     Ended whenEnded(const Ended &done);
     /// A client has gone: what it replayed only as long as it is there ends.
     void clientGone(quint64 client);
+    /// Whether what came may be shown now: a replay without loss waits for readers who are behind, but not
+    /// for one that reads no more. hasRoom: every reader has some.
+    bool mayShow(bool hasRoom);
     /// All that was played is shown; or why it ended before.
     void end(const Result<void> &result);
 
     /// source.open {live, recording, speed, paused, delay_s}; a logger adds what else it takes.
     Command openCommand(const QString &summary);
-    Command pauseCommand();
-    Command seekCommand();
-    Command speedCommand();
+    /// source.seek, source.speed and source.pause.
+    std::vector<Command> replayCommands();
 
 private:
-    Result<QJsonValue> open(const Call &call);
+    Result<SourceStatus> open(const Call &call);
     Result<void> openRecording(const Call &call);
     Command whileReplaying(Command command, const std::function<void(const Call &)> &action);
 
@@ -67,8 +70,9 @@ private:
     const Actions actions_;
     State state_ = State::None;
     QString name_, error_;
-    quint64 client_ = 0;     ///< with whom the replay ends; 0: with none
-    quint64 generation_ = 0; ///< counts sources
+    quint64 client_ = 0;      ///< with whom the replay ends; 0: with none
+    quint64 generation_ = 0;  ///< counts sources
+    QElapsedTimer sinceRoom_; ///< every reader had room
 };
 
 } // namespace hermes

@@ -6,21 +6,25 @@
 
 namespace hermes {
 
-Field &SettingsTable::append(const char *name, const void *member, const char *description,
+Field &SettingsTable::append(const QString &name, const void *member, const QString &description,
                              const QJsonObject &schema, const QJsonValue &initial,
                              const std::function<void(const QJsonValue &value)> &take) {
-    Field field = Field::schema(QString::fromUtf8(name), QString::fromUtf8(description), schema)
-                      .byDefault(initial)
-                      .group(heading_);
+    Field field = Field::schema(name, description, schema).byDefault(initial).group(heading_);
     if (applies_ == Applies::OnRestart)
         field.appliesOnRestart();
     entries_.push_back({field, member, take});
     return entries_.back().field;
 }
 
-void SettingsTable::declare(const std::function<void(const Field &)> &declare) const {
+Field &SettingsTable::defineList(const QString &name, const QString &description,
+                                 const QJsonObject &elementSchema) {
+    return append(name, nullptr, description, {{"type", "array"}, {"items", elementSchema}}, QJsonArray(),
+                  [](const QJsonValue &) {});
+}
+
+void SettingsTable::declareIn(Settings &settings) const {
     for (const Entry &entry : entries_)
-        declare(entry.field);
+        settings.declare(entry.field);
 }
 
 void SettingsTable::read(const QJsonObject &settings) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "common/schema/Field.h"
-#include "common/schema/SchemaValidator.h"
+#include "common/settings/Settings.h"
 #include "protocol/wire/Fields.h"
 
 #include <functional>
@@ -12,10 +11,11 @@ namespace hermes {
 
 /// The settings that fill a struct: each is told once, with the member that takes its value; what the member
 /// holds is the default. A table is made with the struct, most often by deriving a struct of members from it,
-/// and the members must stay where they are:
+/// and the members must stay where they are. Settings that a program reads by their names need no member:
 ///
 ///     group("Wheels");
 ///     add("frame.wheel_radius_m", wheelRadius, "Radius of a wheel", "m", 0.01, 1);
+///     define("frame.colour", "red", "Of the wheels");
 class SettingsTable {
 public:
     enum class Applies { Now, OnRestart };
@@ -47,9 +47,22 @@ public:
                double most) {
         return add(name, member, description).unit(QLatin1String(unit)).range(least, most);
     }
+    /// One without a member. usual: its default, whose kind is that of the setting.
+    template <typename T>
+    Field &define(const QString &name, const T &usual, const QString &description) {
+        using Value = std::conditional_t<std::is_convertible_v<T, QString>, QString, T>;
+        return append(name, nullptr, description, schemaOf<Value>(), asJson(Value(usual)),
+                      [](const QJsonValue &) {});
+    }
+    template <typename T>
+    Field &define(const QString &name, const T &usual, const QString &description, const char *unit,
+                  double least, double most) {
+        return define(name, usual, description).unit(QLatin1String(unit)).range(least, most);
+    }
+    /// A list of such elements, empty by default.
+    Field &defineList(const QString &name, const QString &description, const QJsonObject &elementSchema);
 
-    /// Calls declare for each setting.
-    void declare(const std::function<void(const Field &)> &declare) const;
+    void declareIn(Settings &settings) const;
     /// Fills the members from settings that suit the schema.
     void read(const QJsonObject &settings);
 
@@ -74,8 +87,9 @@ private:
         std::function<void(const QJsonValue &value)> take;
     };
 
-    Field &append(const char *name, const void *member, const char *description, const QJsonObject &schema,
-                  const QJsonValue &initial, const std::function<void(const QJsonValue &value)> &take);
+    Field &append(const QString &name, const void *member, const QString &description,
+                  const QJsonObject &schema, const QJsonValue &initial,
+                  const std::function<void(const QJsonValue &value)> &take);
     void refuse(const void *member, const QString &expected);
     QString nameOf(const void *member) const;
 

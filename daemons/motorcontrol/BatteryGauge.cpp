@@ -42,13 +42,18 @@ void BatteryGauge::forget() {
 }
 
 QString BatteryGauge::faultOf(const BatteryReading &reading, double seconds) {
-    const auto [first, second] = reading.voltages;
+    QStringList texts;
+    for (std::size_t i = 0; i < reading.voltages.size(); ++i)
+        texts.append(QString(i == 0 ? "controller %1 tells %2 V" : "controller %1 %2 V")
+                         .arg(i + 1)
+                         .arg(reading.voltages[i]));
+    const QString told = texts.join(", ");
+    const auto [lowest, highest] = std::minmax_element(reading.voltages.begin(), reading.voltages.end());
     const double most = std::max(bearable_v, overFull * settings_.full_v);
     const auto isPossible = [most](double voltage) { return voltage > 0 && voltage <= most; };
-    const QString told = QString("controller 1 tells %1 V, controller 2 %2 V").arg(first).arg(second);
-    if (!isPossible(first) || !isPossible(second))
+    if (!std::all_of(reading.voltages.begin(), reading.voltages.end(), isPossible))
         return told + QString(": expected more than 0 V, at most %1 V").arg(most);
-    const bool differ = std::abs(first - second) > agreement_v + resolution_v / 2;
+    const bool differ = *highest - *lowest > agreement_v + resolution_v / 2;
     differing_s_ = differ ? differing_s_ + seconds : 0;
     if (differing_s_ > differing_s)
         return told + QString(": expected at most %1 V between them").arg(agreement_v);
@@ -74,7 +79,7 @@ void BatteryGauge::take(double now, const Result<BatteryReading> &reading) {
     if (charge_)
         count(settings_.idle_a + motors_a, unseen_s_);
     if (rests && rested_s_ >= restTime_s)
-        correct(std::min(reading->voltages[0], reading->voltages[1]), unseen_s_);
+        correct(*std::min_element(reading->voltages.begin(), reading->voltages.end()), unseen_s_);
     unseen_s_ = 0;
     tell();
 }

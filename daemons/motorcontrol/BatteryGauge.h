@@ -7,14 +7,14 @@ namespace hermes::motorcontrol {
 
 /// What is measured of the battery at one time. Not measured: what computers and sensors draw.
 struct BatteryReading {
-    std::array<double, 2> voltages{}; ///< V, at each controller
-    double motors_a = 0;              ///< what the bridges of all motors take from the battery
+    std::vector<double> voltages; ///< V, at each controller
+    double motors_a = 0;          ///< what the bridges of all motors take from the battery
 };
 
 /// How much charge a battery holds, and how long that lasts (thesis 4.1.2: an hour of operation). While the
 /// motors rest the voltage tells the charge, roughly; from there on the currents are counted, and each rest
-/// corrects the count slowly. Both are known with a standard deviation only, and so is what they tell. Of two
-/// voltages the lower one counts, and none where they cannot both be true.
+/// corrects the count slowly. Both are known with a standard deviation only, and so is what they tell. Of
+/// several voltages the lowest one counts, and none where they cannot all be true.
 class BatteryGauge {
 public:
     struct Settings {

@@ -11,6 +11,7 @@ namespace {
 
 const QString silentCause = QStringLiteral("time-out");
 constexpr double longestStep_s = 0.1; // after a pause the ramp goes on, it does not make up for it
+constexpr double rounding = 1e-9;     // relative
 
 /// One value of a command and how large it may be.
 struct Bounded {
@@ -18,6 +19,7 @@ struct Bounded {
     double value;
     double limit;
     const char *unit;
+    QString why = {}; ///< it may not be larger
 };
 
 template <typename Values>
@@ -29,7 +31,9 @@ Result<void> checkBounds(const Values &values) {
         if (std::abs(v.value) <= v.limit)
             continue;
         finite = finite && std::isfinite(v.value);
-        const QString expected = QString("a number from %1 to %2 %3").arg(-v.limit).arg(v.limit).arg(v.unit);
+        const QString bounds =
+            v.limit > 0 ? QString("a number from %1 to %2 %3").arg(-v.limit).arg(v.limit).arg(v.unit) : "0";
+        const QString expected = v.why.isEmpty() ? bounds : bounds + ": " + v.why;
         text += QString("%1%2 is %3, expected %4")
                     .arg(text.isEmpty() ? "" : "; ", v.name)
                     .arg(QString::number(v.value, 'g', QLocale::FloatingPointShortest), expected);
@@ -52,23 +56,46 @@ void Drive::configure(const Settings &settings) {
 }
 
 Result<void> Drive::driveTwist(quint64 client, const Twist2D &twist, double age_s, double now) {
+    const WheelLayout &layout = settings_.layout;
     const Twist2D &most = settings_.limits.velocity;
-    const double sideways = settings_.layout.movesSideways() ? most.vy : 0;
-    const auto bounded = checkBounds(std::array<Bounded, 3>{{{"vx", twist.vx, most.vx, "m/s"},
-                                                             {"vy", twist.vy, sideways, "m/s"},
-                                                             {"omega", twist.omega, most.omega, "rad/s"}}});
+    const double turn = layout.steers()
+                            ? std::min(most.omega, std::abs(twist.vx) / layout.leastRadius() * (1 + rounding))
+                            : most.omega;
+    const QString flat = layout.movesSideways() ? "" : "these wheels do not move the robot sideways";
+    const QString wide = turn == most.omega
+                             ? ""
+                             : QString("the robot does not turn on the spot, its smallest radius is %1 m")
+                                   .arg(layout.leastRadius(), 0, 'g', 3);
+    const auto bounded =
+        checkBounds(std::array<Bounded, 3>{{{"vx", twist.vx, most.vx, "m/s"},
+                                            {"vy", twist.vy, flat.isEmpty() ? most.vy : 0, "m/s", flat},
+                                            {"omega", twist.omega, turn, "rad/s", wide}}});
     if (!bounded)
         return bounded;
-    return accept(client, saturated(settings_.layout.wheelSpeeds(twist), settings_.limits.wheelSpeed), age_s,
-                  now);
+    const auto accepted =
+        accept(client, saturated(layout.wheelSpeeds(twist), settings_.limits.wheelSpeed), age_s, now);
+    if (accepted && layout.steers() && twist.vx != 0) // one that shall stand stays on its way
+        targetSteering_ = layout.steering(twist.omega / twist.vx);
+    if (accepted)
+        turnsWheels_ = false;
+    return accepted;
 }
 
 Result<void> Drive::driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now) {
+    WheelValues target = speeds;
+    if (settings_.rearAsFront)
+        std::copy_n(target.begin(), 2, target.begin() + 2);
     std::array<Bounded, wheelCount> values{};
-    for (int i = 0; i < wheelCount; ++i)
-        values[i] = {wheelNames[i], speeds[i], settings_.limits.wheelSpeed, "rad/s"};
+    for (int i = 0; i < wheelCount; ++i) {
+        const bool is = settings_.layout.has(i);
+        values[i] = {wheelNames[i], target[i], is ? settings_.limits.wheelSpeed : 0, "rad/s",
+                     is ? "" : "the layout has no such wheel"};
+    }
     const auto bounded = checkBounds(values);
-    return bounded ? accept(client, speeds, age_s, now) : bounded;
+    const auto accepted = bounded ? accept(client, target, age_s, now) : bounded;
+    if (accepted)
+        turnsWheels_ = true;
+    return accepted;
 }
 
 Result<void> Drive::mayMove(double age_s) const {
@@ -104,6 +131,8 @@ Result<void> Drive::accept(quint64 client, const WheelValues &target, double age
 
 void Drive::halt(const QString &cause, const QString &reason) {
     target_ = setPoint_ = {};
+    const double most = settings_.layout.largestSteering();
+    targetSteering_ = std::clamp(steering_, -most, most);
     watchdog_.rest();
     haltCause_ = cause;
     haltReason_ = reason;
@@ -230,8 +259,22 @@ const WheelValues &Drive::step(double now) {
     if (watchdog_.hasExpired(now))
         halt(silentCause, QString("no command for %1 s").arg(settings_.commandTimeout_s));
     if (dt > 0)
-        setPoint_ = ramped(setPoint_, target_, settings_.layout, settings_.limits.acceleration, dt);
+        advance(dt);
     return setPoint_;
+}
+
+void Drive::advance(double dt) {
+    const WheelLayout &layout = settings_.layout;
+    const MotionLimits &limits = settings_.limits;
+    WheelValues next = target_;
+    if (layout.steers() && !turnsWheels_) {
+        const Bend bend = bent({layout.twist(setPoint_).vx, steering_},
+                               {layout.twist(target_).vx, targetSteering_}, layout, limits, dt);
+        steering_ = bend.steering;
+        next = saturated(layout.wheelSpeeds({bend.speed, 0, bend.speed * layout.curvature(bend.steering)}),
+                         limits.wheelSpeed);
+    }
+    setPoint_ = ramped(setPoint_, next, layout, limits.acceleration, dt);
 }
 
 } // namespace hermes::motorcontrol

@@ -19,6 +19,7 @@ public:
         WheelLayout layout = WheelLayout::mecanum(WheelGeometry());
         MotionLimits limits;
         double commandTimeout_s = 0.25; ///< without a command for so long the robot halts
+        bool rearAsFront = false;       ///< each wheel behind turns with the one before it
     };
 
     /// Halts.
@@ -69,6 +70,10 @@ public:
 
     const WheelValues &setPoint() const { return setPoint_; }
     const WheelValues &target() const { return target_; }
+    /// Of a steered axle, rad to the left: what it shall have now, and then. A halt leaves it as it is: the
+    /// robot brakes on its way.
+    double steering() const { return steering_; }
+    double targetSteering() const { return targetSteering_; }
     const StopLatch &latch() const { return latch_; }
     const ControlLease &lease() const { return lease_; }
     /// Why the robot halted last; empty while it follows commands.
@@ -84,12 +89,15 @@ private:
     Result<void> accept(quint64 client, const WheelValues &target, double age_s, double now);
     void halt(const QString &cause, const QString &reason);
     void depose();
+    void advance(double dt);
 
     Settings settings_;
     CommandWatchdog watchdog_;
     ControlLease lease_;
     StopLatch latch_;
     WheelValues target_{}, setPoint_{};
+    double targetSteering_ = 0, steering_ = 0;
+    bool turnsWheels_ = false; // each with its own speed: no motion of the robot
     QString notReady_ = "the controllers have not answered yet";
     QString haltCause_, haltReason_;
     /// Of the emergency stop. 0: several pressed it, or nobody that is known; nobody drove.

@@ -22,15 +22,28 @@ DriveEngine::DriveEngine(const MotorSettings &settings) {
 
 void DriveEngine::configure(const MotorSettings &settings) {
     settings_ = settings;
+    telemetry_.unopened =
+        settings.areOthersSet ? "other controllers are set, which are opened at the next start" : "";
+    for (WheelMount &wheel : settings_.wheels) {
+        if (wheel.sign == 0 || wheel.controller < controllers())
+            continue;
+        telemetry_.unopened = QString("the wheels need controller %1, which is opened at the next start")
+                                  .arg(wheel.controller + 1);
+        wheel = WheelMount::none();
+    }
     drive_.configure(settings.drive);
     odometry_.setNoise(settings.odometry);
-    tracker_.configure(settings.wheels, settings.countsPerTurn,
+    tracker_.configure(settings_.wheels, settings.countsPerTurn,
                        MotorController::overspeed * settings.pid.qpps * 2 * vectorlib::pi /
                            settings.countsPerTurn,
                        std::max(1.0, settings.serialTimeout_s + 0.5));
     faults_.configure(settings);
     for (const auto &controller : controllers_)
         controller->configure(settings);
+    if (retired_)
+        return;
+    drive_.setReady(); // that the settings were changed does not hide what stands in the way
+    updateReadiness();
 }
 
 void DriveEngine::retire(const QString &why) {
@@ -66,6 +79,8 @@ bool DriveEngine::hasObeyed() const {
 void DriveEngine::updateReadiness() {
     if (retired_)
         return;
+    if (!telemetry_.unopened.isEmpty())
+        return drive_.setNotReady(telemetry_.unopened);
     for (const auto &controller : controllers_) {
         if (!controller->isReady())
             return drive_.setNotReady(controller->name() + ": " + controller->error());
@@ -97,7 +112,9 @@ void DriveEngine::takeReadings() {
         told.error = controller.error();
         told.version = controller.version();
         told.ready = controller.isReady();
-        told.timeout_s = controller.timeout_s();
+        const drive::DeviceTimeout timeout = controller.timeout();
+        told.timeout_s = std::isinf(timeout.seconds) ? std::nullopt : std::optional(timeout.seconds);
+        told.coasts = timeout.coasts;
         told.rate_Hz = controller.rate_Hz().value_or(0);
         told.readings = controller.readings();
         told.overruns = controller.overruns();
@@ -105,8 +122,10 @@ void DriveEngine::takeReadings() {
 }
 
 void DriveEngine::trackWheels(double now) {
-    const auto motion =
-        tracker_.update({&controllers_.front()->readings(), &controllers_.back()->readings()});
+    std::array<const drive::Readings *, controllerCount> readings{};
+    std::transform(controllers_.begin(), controllers_.end(), readings.begin(),
+                   [](const auto &controller) { return &controller->readings(); });
+    const auto motion = tracker_.update(readings);
     telemetry_.moved = motion.has_value();
     if (!motion) {
         if (now - telemetry_.mono > MotorController::lostAfter_s)
@@ -117,9 +136,10 @@ void DriveEngine::trackWheels(double now) {
     telemetry_.speeds = motion->speeds;
     for (int i = 0; i < wheelCount; ++i)
         telemetry_.turns[i] += motion->turns[i];
-    telemetry_.twist = settings_.drive.layout.twist(motion->speeds);
-    telemetry_.slip = settings_.drive.layout.slip(motion->speeds);
-    odometry_.move(settings_.drive.layout.twist(motion->turns));
+    const WheelLayout &layout = settings_.drive.layout;
+    telemetry_.twist = layout.twist(motion->speeds, steered_);
+    telemetry_.slip = layout.slip(motion->speeds, steered_);
+    odometry_.move(layout.twist(motion->turns, steered_));
     if (!motion->plausible) {
         ++telemetry_.counterJumps;
         odometry_.doubt(0.1, 0.1);
@@ -137,21 +157,34 @@ void DriveEngine::command(const WheelValues &setPoint) {
     std::array<std::array<qint32, 2>, controllerCount> speeds{};
     for (int i = 0; i < wheelCount; ++i) {
         const WheelMount &wheel = settings_.wheels[i];
+        if (wheel.sign == 0)
+            continue;
         speeds[wheel.controller][wheel.motor] =
             qint32(std::lround(wheel.sign * setPoint[i] * countsPerRadian));
     }
     for (std::size_t i = 0; i < controllers_.size(); ++i)
-        controllers_[i]->command(speeds[i]);
+        controllers_[i]->command(speeds[i], settings_.servoAt(drive_.steering()));
     sent_ = setPoint;
+    steered_ = std::exchange(steering_, drive_.steering());
 }
 
 Telemetry &DriveEngine::report() {
-    for (std::size_t i = 0; i < controllers_.size(); ++i)
-        telemetry_.controllers[i].stands = controllers_[i]->stands();
+    bool stand = true;
+    for (std::size_t i = 0; i < controllers_.size(); ++i) {
+        stand &= telemetry_.controllers[i].stands = controllers_[i]->stands();
+        telemetry_.controllers[i].mayTurn = controllers_[i]->mayTurn();
+    }
+    if (stand && !telemetry_.moved) { // they are not set up: their counts are no way, but are seen to rest
+        telemetry_.speeds = {};
+        telemetry_.twist = {};
+        telemetry_.slip = 0;
+    }
     telemetry_.pose = odometry_.pose();
     telemetry_.covariance = odometry_.covariance();
     telemetry_.target = drive_.target();
     telemetry_.setPoint = drive_.setPoint();
+    telemetry_.targetSteering = drive_.targetSteering();
+    telemetry_.steering = drive_.steering();
     telemetry_.haltCause = drive_.haltCause();
     telemetry_.haltReason = drive_.haltReason();
     telemetry_.latch = drive_.latch();

@@ -29,6 +29,7 @@ public:
     Drive &drive() { return drive_; }
     Odometry &odometry() { return odometry_; }
     MotorController &controller(int index) { return *controllers_[size_t(index)]; }
+    int controllers() const { return int(controllers_.size()); }
     /// Of the last cycle, with what has changed since; the owner adds what it knows of lines, clock and
     /// thread.
     Telemetry &report();
@@ -48,6 +49,8 @@ private:
     std::vector<std::unique_ptr<MotorController>> controllers_;
     Telemetry telemetry_;
     WheelValues sent_{}; // the set-point of the last cycle
+    /// Of a steered axle, rad: of the last cycle, and what it was while the readings of the next one came.
+    double steering_ = 0, steered_ = 0;
     quint64 resets_ = 0; // of the drive, seen
     bool retired_ = false;
 };

@@ -17,7 +17,7 @@ QString failureText(const drive::MotorDevice::Name &name, Bus::Result result, bo
         break;
     }
     if (!heard)
-        return "does not answer";
+        return "does not answer" + QString::fromStdString(name.ifSilent);
     const QString text = QString("answers, but not command %1").arg(command);
     return name.ifUnknown.empty() ? text : text + ": " + QString::fromStdString(name.ifUnknown);
 }

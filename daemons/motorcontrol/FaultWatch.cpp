@@ -10,14 +10,13 @@ namespace {
 
 using Level = Threshold::Level;
 
-// All error bits as one sentence.
-QString statusErrors(quint32 status) {
+QStringList statusErrors(quint32 status) {
     QStringList texts;
     for (quint32 bit = 1; bit & roboclaw::statusErrors; bit <<= 1) {
         if (status & bit)
             texts.append(roboclaw::statusText(bit));
     }
-    return texts.join(", ");
+    return texts;
 }
 
 } // namespace
@@ -65,10 +64,13 @@ void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now
                 .arg(r.temperature_c)
                 .arg(watch.temperature.settings().fault);
         });
-        const QString errors = statusErrors(r.status);
+        QStringList errors = statusErrors(r.status);
+        for (int motor = 0; motor < 2; ++motor)
+            if (const char *const fault = r.faults[motor])
+                errors.append(QString("M%1: %2").arg(motor + 1).arg(fault));
         if (!errors.isEmpty())
             drive.fault(QString("controller_%1").arg(i + 1),
-                        QString("%1 reports: %2").arg(told.name, errors));
+                        QString("%1 reports: %2").arg(told.name, errors.join(", ")));
     }
 }
 

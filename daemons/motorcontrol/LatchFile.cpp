@@ -1,6 +1,5 @@
 #include "daemons/motorcontrol/LatchFile.h"
 
-#include "common/Project.h"
 #include "common/files/Folder.h"
 #include "common/interface/InterfaceUrl.h"
 #include "common/recording/FileSync.h"
@@ -26,7 +25,7 @@ bool lasts(const QString &address) {
 
 Error failed(const QString &path, const QString &why) {
     return {ErrorCode::InputOutput,
-            QString("the emergency stop will not outlive this program: %1: %2").arg(path, why)};
+            QString("an emergency stop does not outlive this program: %1: %2").arg(path, why)};
 }
 
 } // namespace
@@ -38,6 +37,15 @@ void LatchFile::setPlace(const QStringList &listen, const QStringList &lines) {
     QString name = (listen + lines).join('+');
     name.replace(QRegularExpression("[^A-Za-z0-9.+-]+"), "_");
     path_ = stateFolder() + "/estop/" + name.left(longestName);
+}
+
+Result<void> LatchFile::mayBeWritten() const {
+    if (path_.isEmpty())
+        return {};
+    const QFileInfo folder(QFileInfo(path_).path());
+    if (const auto made = makeFolder(folder.filePath()); !made)
+        return failed(folder.filePath(), made.error().message);
+    return folder.isWritable() ? Result<void>() : failed(folder.filePath(), "the folder cannot be written");
 }
 
 std::optional<QString> LatchFile::read() const {
@@ -62,9 +70,8 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
         disk_.start([folder] { syncFolder(folder); });
         return {};
     }
-    const auto made = makeFolder(folder);
-    if (!made)
-        return made;
+    if (const auto may = mayBeWritten(); !may)
+        return may;
     const QByteArray text = reason->left(longestReason / 4).toUtf8() + '\n';
     QFile file(path_ + ".new");
     file.remove(); // never through a link

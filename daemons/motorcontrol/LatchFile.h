@@ -17,6 +17,8 @@ public:
     void setPlace(const QStringList &listen, const QStringList &lines);
     const QString &path() const { return path_; }
 
+    /// Error: InputOutput, no stop could be written now.
+    Result<void> mayBeWritten() const;
     /// Why the robot was stopped; nothing where no stop was latched. A file that cannot be read is a stop.
     std::optional<QString> read() const;
     /// At once, for a program that is killed; on the disk soon. Nothing: no stop is latched. Error:

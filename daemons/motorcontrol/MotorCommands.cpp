@@ -122,13 +122,13 @@ void MotorControl::declareMotorCommands() {
             WheelValues speeds{};
             for (int i = 0; i < wheelCount; ++i)
                 speeds[i] = call.number(wheelNames[i]);
-            if (loop.telemetry().controllers.size() == 1) // it turns two wheels
-                std::copy_n(speeds.begin(), 2, speeds.begin() + 2);
             return nullOr(loop.drive().driveWheels(call.client, speeds, ageOf(call), monotonicNow()));
         });
     for (const char *name : wheelNames)
         wheels.param(
-            Field::number(name, "Positive turns drive the robot forward").unit("rad/s").byDefault(0));
+            Field::number(name, "Positive turns drive the robot forward; of omni wheels counter-clockwise")
+                .unit("rad/s")
+                .byDefault(0));
     addCommand(
         wheels.param(stampField()).with("x-needs-lease", true).example({{"front_left", 1}}, QJsonValue()));
     addCommand(
@@ -169,8 +169,7 @@ void MotorControl::declareMotorCommands() {
         hermes::Command("motor.state",
                         "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
             .needs(Role::Observer)
-            .gives<MotorState>()
-            .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
+            .answers([this](const Call &) { return state(); }));
     addCommand(
         loopCommand("odometry.reset", "Sets the pose, as certain",
                     [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
@@ -229,10 +228,7 @@ void MotorControl::declareControlCommands() {
     addCommand(
         hermes::Command("control.state", "Who holds the control, and for how long without a further command")
             .needs(Role::Observer)
-            .gives<LeaseState>()
-            .handler([this](const Call &) -> Result<QJsonValue> {
-                return asJson(told_.lease.state(monotonicNow()));
-            }));
+            .answers([this](const Call &) { return told_.lease.state(monotonicNow()); }));
 }
 
 } // namespace hermes::motorcontrol

@@ -11,6 +11,7 @@
 #include <future>
 #include <sys/resource.h>
 #include <tuple>
+#include <utility>
 
 namespace hermes::motorcontrol {
 namespace {
@@ -34,12 +35,12 @@ constexpr int niceness = -11; // where it may: what must stop the robot does not
 } // namespace
 
 MotorControl::MotorControl()
-    : Daemon(
-          {"motorcontrol", "Motor control",
-           "Drives the wheels through two RoboClaws or an Arduino, tells where they have brought the robot, "
-           "and stops when anything breaks"}) {
+    : Daemon({"motorcontrol", "Motor control",
+              "Drives the wheels through RoboClaws, VESCs, Roboteqs, an OpenCR or an Arduino, tells where "
+              "they have brought the robot, "
+              "and stops when anything breaks"}) {
     feedWatchdogMyself();
-    declareMotorSettings([this](const Field &field) { addSetting(field); });
+    declareMotorSettings(settings());
     settings().addRule(checkMotorSettings);
     declareTopics();
     declareMotorCommands();
@@ -73,6 +74,7 @@ void MotorControl::declareTopics() {
 
 Result<void> MotorControl::start() {
     active_ = MotorSettings::from(settings());
+    told_.controllers.count = active_.controllers.size();
     gauge_.configure(active_.gauge);
     server().gaps().watch(active_.drive.commandTimeout_s);
     if (::getpriority(PRIO_PROCESS, 0) > niceness)
@@ -102,12 +104,18 @@ void MotorControl::restoreStop() {
     for (const ControllerAddress &controller : active_.controllers)
         lines.append(controller.url);
     latchFile_.setPlace(listen, lines);
+    const auto kept = latchFile_.mayBeWritten();
+    unkept_ = kept ? QString() : kept.error().message;
     const auto reason = latchFile_.read();
     if (!reason)
         return;
     logWarning("stop", *reason + ", before this program was started; it stays until motor.reset_estop");
     QMetaObject::invokeMethod(
-        loop_, [this, &reason] { loop_->drive().restoreStop(*reason, monotonicNow()); },
+        loop_,
+        [this, &reason] {
+            loop_->drive().restoreStop(*reason, monotonicNow());
+            told_.latch = loop_->drive().latch(); // who asks before the first report is told so
+        },
         Qt::BlockingQueuedConnection);
 }
 
@@ -148,9 +156,15 @@ void MotorControl::settingsChanged(const QStringList &paths) {
     });
     if (!loop_)
         return;
-    const auto places = active_.controllers; // wait for a restart
-    active_ = MotorSettings::from(settings());
-    active_.controllers = places;
+    const MotorSettings before = std::exchange(active_, MotorSettings::from(settings()));
+    const std::vector<ControllerAddress> awaited = MotorSettings::withWaiting(settings()).controllers;
+    active_.areOthersSet =
+        !std::equal(awaited.begin(),
+                    awaited.begin() + std::ptrdiff_t(std::min(awaited.size(), before.controllers.size())),
+                    before.controllers.begin(), [](const auto &a, const auto &b) {
+                        return a.model == b.model && a.address == b.address;
+                    });
+    active_.controllers = before.controllers; // they wait for a restart
     gauge_.configure(active_.gauge);
     if (!concernsDrive)
         return;

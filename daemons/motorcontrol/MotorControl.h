@@ -59,6 +59,7 @@ private:
     void tellControllers();
     void tellMeasures();
     void tellCycle();
+    void tellSlowWheels();
     void tellStop();
     bool isReady() const;
     MotorState state() const;

@@ -2,6 +2,7 @@
 
 #include "daemons/motorcontrol/MotorSettings.h"
 #include "daemons/motorcontrol/ReadingRate.h"
+#include "daemons/motorcontrol/RestartWatch.h"
 #include "daemons/motorcontrol/StandstillWatch.h"
 #include "protocol/drive/Bus.h"
 
@@ -53,7 +54,7 @@ public:
     void setLineHeld(bool held) { lineHeld_ = held; }
 
     /// New speeds (counts/s) of M1 and M2, to be sent at once.
-    void command(const std::array<qint32, 2> &speeds);
+    void command(const std::array<qint32, 2> &speeds, std::optional<double> servo = {});
     /// The encoders shall be read, and one of the slow readings.
     void beginCycle(double now);
     /// It has to be told to stand before anything else is sent to anyone.
@@ -66,8 +67,14 @@ public:
 
     /// Set up, and answers.
     bool isReady() const { return state_ == State::Ready; }
-    /// Has acknowledged that it shall stand, and its encoders say that it does.
-    bool stands() const { return !barred_ && watch_.stands(); }
+    /// Has acknowledged that it shall stand, its encoders say that it does, it has had the time to brake
+    /// (encoders without supply say so at once), and it is heard.
+    bool stands() const {
+        const bool isHeard = isReady() || awake_ - answered_ <= lostAfter_s;
+        return !barred_ && watch_.stands() && awake_ >= brakesUntil_ && isHeard;
+    }
+    /// It is not heard, and its last set-point may still turn its wheels.
+    bool mayTurn() const { return !isReady() && awake_ < turnsUntil_; }
     /// Its line gives fewer set-points than leastRate_Hz.
     bool isTooSlow() const { return rate_.isBelow(); }
     /// How often its encoders are read; nothing until that is known.
@@ -87,7 +94,7 @@ public:
     const QString &version() const { return version_; }
     const drive::Readings &readings() const { return readings_; }
     /// After which it stops by itself when it is told nothing, once it is set up.
-    double timeout_s() const { return device_->timeout().seconds; }
+    drive::DeviceTimeout timeout() const { return device_->timeout(); }
     /// Cycles whose encoders were not read in time.
     quint64 overruns() const { return overruns_; }
 
@@ -99,7 +106,9 @@ private:
         CutPower,   ///< and wait for the answer in silence
         Look,       ///< whether its encoders say that it stands: it has acknowledged that it shall
     };
+    static constexpr double shortestReplyTimeout_s = 0.03; ///< FTDI adapters hold bytes for up to 16 ms
     static constexpr double longestDrivingReplyTimeout_s = 0.06;
+    static constexpr double timeoutMargin_s = 0.1; ///< of the controllers' own clock
 
     std::optional<Ask> due(Task task, double now) const;
     std::optional<Ask> dueStop(Task task, double now) const;
@@ -118,6 +127,8 @@ private:
     void missSlow();
     /// Seconds until it is seen to stand after it was told to.
     double brakingTime() const;
+    /// From the set-point of now to standing, in seconds.
+    double rampTime() const;
     bool isToldToStand() const { return stopStep_ != StopStep::Tell; }
     /// How it is told again to stand.
     StopStep nextAttempt() const {
@@ -128,6 +139,7 @@ private:
     void watchAnswers();
     void lose(const QString &reason);
     void failSetup(const QString &reason, double now);
+    void refuseSetup(const QString &reason, double now);
     Ask ask(const drive::Command &command, double timeout_s) const;
     QString failureOf(const drive::Command &command) const;
     /// Longer than the controller's own time-out.
@@ -139,6 +151,7 @@ private:
     std::unique_ptr<drive::MotorDevice> device_;
     double fullSpeed_ = drive::VelocityPid().qpps; // counts/s
     double promised_s_ = 0;                        // until it stops by itself
+    bool mayLackTimeout_ = false;
     StandstillWatch watch_;
     ReadingRate rate_{leastRate_Hz};
     quint32 deceleration_ = 1; // counts/s^2
@@ -150,6 +163,8 @@ private:
     bool lineHeld_ = false;
     double lastCycle_ = 0; // monotonic
     double clock_ = 0;     // seconds of cycles in which it could be asked
+    double awake_ = 0;     // seconds of all cycles
+    double answered_ = 0;  // the last request, by that
 
     // Stopping and set-up.
     StopStep stopStep_ = StopStep::Tell;
@@ -173,11 +188,16 @@ private:
 
     // Ready.
     double replyTimeout_s_ = 0;
-    double countsAsked_ = 0; // monotonic; 0: not since it is ready
+    RestartWatch restarts_;
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted
     bool toldToTurn_ = false;                       // by the last one that was sent
     std::array<qint32, 2> speeds_{};
+    std::optional<double> servo_; // 0 to 1
+    /// Until then wheels that were told to turn can hardly stand, whatever their encoders say, or may turn by
+    /// a set-point that nobody can take back (by awake_: they brake, and their time-out runs, in silence,
+    /// too).
+    double brakesUntil_ = 0, turnsUntil_ = 0;
     double standBy_ = 0; // by clock_: until then it must stand; while its set-point is zero
     int slow_ = 0;
     drive::Readings readings_;

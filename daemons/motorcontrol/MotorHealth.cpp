@@ -3,6 +3,7 @@
 #include "daemons/motorcontrol/MotorControl.h"
 #include "daemons/motorcontrol/MotorMessages.h"
 #include "protocol/wire/Fields.h"
+#include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,17 +44,21 @@ void MotorControl::updateHealth() {
     tellControllers();
     tellMeasures();
     tellCycle();
+    tellSlowWheels();
     tellStop();
 }
 
 // Of a controller whose time-out cannot be set: what that means.
 QString MotorControl::runOnOf(std::size_t controller) const {
-    if (active_.controllers[controller].kind == DeviceKind::RoboClaw)
+    const Telemetry::Controller &c = told_.controllers[controller];
+    if (!c.ready || active_.controllers[controller].model->timeout.isSet)
         return {};
-    const double timeout_s = told_.controllers[controller].timeout_s;
-    return QString("; when this program dies it stops by itself after %1 s, up to %2 m farther")
-        .arg(timeout_s)
-        .arg(active_.longestWay_m(timeout_s), 0, 'f', 1);
+    if (!c.timeout_s)
+        return "; when this program dies it never stops by itself";
+    return QString("; when this program dies it stops by itself after %1 s%2, %3 %4 m farther")
+        .arg(*c.timeout_s)
+        .arg(c.coasts ? " and rolls" : "", c.coasts ? "at least" : "up to")
+        .arg(active_.longestWay_m(*c.timeout_s), 0, 'f', 1);
 }
 
 void MotorControl::tellControllers() {
@@ -63,9 +68,9 @@ void MotorControl::tellControllers() {
         const QString text = c.name + ": " + (c.ready ? c.version : c.error) + advice + runOnOf(i);
         const quint64 faults = c.counts.timeouts + c.counts.crcErrors + c.counts.unexpected;
         const HealthLevel past = answers_[i].level(double(faults));
-        const HealthLevel level = !c.ready             ? HealthLevel::Failed
-                                  : c.advice.isEmpty() ? past
-                                                       : HealthLevel::Warn;
+        const HealthLevel level = !c.ready                            ? HealthLevel::Failed
+                                  : c.advice.isEmpty() && c.timeout_s ? past
+                                                                      : HealthLevel::Warn;
         const QString pastText =
             faults > 0 ? QString("; %1 answers were damaged or did not come").arg(faults) : QString();
         health().set(QString("controller_%1").arg(i + 1), level, text + pastText, asJson(c).toObject());
@@ -84,11 +89,12 @@ void MotorControl::tellMeasures() {
         for (double a : c.readings.current_a)
             current = std::max(current, std::abs(a));
     }
+    const DeviceModel &model = *active_.controllers[0].model;
     const auto measured = [&](int item, const char *name, double value, const char *key, const char *unit,
                               const Threshold::Settings &limits, bool warns = false,
                               const QString &more = QString()) {
-        if (active_.controllers[0].kind == DeviceKind::Arduino)
-            return health().set(name, HealthLevel::Ok, "an Arduino does not measure it");
+        if (!model.measures[std::size_t(item)])
+            return health().set(name, HealthLevel::Ok, QString(model.title) + " does not measure it");
         if (!known)
             return health().set(name, HealthLevel::Stale, "no controller has reported it");
         const HealthLevel level = toHealth(told_.levels[item]);
@@ -98,7 +104,7 @@ void MotorControl::tellMeasures() {
     };
     const BatteryState &gauge = gauge_.state();
     runsOut_ = gauge.left_s && *gauge.left_s < active_.batteryWarning_s * (runsOut_ ? stickiness : 1);
-    const bool isDoubtful = isReady() && !gauge_.missing().isEmpty();
+    const bool isDoubtful = isReady() && model.measures[3] && !gauge_.missing().isEmpty();
     measured(0, "battery", battery, "battery_v", "V", active_.battery, runsOut_ || isDoubtful,
              ", " + textOf(gauge));
     measured(1, "current", current, "current_a", "A", active_.current);
@@ -124,6 +130,22 @@ void MotorControl::tellCycle() {
                  asJson(cycleOf(told_)).toObject());
 }
 
+// A wheel that stands instead makes the robot go another way than it was told.
+void MotorControl::tellSlowWheels() {
+    const DeviceModel &model = *active_.controllers[0].model;
+    const double slowest = model.slowest(active_.device()) * 2 * vectorlib::pi / active_.countsPerTurn;
+    QStringList slow;
+    for (std::size_t i = 0; i < told_.target.size(); ++i)
+        if (told_.target[i] != 0 && std::abs(told_.target[i]) < slowest)
+            slow.append(QString("%1 at %2 rad/s").arg(wheelNames[i]).arg(told_.target[i], 0, 'f', 2));
+    health().set("wheels", slow.isEmpty() ? HealthLevel::Ok : HealthLevel::Warn,
+                 slow.isEmpty() ? QString("not told to turn slower than they can")
+                                : QString("told to turn slower than the %1 rad/s that %2 can: %3; the robot "
+                                          "goes another way")
+                                      .arg(slowest, 0, 'f', 2)
+                                      .arg(model.title, slow.join(", ")));
+}
+
 void MotorControl::tellStop() {
     const bool latched = told_.latch.isSet();
     const auto &causes = told_.latch.causes();
@@ -133,8 +155,12 @@ void MotorControl::tellStop() {
         texts.append(standingOf(told_).all.text);
     if (!unkept_.isEmpty())
         texts.append(unkept_);
-    health().set("stop", latched || lost || !unkept_.isEmpty() ? HealthLevel::Failed : HealthLevel::Ok,
-                 texts.join("; "), asJson(causes).toObject());
+    if (!told_.unopened.isEmpty())
+        texts.append("nothing is driven: " + told_.unopened);
+    const HealthLevel level = latched || lost     ? HealthLevel::Failed
+                              : texts.size() == 1 ? HealthLevel::Ok
+                                                  : HealthLevel::Warn;
+    health().set("stop", level, texts.join("; "), asJson(causes).toObject());
     const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));
     setState(fault ? DaemonState::Fault : isReady() && !latched ? DaemonState::Running : DaemonState::Ready);
 }
@@ -146,20 +172,23 @@ bool MotorControl::isReady() const {
 
 MotorState MotorControl::state() const {
     const WheelLayout &layout = active_.drive.layout;
-    double timeout_s = 0;
+    std::optional<double> timeout_s = 0;
     for (const Telemetry::Controller &c : told_.controllers)
-        timeout_s = std::max(timeout_s, c.timeout_s);
+        timeout_s =
+            timeout_s && c.timeout_s ? std::optional(std::max(*timeout_s, *c.timeout_s)) : std::nullopt;
     return {isReady(),
             standingOf(told_),
             told_.latch.has(Drive::emergencyCause),
             holdOf(told_),
             told_.pose,
             told_.twist,
-            layout.twist(told_.target),
-            layout.twist(told_.setPoint),
+            layout.twist(told_.target, told_.targetSteering),
+            layout.twist(told_.setPoint, told_.steering),
             wheelsOf(told_, layout),
             told_.counterJumps,
-            active_.longestWay_m(timeout_s),
+            timeout_s ? std::optional(active_.longestWay_m(*timeout_s)) : std::nullopt,
+            layout.movesSideways(),
+            layout.leastRadius(),
             {told_.controllers.begin(), told_.controllers.end()},
             cycleOf(told_),
             gauge_.state()};

@@ -2,7 +2,6 @@
 
 #include "common/Time.h"
 #include "daemons/motorcontrol/DriveLoop.h"
-#include "daemons/motorcontrol/FailureText.h"
 #include "protocol/roboclaw/Status.h"
 #include "protocol/wire/Fields.h"
 
@@ -32,7 +31,7 @@ bool allStand(const Telemetry &t) {
 QString turningOf(const Telemetry &t) {
     QStringList names;
     for (const Telemetry::Controller &c : t.controllers)
-        if (c.ready && !c.stands)
+        if (c.ready ? !c.stands : c.mayTurn)
             names.append(c.name);
     return names.isEmpty() ? QString() : "wheels of " + names.join(" and ") + " turn, or were not read since";
 }
@@ -43,10 +42,15 @@ OdometryMessage odometryOf(const Telemetry &t) {
 
 WheelsMessage wheelsOf(const Telemetry &t, const WheelLayout &layout) {
     WheelsMessage message;
-    for (std::size_t i = 0; i < wheelCount; ++i)
-        message.wheels[i] = {t.target[i], t.setPoint[i], t.speeds[i], t.turns[i]};
+    for (std::size_t i = 0; i < wheelCount; ++i) {
+        if (layout.has(int(i)))
+            message.*WheelsMessage::wheels()[i] =
+                WheelMessage{t.target[i], t.setPoint[i], t.speeds[i], t.turns[i]};
+    }
     message.slip = t.slip;
-    message.target = layout.twist(t.target);
+    message.target = layout.twist(t.target, t.targetSteering);
+    if (layout.steers())
+        message.steering = t.steering;
     return message;
 }
 
@@ -60,6 +64,9 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
             if (r.status & bit)
                 meanings.append(roboclaw::statusText(bit));
         }
+        for (const char *fault : r.faults)
+            if (fault)
+                meanings.append(fault);
         message.controllers.push_back({controller.ready && r.complete, r.battery_v, r.logic_v, r.current_a,
                                        r.temperature_c, r.status, meanings, r.duty});
     }
@@ -68,16 +75,13 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
 
 Result<BatteryReading> batteryOf(const Telemetry &t) {
     BatteryReading reading;
-    for (std::size_t i = 0; i < t.controllers.size(); ++i) {
-        const Telemetry::Controller &controller = t.controllers[i];
+    for (const Telemetry::Controller &controller : t.controllers) {
         const drive::Readings &r = controller.readings;
         if (!controller.ready || !r.complete) // what its motors draw is not known
             return Error(ErrorCode::NotReady, "no controller tells voltage and current");
         if (!r.duty)
-            return Error(ErrorCode::DeviceFault,
-                         controller.name + ' ' +
-                             failureText({"48 (duties)"}, drive::Bus::Result::TimedOut, true));
-        reading.voltages[i] = r.battery_v;
+            return Error(ErrorCode::DeviceFault, controller.name + " does not tell the duties of its motors");
+        reading.voltages.push_back(r.battery_v);
         for (std::size_t motor = 0; motor < 2; ++motor) // a bridge takes what its duty lets through
             reading.motors_a += std::abs(r.current_a[motor] * (*r.duty)[motor]);
     }
@@ -121,8 +125,12 @@ Fields<WheelMessage> fieldsOf(Of<WheelMessage>) {
 }
 
 Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>) {
-    return Fields<WheelsMessage>()
-        .addEach(wheelNames, &WheelsMessage::wheels, "Positive turns drive the robot forward")
+    Fields<WheelsMessage> fields;
+    for (std::size_t i = 0; i < wheelCount; ++i)
+        fields.add(wheelNames[i], WheelsMessage::wheels()[i],
+                   "Positive turns drive the robot forward; of omni wheels counter-clockwise");
+    return fields
+        .add("steering", &WheelsMessage::steering, "Of a steered axle, to the left, as commanded", "rad")
         .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s")
         .add("target", &WheelsMessage::target, "The robot's velocity that was commanded");
 }
@@ -166,7 +174,9 @@ Fields<Telemetry::Controller> fieldsOf(Of<Telemetry::Controller>) {
         .add("version", &C::version, "Of its firmware")
         .include(&C::counts)
         .add("stray_bytes", &C::strayBytes, "On its line, when none was awaited")
-        .add("timeout_s", &C::timeout_s, "Without a command for so long it stops by itself", "s")
+        .add("timeout_s", &C::timeout_s,
+             "Without a command for so long it stops by itself; missing: it never does", "s")
+        .add("coasts", &C::coasts, "Then its wheels roll, they do not brake")
         .add("rate_hz", &C::rate_Hz, "Of readings that its line gives; 0: not known", "Hz")
         .add("overruns", &C::overruns, "Cycles that began before the encoders of the last were read");
 }
@@ -185,8 +195,11 @@ Fields<MotorState> fieldsOf(Of<MotorState>) {
         .add("wheels", &S::wheels, "As in the topic wheels")
         .add("counter_jumps", &S::counterJumps, "Times that a controller lost its counts")
         .add("longest_way_m", &S::longestWay_m,
-             "From motion.vx, when this program dies: until the controllers stop by themselves, and braking",
+             "From motion.vx, when this program dies: until the controllers stop by themselves, and braking; "
+             "where one coasts, at least. Missing: one never stops",
              "m")
+        .add("moves_sideways", &S::movesSideways, "Its wheels can")
+        .add("least_radius_m", &S::leastRadius_m, "Of the tightest bend; 0: it turns on the spot", "m")
         .add("controllers", &S::controllers, "Each, with its traffic")
         .add("cycle", &S::cycle, "How punctual it is")
         .add("battery", &S::battery, "How full it is, and how long it lasts");

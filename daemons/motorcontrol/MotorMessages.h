@@ -11,11 +11,18 @@ struct WheelMessage {
     double target = 0, setPoint = 0, speed = 0, angle = 0;
 };
 
-/// The topic `wheels`.
+/// The topic `wheels`, with those that the layout has.
 struct WheelsMessage {
-    std::array<WheelMessage, wheelCount> wheels;
+    std::optional<WheelMessage> frontLeft, frontRight, rearLeft, rearRight;
+    std::optional<double> steering; ///< rad
     double slip = 0;
     Twist2D target; ///< of the robot
+
+    /// In the order of Wheel.
+    static constexpr std::array<std::optional<WheelMessage> WheelsMessage::*, wheelCount> wheels() {
+        return {&WheelsMessage::frontLeft, &WheelsMessage::frontRight, &WheelsMessage::rearLeft,
+                &WheelsMessage::rearRight};
+    }
 };
 
 /// Whether all controllers have confirmed that they stand: the answer to a stop.
@@ -47,7 +54,9 @@ struct MotorState {
     Twist2D twist, target, setPoint;
     WheelsMessage wheels;
     quint64 counterJumps = 0;
-    double longestWay_m = 0;
+    std::optional<double> longestWay_m;
+    bool movesSideways = false;
+    double leastRadius_m = 0;
     std::vector<Telemetry::Controller> controllers;
     CycleState cycle;
     BatteryState battery;

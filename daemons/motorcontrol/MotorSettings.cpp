@@ -2,11 +2,10 @@
 
 #include "common/interface/InterfaceUrl.h"
 #include "common/settings/SettingsTable.h"
-#include "protocol/drive/ArduinoDevice.h"
-#include "protocol/roboclaw/Device.h"
 #include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
+#include <set>
 
 namespace hermes::motorcontrol {
 namespace {
@@ -14,8 +13,10 @@ namespace {
 constexpr double rounding_v = 1e-9; // of differences of decimal fractions
 // Speeds of the rim in m/s: what may count as standing, and be given up to friction.
 constexpr double standingRim = 0.05, frictionRim = 0.1;
-constexpr double leastCounts = 2;   // a second, of a wheel that turns: one may be jitter
-constexpr double longestHold_s = 1; // beyond braking
+constexpr double slowestShare = 1.2; // of what the controllers cannot turn slower, it may be given up, too
+constexpr double leastCounts = 2;    // a second, of a wheel that turns: one may be jitter
+constexpr double longestHold_s = 1;  // beyond braking
+constexpr double largestUnstopped = 0.3; // m/s, where nothing stops the robot when this program dies
 
 /// Where people mount a wheel.
 struct WheelPlace {
@@ -26,7 +27,8 @@ struct WheelPlace {
 /// The settings, and what is checked and made of them.
 struct MotorTable : SettingsTable {
     MotorSettings s;
-    QString kind = "roboclaw", layout = "mecanum";
+    QString kind = deviceModels().front().name, layout = "mecanum";
+    int controllerNumber = 0, rearMotors = 1;
     WheelGeometry frame;
     std::array<WheelPlace, wheelCount> wheels{{{1, 1}, {1, 2}, {2, 1}, {2, 2}}};
     double motorShare = 0.95;
@@ -35,6 +37,8 @@ struct MotorTable : SettingsTable {
     explicit MotorTable(const QJsonObject &settings)
         : MotorTable() {
         read(settings);
+        s.wheelRadius = frame.radius;
+        s.halfTrack = frame.halfTrack;
     }
     void check();
     MotorSettings made();
@@ -44,45 +48,88 @@ private:
     void addBattery();
     void checkWatch();
     void checkDevices();
-    bool isArduino() const { return kind == "arduino"; }
-    /// The wheels that have a motor of their own: all, or those in front.
-    int driven() const { return isArduino() ? 2 : wheelCount; }
+    void checkWheels();
+    void checkSteering();
+    const DeviceModel &model() const { return deviceModel(kind.toStdString()); }
+    /// Slower (rad/s) the controllers cannot turn the wheels.
+    double slowest() const { return model().slowest(s.device()) * 2 * vectorlib::pi / s.countsPerTurn; }
+    WheelLayout wheelLayout() const;
+    /// One controller turns four wheels: those behind have no motor of their own.
+    bool isRearAsFront() const {
+        return layout == "differential" && (model().most == 1 || controllerNumber == 1);
+    }
+    /// The wheels that have a motor of their own.
+    std::vector<const WheelPlace *> driven() const;
+    /// As those name them: the largest number.
+    int neededControllers() const;
 };
 
 MotorTable::MotorTable() {
     group("Controllers");
-    add("controllers.kind", kind,
-        "What they are: two RoboClaws, or one Arduino with the text protocol of ros_arduino_bridge that "
-        "turns "
-        "two wheels")
-        .choices({"roboclaw", "arduino"})
+    QStringList kinds, abouts;
+    for (const DeviceModel &each : deviceModels()) {
+        kinds.append(each.name);
+        abouts.append(each.about);
+    }
+    add("controllers.kind", kind, qPrintable("What they are: " + abouts.join(", ")))
+        .choices(kinds)
         .appliesOnRestart();
+    add("controllers.count", controllerNumber,
+        "How many there are; 0: as many as the wheels name. With 1, the wheels behind of differential turn "
+        "as "
+        "those in front")
+        .range(0, controllerCount)
+        .appliesOnRestart();
+    for (int i = int(s.controllers.size()); i < controllerCount; ++i)
+        s.controllers.push_back({roboclaw::usualLine, roboclaw::firstAddress + i});
     for (int i = 0; i < controllerCount; ++i) {
         const QString at = QString("controllers.%1.").arg(i + 1);
         add(qPrintable(at + "url"), s.controllers[i].url,
-            "Its serial line, as serial:///dev/ttyACM0?baud=115200; controllers with the same URL share the "
-            "line")
+            i == 0 ? "Its serial line, as serial:///dev/ttyACM0?baud=115200; controllers with the same URL "
+                     "share the line"
+                   : "Its serial line; see controllers.1.url")
             .appliesOnRestart();
-        add(qPrintable(at + "address"), s.controllers[i].address, "Its address on the line")
-            .range(128, 135)
+        add(qPrintable(at + "address"), s.controllers[i].address,
+            "Its address on the line, of a RoboClaw; of VESCs the CAN id of the second one, 255: there is "
+            "none")
+            .range(0, 255)
             .appliesOnRestart();
     }
     add("controllers.timeout_s", s.serialTimeout_s,
-        "Without a byte for so long the controllers stop by themselves; an Arduino 2 s after its last "
-        "set-point",
+        "Without a command for so long the controllers stop by themselves; an Arduino needs 2 s, an OpenCR "
+        "0.5 s",
         "s", 0.1, 2)
         .step(0.1);
+    add("controllers.brake_a", s.brake_a, "With which a VESC brakes each motor that is told to stand", "A",
+        0.1, 200);
+    add("controllers.least_erpm", s.leastErpm,
+        "Electrical turns a minute below which a VESC would release its motors; they brake then", "1/min", 0,
+        20000);
     group("PID");
     add("pid.p", s.pid.p, "Proportional part of the controllers' velocity control", "", 0, 1000);
     add("pid.i", s.pid.i, "Integral part", "", 0, 1000);
     add("pid.d", s.pid.d, "Differential part", "", 0, 1000);
     add("pid.qpps", s.pid.qpps, "Encoder counts a second at full duty", "1/s", 100, 20000000);
     group("Wheels");
-    add("frame.layout", layout, "How the wheels move the robot").choices({"mecanum", "differential"});
+    add("frame.layout", layout, "How the wheels move the robot")
+        .choices({"mecanum", "differential", "two_wheels", "omni3", "omni4", "ackermann"});
     add("frame.wheel_radius_m", frame.radius, "Radius of a wheel", "m", 0.01, 1);
     add("frame.half_base_m", frame.halfBase, "From the centre to an axle, along x", "m", 0.01, 5);
     add("frame.half_track_m", frame.halfTrack, "From the centre to the middle of a wheel, along y", "m", 0.01,
         5);
+    add("frame.omni_radius_m", frame.omniRadius, "Of omni3 and omni4: from the centre to a wheel", "m", 0.01,
+        5);
+    add("frame.omni_angle_rad", frame.omniAngle,
+        "Of omni3 and omni4: where front_left is, counter-clockwise from x; the others follow evenly", "rad",
+        -6.3, 6.3);
+    add("frame.rear_motors", rearMotors, "Of ackermann: 1 for both wheels behind, or one each").range(1, 2);
+    add("frame.steering_rad", frame.largestSteering, "Of ackermann: largest steering angle", "rad", 0.01,
+        1.5);
+    add("frame.steering_rate_rad_s", s.drive.limits.steeringRate, "How fast its servo turns it", "rad/s",
+        0.01, 100);
+    add("frame.servo_centre", s.servoCentre, "Position of its servo, 0 to 1, straight ahead", "", 0, 1);
+    add("frame.servo_per_rad", s.servoPerRadian, "How far its servo goes for a radian to the left", "1/rad",
+        -100, 100);
     add("frame.counts_per_turn", s.countsPerTurn, "Encoder counts in one turn of a wheel", "", 1, 1e7);
     for (int i = 0; i < wheelCount; ++i) {
         const QString at = QString("wheels.%1.").arg(wheelNames[i]);
@@ -105,6 +152,8 @@ MotorTable::MotorTable() {
         "Without a motion command for so long the robot stops", "s", 0.05, 2);
     add("safety.deceleration", s.emergencyDeceleration, "With which the controllers brake in a stop", "m/s^2",
         0.1, 20);
+    add("safety.no_device_timeout", s.mayLackTimeout,
+        "Drives controllers that never stop by themselves, too: when this program dies the robot drives on");
     group("Odometry");
     add("odometry.position_per_metre", s.odometry.positionPerMetre,
         "Standard deviation of the position after one metre", "m", 0, 1);
@@ -156,18 +205,28 @@ bool isLine(const QString &url) {
 }
 
 void MotorTable::check() {
-    const ControllerAddress &first = s.controllers[0], &second = s.controllers[1];
-    for (const ControllerAddress &controller : s.controllers)
-        require(isLine(controller.url), controller.url,
-                "a line, as serial:///dev/ttyACM0?baud=115200 or, of a serial server, tcp://HOST:PORT");
-    require(isArduino() || first.url != second.url || first.address != second.address, second.address,
-            "another address than that of controller 1, which is on the same line");
-    for (auto wheel = wheels.begin(); wheel != wheels.begin() + driven(); ++wheel)
-        require(std::none_of(wheels.begin(), wheel,
-                             [wheel](const WheelPlace &other) {
-                                 return other.controller == wheel->controller && other.motor == wheel->motor;
-                             }),
-                wheel->motor, "a motor that turns no other wheel");
+    const bool areEnough = driven().size() <= 2 * std::size_t(model().most);
+    require(areEnough, layout, QString("differential or two_wheels: %1 turns two wheels").arg(model().title));
+    if (!areEnough)
+        return; // all else follows from it
+    for (int i = 0; i < neededControllers(); ++i) {
+        const ControllerAddress &one = s.controllers[std::size_t(i)];
+        require(isLine(one.url), one.url,
+                QString("a line, as serial:///dev/ttyACM0?baud=%1 or, of a serial server, tcp://HOST:PORT")
+                    .arg(model().baud));
+        for (int k = 0; k < i; ++k) {
+            const ControllerAddress &other = s.controllers[std::size_t(k)];
+            if (one.url != other.url)
+                continue;
+            require(model().address.sharesLine, one.url,
+                    QString("another line than that of controller %1").arg(k + 1));
+            require(
+                one.address != other.address, one.address,
+                QString("another address than that of controller %1, which is on the same line").arg(k + 1));
+        }
+    }
+    checkWheels();
+    checkSteering();
     notAbove(s.battery.fault, s.battery.warning);
     require(s.gauge.full_v - s.gauge.empty_v >= 0.1 - rounding_v, s.gauge.full_v,
             "at least 0.1 V more than battery.empty_v");
@@ -178,22 +237,94 @@ void MotorTable::check() {
     checkDevices();
 }
 
+WheelLayout MotorTable::wheelLayout() const {
+    return layout == "mecanum"        ? WheelLayout::mecanum(frame)
+           : layout == "differential" ? WheelLayout::differential(frame)
+           : layout == "two_wheels"   ? WheelLayout::twoWheels(frame)
+           : layout == "ackermann"    ? WheelLayout::ackermann(frame, rearMotors)
+                                      : WheelLayout::omni(frame, layout == "omni3" ? 3 : 4);
+}
+
+std::vector<const WheelPlace *> MotorTable::driven() const {
+    std::vector<const WheelPlace *> driven;
+    for (int i = 0; i < (isRearAsFront() ? 2 : wheelCount); ++i) {
+        if (wheelLayout().has(i))
+            driven.push_back(&wheels[std::size_t(i)]);
+    }
+    return driven;
+}
+
+int MotorTable::neededControllers() const {
+    int needed = 1;
+    for (const WheelPlace *wheel : driven())
+        needed = std::max(needed, wheel->controller);
+    return needed;
+}
+
+void MotorTable::checkWheels() {
+    std::set<std::pair<int, int>> motors;
+    std::set<int> numbers;
+    const auto driven = this->driven();
+    for (const WheelPlace *wheel : driven) {
+        require(motors.emplace(wheel->controller, wheel->motor).second, wheel->motor,
+                "a motor that turns no other wheel");
+        numbers.insert(wheel->controller);
+    }
+    const int needed = neededControllers();
+    for (const WheelPlace *wheel : driven)
+        require(wheel->controller <= model().most, wheel->controller,
+                QString("at most %1: a robot has no more of its kind of controller").arg(model().most));
+    require(int(numbers.size()) == needed, driven.back()->controller,
+            "numbers without a gap: a wheel for each controller from 1 on");
+    require(controllerNumber == 0 || controllerNumber == needed, controllerNumber,
+            QString("0 or %1: so many turn wheels").arg(needed));
+}
+
+void MotorTable::checkSteering() {
+    if (layout != "ackermann")
+        return;
+    require(
+        model().turnsServo, layout,
+        QString("another layout, or controllers.kind=vesc: %1 has no output for a servo").arg(model().title));
+    const double reach = std::abs(s.servoPerRadian) * frame.largestSteering;
+    const double room = std::min(s.servoCentre, 1 - s.servoCentre);
+    require(reach > 0 && reach <= room + rounding_v, s.servoPerRadian,
+            QString("not 0, and at most %1 either way: with frame.steering_rad the servo stays within 0 to 1")
+                .arg(room / frame.largestSteering, 0, 'g', 3));
+}
+
 // What the controllers can do.
 void MotorTable::checkDevices() {
-    using drive::ArduinoDevice;
-    if (!isArduino())
-        return require(s.serialTimeout_s <= roboclaw::Device::longestTimeout_s, s.serialTimeout_s,
-                       QString("at most %1 s").arg(roboclaw::Device::longestTimeout_s));
-    require(s.serialTimeout_s >= ArduinoDevice::timeout_s, s.serialTimeout_s,
-            QString("at least %1 s: an Arduino stops by itself no sooner").arg(ArduinoDevice::timeout_s));
-    require(layout == "differential", layout, "differential: an Arduino turns two wheels");
-    for (int i = 0; i < driven(); ++i)
-        require(wheels[i].controller == 1, wheels[i].controller, "1: there is one Arduino");
-    const double slowest = s.encoder.commanded * s.countsPerTurn / (2 * vectorlib::pi);
-    require(
-        slowest >= ArduinoDevice::framesPerSecond, s.encoder.commanded,
-        QString("at least %1 rad/s: an Arduino turns its wheels by whole counts in a thirtieth of a second")
-            .arg(s.encoder.commanded * ArduinoDevice::framesPerSecond / slowest, 0, 'g', 3));
+    const DeviceModel &device = model();
+    require(s.serialTimeout_s <= device.timeout.latest_s, s.serialTimeout_s,
+            QString("at most %1 s: %2 is not driven with a longer one")
+                .arg(device.timeout.latest_s)
+                .arg(device.title));
+    require(s.serialTimeout_s >= device.timeout.soonest_s, s.serialTimeout_s,
+            QString("at least %1 s: %2 stops by itself no sooner")
+                .arg(device.timeout.soonest_s)
+                .arg(device.title));
+    for (int i = 0; i < neededControllers() && device.address.text; ++i)
+        require(s.controllers[i].address >= device.address.first &&
+                    s.controllers[i].address <= device.address.last,
+                s.controllers[i].address,
+                QString("from %1 to %2, for %3")
+                    .arg(device.address.first)
+                    .arg(device.address.last)
+                    .arg(device.title));
+    require(device.timeout.mayBeNone || !s.mayLackTimeout, s.mayLackTimeout,
+            QString("false: %1 has a time-out").arg(device.title));
+    require(!s.mayLackTimeout || s.drive.limits.velocity.vx <= largestUnstopped, s.drive.limits.velocity.vx,
+            QString("at most %1 m/s with safety.no_device_timeout").arg(largestUnstopped));
+    for (const WheelPlace *wheel : driven()) {
+        const int address = s.controllers[std::size_t(wheel->controller) - 1].address;
+        require(wheel->motor == 1 || address != device.address.alone, wheel->motor,
+                QString("1: with address %1 %2 turns no second motor").arg(address).arg(device.title));
+    }
+    require(s.encoder.commanded >= slowest(), s.encoder.commanded,
+            QString("at least %1 rad/s: %2 turns its wheels no slower")
+                .arg(slowest(), 0, 'g', 3)
+                .arg(device.title));
 }
 
 // What watches the wheels sees each motion that matters, in time, and takes no braking for a fault
@@ -204,7 +335,7 @@ void MotorTable::checkWatch() {
                 QString("at most %1 rad/s: %2 m/s at the rim").arg(rim / frame.radius, 0, 'g', 3).arg(rim));
     };
     requireSlow(s.encoder.moving, standingRim);
-    requireSlow(s.encoder.commanded, frictionRim);
+    requireSlow(s.encoder.commanded, std::max(frictionRim, slowestShare * slowest() * frame.radius));
     require(s.encoder.moving * s.countsPerTurn >= 4 * vectorlib::pi * leastCounts, s.countsPerTurn,
             QString("at least %1: with fewer nothing shows within a second whether a wheel turns with "
                     "faults.encoder_moving_rad_s")
@@ -222,16 +353,23 @@ void MotorTable::checkWatch() {
 }
 
 MotorSettings MotorTable::made() {
-    s.wheelRadius = frame.radius;
-    s.drive.layout = layout == "mecanum" ? WheelLayout::mecanum(frame) : WheelLayout::differential(frame);
-    s.drive.limits.wheelSpeed = motorShare * s.pid.qpps * 2 * vectorlib::pi / s.countsPerTurn;
+    s.drive.layout = wheelLayout();
+    double &fastest = s.drive.limits.wheelSpeed;
+    fastest = motorShare * s.pid.qpps * 2 * vectorlib::pi / s.countsPerTurn;
+    if (s.mayLackTimeout) // sideways, and by motor.wheels, too
+        fastest = std::min(fastest, largestUnstopped / s.wheelRadius);
     std::transform(wheels.begin(), wheels.end(), s.wheels.begin(), [](const WheelPlace &wheel) {
         return WheelMount{wheel.controller - 1, wheel.motor - 1, wheel.reversed ? -1.0 : 1.0};
     });
-    if (isArduino()) {
-        s.controllers.resize(1);
-        s.controllers[0].kind = DeviceKind::Arduino;
-        std::copy_n(s.wheels.begin(), 2, s.wheels.begin() + 2); // behind: as in front
+    s.controllers.resize(std::size_t(neededControllers()));
+    for (ControllerAddress &controller : s.controllers)
+        controller.model = &model();
+    s.drive.rearAsFront = isRearAsFront();
+    if (s.drive.rearAsFront)
+        std::copy_n(s.wheels.begin(), 2, s.wheels.begin() + 2);
+    for (int i = 0; i < wheelCount; ++i) {
+        if (!s.drive.layout.has(i))
+            s.wheels[std::size_t(i)] = WheelMount::none();
     }
     s.current.hold_s = s.temperature.hold_s = s.battery.hold_s;
     s.encoder.deceleration = s.emergencyDeceleration / s.wheelRadius / 2; // motors lag behind
@@ -240,8 +378,8 @@ MotorSettings MotorTable::made() {
 
 } // namespace
 
-void declareMotorSettings(const std::function<void(const Field &)> &declare) {
-    MotorTable().declare(declare);
+void declareMotorSettings(Settings &settings) {
+    MotorTable().declareIn(settings);
 }
 
 std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
@@ -252,6 +390,10 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
 
 MotorSettings MotorSettings::from(const Settings &settings) {
     return MotorTable(settings.inForce()).made();
+}
+
+MotorSettings MotorSettings::withWaiting(const Settings &settings) {
+    return MotorTable(settings.values()).made();
 }
 
 } // namespace hermes::motorcontrol

@@ -13,9 +13,11 @@ struct Telemetry {
         QString name, error, version, interface;
         QString advice; ///< what a person should do about its line; empty when nothing
         bool ready = false;
-        bool stands = false;  ///< has confirmed it: MotorController::stands()
-        double timeout_s = 0; ///< after which it stops by itself; see MotorController
-        double rate_Hz = 0;   ///< of readings; 0: not known
+        bool mayTurn = false;            ///< MotorController::mayTurn()
+        bool stands = false;             ///< has confirmed it: MotorController::stands()
+        std::optional<double> timeout_s; ///< after which it stops by itself; nothing: it never does
+        bool coasts = false;             ///< then its wheels roll
+        double rate_Hz = 0;              ///< of readings; 0: not known
         drive::Readings readings;
         drive::Bus::Counts counts;
         quint64 strayBytes = 0; ///< on its line: they came when none was awaited
@@ -24,7 +26,7 @@ struct Telemetry {
 
     /// Those that the robot has; they need no heap.
     struct Controllers : std::array<Controller, controllerCount> {
-        std::size_t count = controllerCount;
+        std::size_t count = 2;
         std::size_t size() const { return count; }
         iterator end() { return begin() + count; }
         const_iterator end() const { return begin() + count; }
@@ -36,11 +38,13 @@ struct Telemetry {
     Twist2D twist;
     Odometry::Covariance covariance{};
     WheelValues target{}, setPoint{}, speeds{}, turns{}; ///< rad/s; turns: rad since the start
+    double targetSteering = 0, steering = 0;             ///< rad, to the left, of a steered axle
     double slip = 0;                                     ///< m/s
     quint64 counterJumps = 0;                            ///< motions that were no motions and were left out
     Controllers controllers;
     CycleStatistics cycle;
     bool realtime = false; ///< the cycle goes before all ordinary threads
+    QString unopened;      ///< why nothing is driven before the next start; empty when it is
     QString haltCause, haltReason;
     StopLatch latch;
     ControlLease lease;

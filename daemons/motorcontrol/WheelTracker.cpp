@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace hermes::motorcontrol {
 namespace {
@@ -33,7 +34,8 @@ bool WheelTracker::isPlausible(double turn, double gap) const {
 
 std::optional<WheelMotion>
 WheelTracker::update(const std::array<const drive::Readings *, controllerCount> &readings) {
-    for (int i = 0; i < controllerCount; ++i) {
+    const auto count = std::find(readings.begin(), readings.end(), nullptr) - readings.begin();
+    for (int i = 0; i < count; ++i) {
         if (readings[i]->countsTime <= times_[i])
             return std::nullopt;
     }
@@ -41,17 +43,18 @@ WheelTracker::update(const std::array<const drive::Readings *, controllerCount> 
     const auto timesBefore = times_;
     const auto setupsBefore = setups_;
     const auto restartsBefore = restarts_;
-    for (int i = 0; i < controllerCount; ++i) {
+    for (int i = 0; i < count; ++i) {
         counts_[i] = readings[i]->counts;
         times_[i] = readings[i]->countsTime;
         setups_[i] = readings[i]->setups;
         restarts_[i] = readings[i]->restarts;
     }
-    if (std::find(timesBefore.begin(), timesBefore.end(), 0.0) != timesBefore.end())
+    if (std::find(timesBefore.begin(), timesBefore.begin() + count, 0.0) != timesBefore.begin() + count)
         return std::nullopt;
     WheelMotion motion;
-    motion.time = (times_[0] + times_[1]) / 2;
-    motion.gap_s = motion.time - (timesBefore[0] + timesBefore[1]) / 2;
+    motion.time = std::accumulate(times_.begin(), times_.begin() + count, 0.0) / count;
+    motion.gap_s =
+        motion.time - std::accumulate(timesBefore.begin(), timesBefore.begin() + count, 0.0) / count;
     for (int i = 0; i < wheelCount; ++i) {
         const WheelMount &wheel = wheels_[i];
         // The counters wrap modulo 2^32: the difference as a signed number is right.

@@ -15,7 +15,7 @@ struct WheelMotion {
     bool plausible = true; ///< false: counters were reset or lost; turns are zero
 };
 
-/// Turns the counters of both controllers into motions of the wheels. While a line is silent the counters go
+/// Turns the counters of all controllers into motions of the wheels. While a line is silent the counters go
 /// on, and what the wheels did is known afterwards. A controller that has lost its power begins at zero
 /// again: that is found by its counters, or by a motion that no wheel can do.
 class WheelTracker {
@@ -25,7 +25,8 @@ public:
     void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double maxSpeed,
                    double longestRun_s = 1);
 
-    /// Nothing until every controller has been read again, or at the first reading.
+    /// Of as many controllers as there are, then nullptr. Nothing until each has been read again, or at the
+    /// first reading.
     std::optional<WheelMotion> update(const std::array<const drive::Readings *, controllerCount> &readings);
 
 private:

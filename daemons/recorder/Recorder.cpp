@@ -26,7 +26,7 @@ Recorder::Recorder()
               "Records all that a robot does as sessions: what its loggers receive and every topic of every "
               "daemon; replays them as they were"})
     , daemons_(ownRobot().value_or(RobotIdentity()).id)
-    , recording_("recorder", settings(), health(), file_)
+    , recording_("recorder", settings(), health(), file_, Recording::Files::Several)
     , return_([this](const QString &name) {
         RobotDaemons::Daemon *const daemon = daemons_.find(name);
         return daemon ? daemon->client.get() : nullptr;
@@ -184,7 +184,7 @@ void Recorder::resume(const QJsonObject &latest, double since_s) {
 }
 
 void Recorder::openRing() {
-    topics_.setRules(topicRules(settings().values()["topics"].toArray()));
+    topics_.setRules(topicRules(settings().values()["topics"]));
     topics_.openRing(settings().number("record.ring_s"),
                      std::size_t(settings().integer("record.queue_bytes")) /
                          2); // all of it fits into the queue

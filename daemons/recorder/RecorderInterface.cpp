@@ -1,6 +1,7 @@
 // What the recorder offers: its settings and commands.
 #include "common/client/DaemonAddress.h"
 #include "common/recording/DiskError.h"
+#include "common/settings/SettingsTable.h"
 #include "daemons/recorder/Recorder.h"
 #include "daemons/recorder/SessionExport.h"
 #include "daemons/recorder/SessionFiles.h"
@@ -18,38 +19,31 @@ QStringList textsOf(const QJsonValue &list) {
     return list.toVariant().toStringList();
 }
 
-/// What a command answers.
-template <typename T>
-Result<QJsonValue> answerOf(const Result<T> &result) {
-    return result ? Result<QJsonValue>(asJson(*result)) : Result<QJsonValue>(result.error());
-}
-
 SessionControl::Done<SessionState> answer(const Reply &reply) {
-    return [reply](const Result<SessionState> &state) { reply.give(answerOf(state)); };
+    return [reply](const Result<SessionState> &state) { reply.give(state); };
 }
 
 } // namespace
 
 void Recorder::declareSettings() {
-    addSetting(Field::array("daemons",
-                            "The daemons of the robot, by name, HOST:PORT or URL; none: those at the default "
-                            "ports of this host. Those that a supervisor among them starts are known, too",
-                            {{"type", "string"}})
-                   .with("maxItems", 100)
-                   .byDefault(QJsonArray())
-                   .group("Robot"));
+    SettingsTable table;
+    table.group("Robot");
+    table
+        .defineList("daemons",
+                    "The daemons of the robot, by name, HOST:PORT or URL; none: those at the default "
+                    "ports of this host. Those that a supervisor among them starts are known, too",
+                    {{"type", "string"}})
+        .with("maxItems", 100);
+    table.group("Recording");
+    table.define("record.ring_s", 0.0,
+                 "How much of all topics is kept without a session, and becomes one "
+                 "when the robot stops or something fails; 0: nothing",
+                 "s", 0, 600);
+    table.group("Recording", SettingsTable::Applies::OnRestart);
+    table.define("record.queue_bytes", 64 << 20, "Bytes of topics that may wait for the disk", "byte",
+                 1 << 20, 1 << 30);
+    table.declareIn(settings());
     addSetting(topicRulesField());
-    addSetting(Field::number("record.ring_s",
-                             "How much of all topics is kept without a session, and becomes one "
-                             "when the robot stops or something fails; 0: nothing")
-                   .unit("s")
-                   .range(0, 600)
-                   .byDefault(0)
-                   .group("Recording"));
-    for (const auto &fields : {Recording::settingFields(), Recording::rotationFields()})
-        for (const Field &field : fields)
-            addSetting(field);
-    settings().addRule(Recording::checkSettings);
     settings().addRule([](const QJsonObject &values) {
         std::vector<SchemaViolation> wrong;
         const QJsonArray daemons = values["daemons"].toArray();
@@ -60,12 +54,6 @@ void Recorder::declareSettings() {
                     {QString("daemons.%1").arg(i), daemons[i], "the name of a daemon, HOST:PORT or a URL"});
         return wrong;
     });
-    addSetting(Field::integer("record.queue_bytes", "Bytes of topics that may wait for the disk")
-                   .unit("byte")
-                   .range(1 << 20, 1 << 30)
-                   .byDefault(64 << 20)
-                   .appliesOnRestart()
-                   .group("Recording"));
 }
 
 void Recorder::declareCommands() {
@@ -85,13 +73,11 @@ void Recorder::declareCommands() {
                    .asyncHandler([this](const Call &, const Reply &reply) { session_.stop(answer(reply)); }));
     addCommand(Command("session.mark", "Puts a text with the time into the session")
                    .param(Field::text("text", "What to remember").with("maxLength", 1000))
-                   .gives<SessionMark>()
                    .example({{"text", "at the door"}}, QJsonObject{{"t_s", 12.5}, {"text", "at the door"}})
-                   .handler([this](const Call &call) { return answerOf(mark(call.text("text"))); }));
+                   .answers([this](const Call &call) { return mark(call.text("text")); }));
     addCommand(Command("session.state", "What the topic session says, now")
                    .needs(Role::Observer)
-                   .gives<SessionState>()
-                   .handler([this](const Call &) { return asJson(session_.state()); }));
+                   .answers([this](const Call &) { return session_.state(); }));
     addCommand(Command("session.list", "The sessions that the loggers have, the latest first")
                    .needs(Role::Observer)
                    .param(Field::integer("max", "How many; 0: all").range(0, 1e6).byDefault(0))
@@ -302,8 +288,8 @@ Command Recorder::whileReplaying(Command command, const std::function<Result<voi
 void Recorder::declareOwnCommands() {
     for (const Command &command : recording_.commands())
         own_.add(command);
-    for (const Command &command : {source_.openCommand("Replays topics"), source_.seekCommand(),
-                                   source_.speedCommand(), source_.pauseCommand()})
+    own_.add(source_.openCommand("Replays topics"));
+    for (const Command &command : source_.replayCommands())
         own_.add(command);
     own_.add(Command("source.status", "Of the replay").handler([this](const Call &) {
         return QJsonValue(QJsonObject{{"source", asJson(source_.status())}});

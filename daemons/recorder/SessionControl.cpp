@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/Time.h"
 #include "common/recording/RecordingName.h"
+#include "common/schema/SchemaValidator.h"
 #include "protocol/wire/Fields.h"
 
 #include <QDateTime>

@@ -1,8 +1,9 @@
 #include "daemons/recorder/SessionReport.h"
 
+#include "common/schema/SchemaValidator.h"
 #include "daemons/recorder/DriveHistory.h"
 #include "daemons/recorder/HaltCause.h"
-#include "protocol/wire/JsonText.h"
+#include "protocol/wire/Fields.h"
 
 #include <QDateTime>
 #include <QMap>

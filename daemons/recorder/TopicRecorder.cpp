@@ -2,6 +2,7 @@
 
 #include "common/Time.h"
 #include "daemons/recorder/SessionReader.h"
+#include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 #include "protocol/wire/JsonWriters.h"
 
@@ -36,33 +37,26 @@ std::map<std::string, std::string> metadataOf(const RobotDaemons::Daemon &daemon
 
 } // namespace
 
+Fields<TopicRule> fieldsOf(Of<TopicRule>) {
+    return Fields<TopicRule>()
+        .add("topic", &TopicRule::topic, "DAEMON/TOPIC; * stands for any text")
+        .add("max_rate_hz", &TopicRule::max_rate_hz, "Messages a second; 0: not recorded")
+        .with("minimum", 0)
+        .add("max_bytes_s", &TopicRule::max_bytes_s, "Bytes a second; 0: no limit")
+        .with("minimum", 0);
+}
+
 Field topicRulesField() {
-    const QJsonObject rule{
-        {"type", "object"},
-        {"additionalProperties", false},
-        {"required", QJsonArray{"topic", "max_rate_hz"}},
-        {"properties",
-         QJsonObject{{"topic", QJsonObject{{"type", "string"},
-                                           {"description", "DAEMON/TOPIC; * stands for any text"}}},
-                     {"max_rate_hz", QJsonObject{{"type", "number"},
-                                                 {"minimum", 0},
-                                                 {"description", "Messages a second; 0: not recorded"}}},
-                     {"max_bytes_s", QJsonObject{{"type", "number"},
-                                                 {"minimum", 0},
-                                                 {"description", "Bytes a second; 0: no limit"}}}}}};
     return Field::array("topics", "Topics of which not all is recorded; the first rule that fits counts",
-                        rule)
+                        schemaOf<TopicRule>())
         .with("maxItems", 100)
         .group("Topics")
         .byDefault(QJsonArray{QJsonObject{{"topic", "*/cloud"}, {"max_rate_hz", 0}}});
 }
 
-std::vector<TopicRule> topicRules(const QJsonArray &setting) {
-    std::vector<TopicRule> rules;
-    for (const QJsonValue &rule : setting)
-        rules.push_back(
-            {rule["topic"].toString(), rule["max_rate_hz"].toDouble(), rule["max_bytes_s"].toDouble()});
-    return rules;
+std::vector<TopicRule> topicRules(const QJsonValue &setting) {
+    ReadReport report;
+    return readMessage<std::vector<TopicRule>>(WireValue(setting), report).value_or(std::vector<TopicRule>());
 }
 
 TopicRecorder::TopicRecorder(RobotDaemons &daemons, McapRecorder &file)
@@ -139,7 +133,7 @@ void TopicRecorder::subscribe(RobotDaemons::Daemon *daemon) {
         Subscribed &one = *subscribed_.back();
         one.daemon = daemon;
         one.number = number;
-        one.maxBytes_s = one.allowance = rule ? rule->max_bytes_s : 0;
+        one.maxBytes_s = one.allowance = rule ? rule->max_bytes_s.value_or(0) : 0;
         one.filled = monotonicNow();
         QJsonObject options{{"queue", queueLength}};
         if (rule)

@@ -9,12 +9,13 @@ namespace hermes::recorder {
 
 /// Which topics are recorded, and how much of them: the setting `topics`. The first rule that fits counts.
 struct TopicRule {
-    QString topic;          ///< "velodynelogger/cloud"; * stands for any text
-    double max_rate_hz = 0; ///< 0: not recorded
-    double max_bytes_s = 0; ///< a second; 0: no limit
+    QString topic;                     ///< "velodynelogger/cloud"; * stands for any text
+    double max_rate_hz = 0;            ///< 0: not recorded
+    std::optional<double> max_bytes_s; ///< a second; none or 0: no limit
 };
 
-std::vector<TopicRule> topicRules(const QJsonArray &setting);
+Fields<TopicRule> fieldsOf(Of<TopicRule>);
+std::vector<TopicRule> topicRules(const QJsonValue &setting);
 /// The setting itself.
 Field topicRulesField();
 

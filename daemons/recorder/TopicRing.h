@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemons/recorder/McapRecorder.h"
+#include "protocol/wire/WireValue.h"
 
 #include <deque>
 #include <map>

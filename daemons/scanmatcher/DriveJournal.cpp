@@ -119,7 +119,7 @@ journal::Block DriveJournal::block(const MappedDrive &drive, const std::vector<d
         ++motions;
     journal::Block block;
     for (std::size_t i = mark.scans; i < scans; ++i)
-        block.scans.push_back({loops.onTheWay()[i], trust[i], drive.edges()[i]});
+        block.scans.push_back({loops.onTheWay()[i], trust[i], drive.edges()[i], drive.own()[i]});
     block.keys = part(loops.keys(), mark.keys, keys);
     block.motions = part(all, mark.motions, motions);
     block.poses = part(loops.graph().poses, isWhole ? 0 : mark.keys, keys);

@@ -24,7 +24,7 @@ using Table = std::optional<std::vector<Number>>;
 /// (m), heading (rad).
 struct Tables {
     std::optional<quint64> version;
-    Table<double> known, scans, keys, motions, poses, weights, since, progress;
+    Table<double> known, scans, own, keys, motions, poses, weights, since, progress;
     Table<float> edges, points;
 };
 
@@ -33,6 +33,8 @@ Fields<Tables> fieldsOf(Of<Tables>) {
         .add(mark, &Tables::version, "Version of the first block")
         .add("known", &Tables::known, "id, observations, and as an edge, in the map's frame")
         .add("scans", &Tables::scans, "key, motion since that key, effort, trust, edges")
+        .add("own", &Tables::own,
+             "Of each scan the edges, the first ones, that its own sensor saw; none: all")
         .add("edges", &Tables::edges, "n, mean x, y, moments xx, xy, yy, segment x1, y1, x2, y2, sigma")
         .add("keys", &Tables::keys,
              "scan, motion since the key before, effort, variances, tracked pose, way, doubt, points")
@@ -128,8 +130,8 @@ private:
 
 /// From a block to its tables, or back. False: a row is cut, or a number is out of its range.
 bool exchange(Tables &tables, Block &block, bool isWriting) {
-    Rows<double> known(tables.known, isWriting), scans(tables.scans, isWriting), keys(tables.keys, isWriting),
-        motions(tables.motions, isWriting), poses(tables.poses, isWriting),
+    Rows<double> known(tables.known, isWriting), scans(tables.scans, isWriting), own(tables.own, isWriting),
+        keys(tables.keys, isWriting), motions(tables.motions, isWriting), poses(tables.poses, isWriting),
         weights(tables.weights, isWriting), since(tables.since, isWriting),
         progress(tables.progress, isWriting);
     Rows<float> edges(tables.edges, isWriting), points(tables.points, isWriting);
@@ -147,6 +149,10 @@ bool exchange(Tables &tables, Block &block, bool isWriting) {
         edges.each(
             scan.edges, [&](EdgeRaw2D &edge) { edges.edge(edge, farthestSeen_m); }, count);
     });
+    const auto isJoint = [](const Block::Scan &scan) { return scan.own < scan.edges.size(); };
+    if (isWriting ? std::any_of(block.scans.begin(), block.scans.end(), isJoint) : tables.own.has_value())
+        for (Block::Scan &scan : block.scans)
+            own.number(scan.own, 0, double(vectorlib::MappedDrive::all));
     keys.each(block.keys, [&](LoopCloser::Key &key) {
         std::vector<Vector2D<float>> seen;
         key.points.unpack(seen);
@@ -183,8 +189,9 @@ bool exchange(Tables &tables, Block &block, bool isWriting) {
         progress.number(row.news, 0, 1);
         progress.positive(row.corrected);
     });
-    return known.isDone() && scans.isDone() && keys.isDone() && motions.isDone() && poses.isDone() &&
-           weights.isDone() && since.isDone() && progress.isDone() && edges.isDone() && points.isDone();
+    return known.isDone() && scans.isDone() && own.isDone() && keys.isDone() && motions.isDone() &&
+           poses.isDone() && weights.isDone() && since.isDone() && progress.isDone() && edges.isDone() &&
+           points.isDone();
 }
 
 } // namespace

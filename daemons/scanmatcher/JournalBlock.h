@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/edges/EdgeRaw2D.h"
-#include "vectorlib/graph/LoopCloser.h"
+#include "vectorlib/graph/MappedDrive.h"
 
 #include <QByteArray>
 
@@ -26,6 +26,7 @@ struct Block {
         vectorlib::LoopCloser::OnTheWay place;
         double trust = 0;
         std::vector<vectorlib::EdgeRaw2D> edges;
+        std::uint32_t own = vectorlib::MappedDrive::all; ///< edges that its sensor saw, the first ones
     };
 
     std::optional<quint64> version;        ///< of the first block

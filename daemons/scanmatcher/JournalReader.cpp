@@ -21,6 +21,7 @@ public:
     std::vector<vectorlib::MapEdge> known;
     LoopCloser::Memory memory;
     std::vector<std::vector<vectorlib::EdgeRaw2D>> edges;
+    std::vector<std::uint32_t> own;
     std::vector<double> trust;
 
     /// False, and nothing happened, where the block does not go on with what there is.
@@ -31,6 +32,7 @@ public:
             memory.scans.push_back(scan.place);
             trust.push_back(scan.trust);
             edges.push_back(std::move(scan.edges));
+            own.push_back(scan.own);
         }
         append(memory.keys, block.keys);
         append(memory.graph.constraints, block.motions);
@@ -137,7 +139,7 @@ Result<RememberedDrive> readDriveJournal(const QByteArray &bytes, const QString 
                      QJsonObject{{"path", path}});
     RememberedDrive result;
     result.drive.known = std::move(all.known);
-    result.drive.restore(std::move(all.memory), std::move(all.edges));
+    result.drive.restore(std::move(all.memory), std::move(all.edges), std::move(all.own));
     result.trust = std::move(all.trust);
     result.leftOut = bytes.size() - whole;
     return result;

@@ -5,28 +5,20 @@
 
 #include <QDir>
 
-#include <utility>
-
 namespace hermes::scanmatcher {
 
 namespace {
 
 constexpr int maxFiles = 4; // that may wait to be written, each with its copy of the map
 
-template <typename T>
-void giveResult(const Reply &reply, const Result<T> &result) {
-    reply.give(result ? Result<QJsonValue>(asJson(*result)) : result.error());
-}
-
 } // namespace
 
 void ScanMatcher::declareMapCommands() {
     const Field path = Field::text("path", "File below map.folder, relative to it");
     const Field force = Field::boolean("force", "Overwrite a file that exists").byDefault(false);
-    addCommand(Command("map.get", "The whole map")
-                   .needs(Role::Observer)
-                   .gives<MapMessage>()
-                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(mirror_.full()); }));
+    addCommand(Command("map.get", "The whole map").needs(Role::Observer).answers([this](const Call &) {
+        return mirror_.full();
+    }));
     addCommand(
         Command("map.save", "Writes the map as CSV, so that map.load gives the same map")
             .needs(Role::Engineer)
@@ -45,16 +37,16 @@ void ScanMatcher::declareMapCommands() {
                      QJsonObject{{"path", "/home/robot/office.svg"}, {"segments", 48}, {"bytes", 9120}})
             .asyncHandler(
                 [this](const Call &call, const Reply &reply) { saveMap(call.text("format"), call, reply); }));
-    addCommand(
-        Command("map.load", "Replaces the map by one that map.save wrote, or goes on with the drive of "
-                            "a journal")
-            .needs(Role::Engineer)
-            .param(path)
-            .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
-            .gives<LoadedMap>()
-            .asyncHandler([this](const Call &call, const Reply &reply) {
-                worker_->post([this, file = mapPath(call), reply] { giveResult(reply, map_->load(file)); });
-            }));
+    addCommand(Command("map.load",
+                       "Replaces the map by one that map.save wrote, or goes on with the drive of "
+                       "a journal")
+                   .needs(Role::Engineer)
+                   .param(path)
+                   .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
+                   .gives<LoadedMap>()
+                   .asyncHandler([this](const Call &call, const Reply &reply) {
+                       worker_->post([this, file = mapPath(call), reply] { reply.give(map_->load(file)); });
+                   }));
     addCommand(Command("map.list", "The maps and journals below map.folder, the newest first")
                    .needs(Role::Observer)
                    .gives<MapList>()
@@ -71,9 +63,8 @@ void ScanMatcher::declareMapCommands() {
                    .param(Field::boolean("redo", "Carry out again what was undone last").byDefault(false))
                    .gives<BroughtBack>()
                    .asyncHandler([this](const Call &call, const Reply &reply) {
-                       worker_->post([this, again = call.flag("redo"), reply] {
-                           giveResult(reply, map_->undo(again));
-                       });
+                       worker_->post(
+                           [this, again = call.flag("redo"), reply] { reply.give(map_->undo(again)); });
                    }));
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
                    .with("x-destructive", "the map, which map.undo brings back, and the remembered drive")
@@ -110,7 +101,7 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
         const Result<SavedMap> saved = writeMapFile(file, format, force, *map);
         if (!saved && format == "csv")
             QMetaObject::invokeMethod(this, [this] { mirror_.setSaved(false); });
-        giveResult(reply, saved);
+        reply.give(saved);
         --filesUnderWay_;
     };
     worker_->post([this, map, write, isSaved = format == "csv"] {

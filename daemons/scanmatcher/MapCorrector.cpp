@@ -113,7 +113,8 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
         seen.motion = leftOut_->motion * seen.motion;
         seen.by = std::max(seen.by, leftOut_->by);
     }
-    const bool showsNothing = tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Skipped;
+    const bool showsNothing =
+        points.empty() || tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Skipped;
     if (added_ > 0 && (showsNothing || isStill(seen))) {
         leftOut_ = std::move(seen);
         return;
@@ -132,6 +133,7 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     seen.points = points;
     if (tracker.isStraight())
         seen.edges = tracker.builder.edges();
+    seen.own = std::uint32_t(tracker.builder.own());
     ++added_;
     Item item;
     item.drive = drive_;
@@ -240,7 +242,7 @@ void MapCorrector::take(const Item &item) {
         return;
     }
     const Seen &seen = *item.scan;
-    memory_.add(seen.points, seen.edges, seen.motion, seen.by);
+    memory_.add(seen.points, seen.edges, seen.motion, seen.by, seen.own);
     numbers_.push_back(seen.number);
     trust_.push_back(seen.trust);
     journal_.write(memory_, trust_);

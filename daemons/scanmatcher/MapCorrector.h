@@ -98,6 +98,7 @@ private:
         quint64 number = 0; // of the scan, since the map was begun
         std::vector<vectorlib::Vector2D<float>> points;
         std::vector<vectorlib::EdgeRaw2D> edges;
+        std::uint32_t own = 0;              // edges that the first scanner saw
         vectorlib::Transformation2D motion; // since the scan before; the pose of the first
         vectorlib::TrackedBy by = vectorlib::TrackedBy::Map;
         double trust = 0;

@@ -43,13 +43,6 @@ Result<Scan> scanParameter(const Call &call, const char *name) {
     return scan;
 }
 
-QString text(const Pose2D &pose) {
-    return QString("x %1 m, y %2 m, theta %3 rad")
-        .arg(pose.x, 0, 'f', 2)
-        .arg(pose.y, 0, 'f', 2)
-        .arg(pose.theta, 0, 'f', 2);
-}
-
 } // namespace
 
 void ScanMatcher::declareMatcherCommands() {
@@ -57,22 +50,15 @@ void ScanMatcher::declareMatcherCommands() {
                    .param(Field::text("mode", "mapping: the map grows; localization: it stays as it is")
                               .choices({"mapping", "localization"})
                               .byDefault("mapping"))
-                   .returnsNull()
-                   .handler([this](const Call &call) -> Result<QJsonValue> {
-                       begin(call.text("mode") == "mapping");
-                       return QJsonValue();
-                   }));
-    addCommand(Command("matcher.stop", "Takes no more scans; pose and map stay")
-                   .returnsNull()
-                   .handler([this](const Call &) -> Result<QJsonValue> {
-                       pause();
-                       return QJsonValue();
-                   }));
+                   .answers([this](const Call &call) { begin(call.text("mode") == "mapping"); }));
+    addCommand(
+        Command("matcher.stop", "Takes no more scans; pose and map stay").answers([this](const Call &) {
+            pause();
+        }));
     addCommand(
         Command("matcher.state", "Mode, counts of scans, waiting and dropped ones, milliseconds a scan")
             .needs(Role::Observer)
-            .gives<MatcherState>()
-            .handler([this](const Call &) -> Result<QJsonValue> { return asJson(matcherState()); }));
+            .answers([this](const Call &) { return matcherState(); }));
     addCommand(Command("matcher.match", "Matches two scans with each other; map and pose are not touched")
                    .param(Field::schema("reference", "The scan that stands still: points counter-clockwise",
                                         scanSchema()))
@@ -160,7 +146,7 @@ void ScanMatcher::showRecovery(const Relocalized &recovery) {
     if (recovery.isFound())
         logInfo("tracking", QString("found in the whole map after %1 lost scans: %2")
                                 .arg(lostInARow_)
-                                .arg(text(recovery.places.front().pose)));
+                                .arg(textOf(recovery.places.front().pose)));
     else if (!lastRecovery_ || lastRecovery_->outcome != recovery.outcome)
         logWarning("tracking", QString("not found in the whole map after %1 lost scans: %2")
                                    .arg(lostInARow_)

@@ -1,3 +1,4 @@
+#include "common/Log.h"
 #include "common/Time.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "protocol/wire/Fields.h"
@@ -9,43 +10,17 @@ using PlaceState = vectorlib::PlaceState;
 namespace {
 
 constexpr double longestSilence_s = 3, longestBlindness_s = 3, longestDoubt_s = 3;
-constexpr double longestStep_s = 10; // between scans in a row
-constexpr double doubtful = 0.5;     // trust; as in the window
-
-// What of a source's messages is no message at all, as one with a number that is not finite.
-QString unreadable(const Client::Rejected &rejected) {
-    if (rejected.unreadable == 0)
-        return {};
-    return QString("; %1 messages could not be read, the last: %2")
-        .arg(rejected.unreadable)
-        .arg(rejected.last);
-}
+constexpr double longestMissing_s = 1; // the second scanner
+constexpr int mayBeApart = 3;          // of its scans in a row
+constexpr double longestStep_s = 10;   // between scans in a row
+constexpr double doubtful = 0.5;       // trust; as in the window
 
 } // namespace
 
 void ScanMatcher::updateHealth() {
-    const QString address = settings().text("source.address");
-    if (!active_)
-        health().set("source", HealthLevel::Ok, "not matching");
-    else if (source_.isBeginning())
-        health().set("source", HealthLevel::Ok, "connecting to " + address);
-    else if (!source_.isConnected())
-        health().set("source", HealthLevel::Failed,
-                     QString("no connection to %1: %2")
-                         .arg(address, sourceFault_.isEmpty() ? source_.problem() : sourceFault_));
-    else if (!sourceFault_.isEmpty())
-        health().set("source", HealthLevel::Failed,
-                     QString("no scans from %1: %2").arg(address, sourceFault_));
-    else if (const double silent_s = monotonicNow() - lastScan_; silent_s > longestSilence_s)
-        health().set("source", HealthLevel::Warn,
-                     QString("no scan from %1 for %2 s").arg(address).arg(silent_s, 0, 'f', 0) +
-                         unreadable(source_.rejected()));
-    else if (badScans_ > 0)
-        health().set("source", pastBadScans_.level(double(badScans_)),
-                     QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));
-    else
-        health().set("source", pastUnreadable_.level(double(source_.rejected().unreadable)),
-                     "connected to " + address + unreadable(source_.rejected()));
+    const auto [level, found] = source_.find(longestSilence_s);
+    health().set("source", active_ ? level : HealthLevel::Ok, active_ ? found : QString("not matching"));
+    updateSecondHealth();
     health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
                  !replayed_ ? QString("live scans are matched")
                  : map_ && map_->keepsLiveMap()
@@ -53,7 +28,7 @@ void ScanMatcher::updateHealth() {
                                "drive, until live scans come")
                      : QString("a replay is matched"));
     odometry_.report(health());
-    const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
+    const quint64 dropped = source_.state().dropped + (worker_ ? worker_->dropped() : 0);
     health().set("queue", pastDrops_.level(double(dropped)),
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  asJson(matcherState()).toObject());
@@ -84,13 +59,62 @@ void ScanMatcher::updateMapHealth() {
                  {{"segments", qint64(mirror_.size())}, {"saved", unsaved.isEmpty()}});
 }
 
+void ScanMatcher::updateSecondHealth() {
+    if (settings().text("source2.address").isEmpty())
+        return health().remove("source2");
+    const auto set = [this](HealthLevel level, const QString &message) {
+        health().set("source2", level, message);
+    };
+    const auto [level, found] = secondSource_.find(longestMissing_s);
+    if (!active_)
+        set(HealthLevel::Ok, "not matching");
+    else if (secondSource_.silent_s() > longestMissing_s)
+        set(HealthLevel::Warn, found + "; the first scanner is matched alone while this one is missing");
+    else if (second_.apartInARow >= mayBeApart)
+        set(HealthLevel::Warn, QString("its scans are left out: they are %1 s older than those of the first "
+                                       "scanner, expected are %2 s at most; one is late, or a clock is wrong")
+                                   .arg(second_.apart_s, 0, 'f', 2)
+                                   .arg(vectorlib::TimedScan::longestApart_s));
+    else if (second_.state != SecondScanner::State::Taken)
+        set(HealthLevel::Warn, secondText());
+    else // what was wrong before is told last
+        set(level == HealthLevel::Ok ? HealthLevel::Ok : HealthLevel::Warn,
+            QString("%1; %2 of its scans were taken").arg(found).arg(second_.paired));
+}
+
+QString ScanMatcher::secondText() const {
+    const Pose2D told = trackerSettings().secondOnRobot;
+    const QString fits = !second_.fitting ? QString()
+                                          : QString("; sensor2.x_m, y_m and theta_rad tell %1, what it sees "
+                                                    "fits %2")
+                                                .arg(textOf(told), textOf(*second_.fitting));
+    return second_.state == SecondScanner::State::OnTrial
+               ? "its scans are not used yet: they are once both scanners showed the same at three places "
+                 "(more after it failed), 0.1 m or 0.1 rad apart. Drive to where this one sees what the "
+                 "first has seen" +
+                     fits
+               : "its scans are left out: they contradict the map. It is mounted otherwise than sensor2.* "
+                 "tells, its stamps or t are wrong, or it is another robot's" +
+                     fits;
+}
+
+void ScanMatcher::noteSecond(const ScanOutcome &outcome) {
+    second_.fitting = outcome.secondFitting;
+    if (std::exchange(second_.state, outcome.second) == outcome.second)
+        return;
+    if (outcome.second == SecondScanner::State::Taken)
+        logInfo("source2", "both scanners show the same: the second is taken");
+    else
+        logWarning("source2", secondText());
+}
+
 void ScanMatcher::updateSensorHealth() {
     QString message = "nothing contradicts how the sensor is said to be mounted";
     const auto turned = scanner_.turned();
     if (scanner_.isMirrored())
         message =
             "the scans turn the other way than the odometry: their angles count clockwise, or the sensor "
-            "hangs upside down";
+            "hangs upside down; sensor.upside_down tells so";
     else if (turned)
         message =
             QString(

@@ -92,6 +92,14 @@ PlaceAnswer answerOf(const Place &place) {
 
 } // namespace
 
+QString textOf(const Pose2D &pose) {
+    const auto rounded = [](double value) {
+        return QString::number(std::round(100 * value) / 100 + 0.0, 'f', 2);
+    };
+    return QString("x %1 m, y %2 m, theta %3 rad") // and no -0.00
+        .arg(rounded(pose.x), rounded(pose.y), rounded(pose.theta));
+}
+
 SearchAnswer answerOf(const Relocalized &search) {
     SearchAnswer answer;
     answer.outcome = QString(vectorlib::name(search.outcome));
@@ -116,6 +124,26 @@ Fields<OdometryState> fieldsOf(Of<OdometryState>) {
         .add("unknown_fields", &S::unknownFields, "Members of messages that this program does not know")
         .add("scans_without", &S::scansWithout, "Scans that found no odometry of their time")
         .add("contradicted", &S::contradicted, "Pieces of way of which the scans show another");
+}
+
+Fields<SourceState> fieldsOf(Of<SourceState>) {
+    using S = SourceState;
+    return Fields<S>()
+        .add("address", &S::address, "Of the daemon")
+        .add("connected", &S::connected, "To it")
+        .addOrNull("age_s", &S::age, "Since its last scan", "s")
+        .add("scans", &S::scans, "Taken")
+        .add("refused", &S::refused, "That could not be read")
+        .add("dropped", &S::dropped, "As this daemon read too slowly")
+        .add("unknown_fields", &S::unknownFields, "Members of scans that this program does not know")
+        .add("use", &S::use,
+             "Of the second scanner: on_trial, until it has agreed with the first at enough places; taken; "
+             "contradicted, its scans are left out")
+        .choices({"on_trial", "taken", "contradicted"})
+        .add("paired", &S::paired, "Scans of the second scanner that went with one of the first")
+        .add("apart", &S::apart, "Scans of the second scanner that were of another time than the first one's")
+        .add("apart_s", &S::apart_s, "By which its last scan was older than the first one's", "s")
+        .add("fitting", &S::fitting, "Where the second scanner seems to be on the robot, by what it sees");
 }
 
 Fields<MatcherState> fieldsOf(Of<MatcherState>) {
@@ -147,6 +175,8 @@ Fields<MatcherState> fieldsOf(Of<MatcherState>) {
         .add("recovered", &S::recovered, "Of them: found")
         .add("by_odometry", &S::byOdometry, "Scans whose pose was expected by odometry")
         .add("odometry", &S::odometry, "What comes as odometry")
+        .add("sources", &S::sources, "Where scans come from, the first scanner first")
+        .atMostElements(2)
         .add("ms_per_scan", &S::msPerScan, "Mean time to match one", "ms")
         .add("map_segments", &S::mapSegments, "Edges of the map")
         .add("key_scans", &S::keyScans, "Of the drive that is remembered to close loops")

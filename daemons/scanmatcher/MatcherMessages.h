@@ -37,6 +37,18 @@ struct OdometryState {
     quint64 contradicted = 0;
 };
 
+/// A source of scans, since this program began; of the second scanner what is made of it.
+struct SourceState {
+    QString address;
+    bool connected = false;
+    std::optional<double> age; ///< of the last scan; seconds
+    quint64 scans = 0, refused = 0, dropped = 0, unknownFields = 0;
+    std::optional<QString> use;
+    std::optional<quint64> paired, apart;
+    std::optional<double> apart_s;
+    std::optional<Pose2D> fitting;
+};
+
 /// What matcher.state gives.
 struct MatcherState {
     bool active = false;
@@ -45,6 +57,7 @@ struct MatcherState {
     quint64 waiting = 0, dropped = 0, droppedBySource = 0, refused = 0, unknownFields = 0;
     quint64 recoveries = 0, recovered = 0, byOdometry = 0;
     OdometryState odometry;
+    std::vector<SourceState> sources;
     double msPerScan = 0;
     quint64 mapSegments = 0;
     quint64 keyScans = 0, closures = 0, closuresTried = 0, corrections = 0;
@@ -120,9 +133,12 @@ struct BroughtBack {
     Pose2D at;
 };
 
+/// For people.
+QString textOf(const Pose2D &pose);
 SearchAnswer answerOf(const vectorlib::Relocalized &search);
 
 Fields<OdometryState> fieldsOf(Of<OdometryState>);
+Fields<SourceState> fieldsOf(Of<SourceState>);
 Fields<MatcherState> fieldsOf(Of<MatcherState>);
 Fields<PairMatch> fieldsOf(Of<PairMatch>);
 Fields<PlaceAnswer> fieldsOf(Of<PlaceAnswer>);

@@ -2,6 +2,7 @@
 
 #include "common/client/DaemonAddress.h"
 #include "common/settings/DottedPath.h"
+#include "common/settings/SettingsTable.h"
 #include "vectorlib/mapping/NamedSettings.h"
 
 namespace hermes::scanmatcher {
@@ -9,13 +10,19 @@ namespace {
 
 std::vector<SchemaViolation> checkAddresses(const QJsonObject &settings) {
     std::vector<SchemaViolation> wrong;
-    for (const QString &path : {QString("source.address"), QString("odometry.address")}) {
+    for (const QString path : {"source.address", "source2.address", "odometry.address"}) {
         const QString address = valueAt(settings, path).toString();
-        if (address.isEmpty() && path == "odometry.address")
+        if (address.isEmpty() && path != "source.address")
             continue;
         if (const Result<void> fine = checkAddress(address); !fine)
             wrong.push_back({path, address, fine.error().message});
     }
+    const auto of = [&](const QString &source) {
+        return std::pair(valueAt(settings, source + ".address"), valueAt(settings, source + ".topic"));
+    };
+    if (of("source") == of("source2"))
+        wrong.push_back(
+            {"source2.address", of("source2").first, "another daemon or topic than that of source"});
     return wrong;
 }
 
@@ -32,98 +39,67 @@ std::vector<SchemaViolation> checkJournal(const QJsonObject &settings) {
 void ScanMatcher::declareSettings() {
     settings().addRule(checkAddresses);
     settings().addRule(checkJournal);
-    addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
-                   .byDefault("127.0.0.1:7420")
-                   .group("Source"));
-    addSetting(Field::text("source.topic", "Its topic").byDefault("scan2d").group("Source"));
-    addSetting(Field::integer("source.queue", "Scans that may wait to be matched; more drop the oldest")
-                   .unit("scans")
-                   .range(1, 10000)
-                   .byDefault(50)
-                   .group("Source"));
-    addSetting(Field::text("odometry.address",
-                           "Daemon that publishes the robot's odometry: HOST:PORT or a URL; "
-                           "none: poses are expected from the scans alone")
-                   .byDefault("")
-                   .group("Odometry"));
-    addSetting(Field::text("odometry.topic", "Its topic").byDefault("odometry").group("Odometry"));
-    addSetting(
-        Field::boolean("odometry.stop",
-                       "Send motor.stop to this daemon when the scans contradict its odometry, as wheels "
-                       "that turn on the spot make them")
-            .byDefault(true)
-            .group("Odometry"));
-    const auto sensor = [this](const char *name, const char *text) {
-        addSetting(Field::number(name, text).unit("m").range(-100, 100).byDefault(0).group("Odometry"));
-    };
-    sensor("sensor.x_m", "How far the sensor is ahead of the robot's centre");
-    sensor("sensor.y_m", "How far it is to the left");
-    addSetting(Field::angle("sensor.theta_rad", "Its heading in the robot's frame, counter-clockwise")
-                   .byDefault(0)
-                   .group("Odometry"));
-    addSetting(Field::text("matcher.start", "What to do from the start on")
-                   .choices({"mapping", "localization", "nothing"})
-                   .byDefault("mapping")
-                   .appliesOnRestart()
-                   .group("Matching"));
-    addSetting(Field::boolean("matcher.compensate_motion",
-                              "Correct each scan for the sensor's motion while it was taken")
-                   .byDefault(true)
-                   .group("Matching"));
-    struct Number {
-        const char *name, *text, *unit;
-        double least, most, usual;
-    };
-    for (const Number &n : {
-             Number{"matcher.sigma_m", "Largest standard deviation of points from their line segment", "m",
-                    0.001, 1, 0.02},
-             Number{"matcher.expected_deviation_m", "How far the expected position is usually wrong", "m",
-                    0.001, 10, 0.05},
-             Number{"matcher.expected_deviation_rad", "How far the expected heading is usually wrong", "rad",
-                    0.001, 3, 0.10},
-             Number{"matcher.permitted_m", "Largest error of the expected position in x and y", "m", 0.01, 20,
-                    0.5},
-             Number{"matcher.permitted_rad", "Largest error of the expected heading", "rad", 0.01, 3.1, 0.4},
-             Number{"matcher.remember_mb",
-                    "Memory that a drive may take to close its loops. What is driven beyond that is not "
-                    "remembered, also when this is raised later",
-                    "MB", 0.1, 100000, 300},
-             Number{"matcher.relocalize_s", "Longest search of the whole map", "s", 0.01, 20, 3},
-         })
-        addSetting(Field::number(n.name, n.text)
-                       .unit(n.unit)
-                       .range(n.least, n.most)
-                       .byDefault(n.usual)
-                       .group("Matching"));
-    addSetting(Field::number("matcher.min_matched_share", "Share of the seen length that must match the map")
-                   .range(0, 1)
-                   .byDefault(0.15)
-                   .group("Matching"));
-    addSetting(Field::boolean(
-                   "matcher.close_loops",
-                   "Match scans of places that are met again, and make the map anew where the drive bent; "
-                   "only while the map grows")
-                   .byDefault(true)
-                   .group("Matching"));
-    addSetting(Field::integer("matcher.relocalize_after",
-                              "Lost scans in a row after which the whole map is searched; 0: never. "
-                              "Only 1 and 2 act while the map grows")
-                   .unit("scans")
-                   .range(0, 100000)
-                   .byDefault(10)
-                   .group("Matching"));
-    addSetting(
-        Field::text("map.folder", "Below it are the files of maps that clients name; made when missing")
-            .byDefault(".")
-            .appliesOnRestart()
-            .group("Map"));
-    addSetting(
-        Field::text("map.journal",
-                    "File below map.folder, NAME.journal, in which the drive is written down while the "
-                    "map grows, every 4 s; where there is one, NAME-2.journal and so on. Empty: none")
-            .byDefault("")
-            .appliesOnRestart()
-            .group("Map"));
+    SettingsTable table;
+    table.group("Source");
+    table.define("source.address", "127.0.0.1:7420", "Daemon that publishes the scans: HOST:PORT or a URL");
+    table.define("source.topic", "scan2d", "Its topic");
+    table.define("source.queue", 50, "Scans that may wait to be matched; more drop the oldest", "scans", 1,
+                 10000);
+    table.define("source2.address", "",
+                 "Daemon that publishes the scans of a second scanner on the robot; none: there is "
+                 "one scanner");
+    table.define("source2.topic", "scan2d", "Its topic");
+    table.group("Odometry");
+    table.define("odometry.address", "",
+                 "Daemon that publishes the robot's odometry: HOST:PORT or a URL; none: poses are expected "
+                 "from the scans alone");
+    table.define("odometry.topic", "odometry", "Its topic");
+    table.define("odometry.stop", true,
+                 "Send motor.stop to this daemon when the scans contradict its odometry, as wheels "
+                 "that turn on the spot make them");
+    for (const auto &[name, what] : {std::pair(QString("sensor."), QString("the sensor is")),
+                                     std::pair(QString("sensor2."), QString("the second scanner is"))}) {
+        table.define(name + "x_m", 0.0, "How far " + what + " ahead of the robot's centre", "m", -100, 100);
+        table.define(name + "y_m", 0.0, "How far it is to the left", "m", -100, 100);
+        table.define(name + "theta_rad", 0.0, "Its heading in the robot's frame, counter-clockwise", "rad",
+                     -2 * vectorlib::pi, 2 * vectorlib::pi);
+        table.define(name + "upside_down", false, "It is mounted upside down, or counts angles clockwise");
+    }
+    table.group("Matching", SettingsTable::Applies::OnRestart);
+    table.define("matcher.start", "mapping", "What to do from the start on")
+        .choices({"mapping", "localization", "nothing"});
+    table.group("Matching");
+    table.define("matcher.compensate_motion", true,
+                 "Correct each scan for the sensor's motion while it was taken");
+    table.define("matcher.sigma_m", 0.02, "Largest standard deviation of points from their line segment", "m",
+                 0.001, 1);
+    table.define("matcher.expected_deviation_m", 0.05, "How far the expected position is usually wrong", "m",
+                 0.001, 10);
+    table.define("matcher.expected_deviation_rad", 0.10, "How far the expected heading is usually wrong",
+                 "rad", 0.001, 3);
+    table.define("matcher.permitted_m", 0.5, "Largest error of the expected position in x and y", "m", 0.01,
+                 20);
+    table.define("matcher.permitted_rad", 0.4, "Largest error of the expected heading", "rad", 0.01, 3.1);
+    table.define("matcher.remember_mb", 300.0,
+                 "Memory that a drive may take to close its loops. What is driven beyond that is not "
+                 "remembered, also when this is raised later",
+                 "MB", 0.1, 100000);
+    table.define("matcher.relocalize_s", 3.0, "Longest search of the whole map", "s", 0.01, 20);
+    table.define("matcher.min_matched_share", 0.15, "Share of the seen length that must match the map")
+        .range(0, 1);
+    table.define("matcher.close_loops", true,
+                 "Match scans of places that are met again, and make the map anew where the drive bent; "
+                 "only while the map grows");
+    table.define("matcher.relocalize_after", 10,
+                 "Lost scans in a row after which the whole map is searched; 0: never. "
+                 "Only 1 and 2 act while the map grows",
+                 "scans", 0, 100000);
+    table.group("Map", SettingsTable::Applies::OnRestart);
+    table.define("map.folder", ".", "Below it are the files of maps that clients name; made when missing");
+    table.define("map.journal", "",
+                 "File below map.folder, NAME.journal, in which the drive is written down while the "
+                 "map grows, every 4 s; where there is one, NAME-2.journal and so on. Empty: none");
+    table.declareIn(settings());
 }
 
 vectorlib::ScanTrackerSettings ScanMatcher::trackerSettings() const {

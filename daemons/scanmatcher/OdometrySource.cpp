@@ -98,20 +98,21 @@ void OdometrySource::contradict(const vectorlib::OdometryCheck::Ways &ways, bool
     ++contradicted_;
     contradiction_ =
         QString("the scans contradict the odometry: it tells of %1 in %2 s, they show %3; the wheels "
-                "turn on the spot, the scans are not this robot's, or sensor.* tells wrongly where the "
-                "sensor is")
+                "slip or the robot is at a wall, its measures (frame.*) are wrong, the scans are another "
+                "robot's, or sensor.* tells wrongly where the sensor is")
             .arg(text(ways.odometry))
             .arg(ways.seconds, 0, 'f', 1)
             .arg(text(ways.scans));
     logWarning("odometry", contradiction_);
     if (stops && client_.isConnected())
-        client_.call("motor.stop",
-                     QJsonObject{{"client", "scanmatcher, as the scans contradict the odometry"}},
-                     [this](const auto &answer) {
-                         stopFault_ = answer ? QString() : "; nothing was stopped: " + answer.error().message;
-                         if (!answer)
-                             logError("odometry", "motor.stop: " + answer.error().message);
-                     });
+        client_.call(
+            "motor.stop", QJsonObject{{"client", "scanmatcher, as the scans contradict the odometry"}},
+            [this](const auto &answer) {
+                stopFault_ = answer ? QString() : "; nothing was stopped: " + answer.error().message;
+                if (!answer)
+                    logError("odometry", "motor.stop: " + answer.error().message);
+            },
+            Client::defaultTimeout, Client::Repeats::AtOnce);
 }
 
 QString OdometrySource::pastText(bool isRecent) const {

@@ -2,7 +2,6 @@
 #include "moc_ScanMatcher.cpp" // else it would be compiled apart, vectorlib and all
 
 #include "common/Log.h"
-#include "common/Time.h"
 #include "protocol/wire/Fields.h"
 
 #include <utility>
@@ -13,6 +12,7 @@ using vectorlib::PlaceState;
 
 namespace {
 
+constexpr double silent_s = 0.5;   // the first scanner: the second is matched alone
 constexpr double longestGap_s = 1; // between scans of a replay that follow each other
 
 QString toText(PlaceState place) {
@@ -29,32 +29,35 @@ QString toText(PlaceState place) {
     return "known";
 }
 
+QString toText(SecondScanner::State state) {
+    static constexpr const char *texts[] = {"on_trial", "taken", "contradicted"};
+    return QString(texts[int(state)]); // in the order of the enumeration
+}
+
 } // namespace
 
 ScanMatcher::ScanMatcher()
     : Daemon({"scanmatcher", "Scan matcher",
               "Turns laser scans into line segments, finds the sensor's pose among those of a vector map, "
               "and lets the "
-              "map grow"}) {
+              "map grow"})
+    , source_("source", [this](Scan scan) { takeScan(std::move(scan)); })
+    , secondSource_("source2", [this](Scan scan) {
+        if (settings().flag("sensor2.upside_down"))
+            scan.data.turnOver();
+        takeSecond(std::move(scan));
+    }) {
     files_.setMaxThreadCount(1);
     declareSettings();
     declareTopics();
     declareMatcherCommands();
     declareMapCommands();
     declareRelocalization();
-    connect(&source_, &Client::connected, this, [this] {
-        lastScan_ = monotonicNow();
-        sourceFault_.clear();
-        updateHealth();
-    });
-    connect(&source_, &Client::subscriptionFailed, this, [this](int, const RpcError &error) {
-        sourceFault_ = error.message;
-        logError("source", sourceFault_);
-        updateHealth();
-    });
-    connect(&source_, &Client::disconnected, this, &ScanMatcher::updateHealth);
-    connect(&odometry_.client(), &Client::connected, this, &ScanMatcher::updateHealth);
-    connect(&odometry_.client(), &Client::disconnected, this, &ScanMatcher::updateHealth);
+    for (const Client *client : {&source_.client(), &secondSource_.client(), &odometry_.client()}) {
+        connect(client, &Client::connected, this, &ScanMatcher::updateHealth);
+        connect(client, &Client::subscriptionFailed, this, &ScanMatcher::updateHealth);
+        connect(client, &Client::disconnected, this, &ScanMatcher::updateHealth);
+    }
 }
 
 void ScanMatcher::declareTopics() {
@@ -100,6 +103,7 @@ void ScanMatcher::stop() {
     if (!worker_)
         return;
     source_.close();
+    secondSource_.close();
     odometry_.close();
     corrector_->stop();
     worker_->stop(); // its last jobs still need it
@@ -116,8 +120,11 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
     worker_->setQueueLimit(size_t(settings().integer("source.queue")));
     const TrackedMap::Setup setup{trackerSettings(), settings().number("matcher.sigma_m"), closesLoops()};
     worker_->post([this, setup] { map_->set(setup); });
+    const bool isQueue = paths.contains("source.queue");
     if (active_ && !paths.filter("source.").isEmpty())
-        connectToSource();
+        connectToSource(source_, "source");
+    if (active_ && (isQueue || !paths.filter("source2.").isEmpty()))
+        connectToSource(secondSource_, "source2");
     if (active_ && !paths.filter("odometry.").isEmpty())
         connectToOdometry();
 }
@@ -126,7 +133,8 @@ void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
     worker_->post([this, toMap, closes = closesLoops()] { map_->grow(toMap, closes); });
     active_ = true;
-    connectToSource();
+    connectToSource(source_, "source");
+    connectToSource(secondSource_, "source2");
     connectToOdometry();
     setState(DaemonState::Running);
 }
@@ -136,24 +144,14 @@ void ScanMatcher::pause() {
     skipped_ = {};
     doubt_ = {};
     source_.close();
+    secondSource_.close();
     odometry_.close();
     setState(DaemonState::Ready);
 }
 
-void ScanMatcher::connectToSource() {
-    source_.close();
-    source_.unsubscribe(subscription_);
-    sourceFault_.clear();
-    source_.prefer("cbor");
-    const auto connecting = source_.connectTo(settings().text("source.address"));
-    if (!connecting) {
-        sourceFault_ = connecting.error().message;
-        logError("source", sourceFault_);
-        return;
-    }
-    subscription_ =
-        source_.subscribe(settings().text("source.topic"), {{"queue", settings().integer("source.queue")}},
-                          [this](const TopicUpdate &update) { takeScan(update); });
+void ScanMatcher::connectToSource(ScannerSource &source, const QString &name) {
+    source.open(settings().text(name + ".address"), settings().text(name + ".topic"),
+                settings().integer("source.queue"));
 }
 
 void ScanMatcher::connectToOdometry() {
@@ -164,23 +162,41 @@ void ScanMatcher::connectToOdometry() {
     updateHealth();
 }
 
-void ScanMatcher::takeScan(const TopicUpdate &update) {
-    lastScan_ = monotonicNow();
-    sourceFault_.clear();
-    droppedBySource_ = update.dropped;
-    auto parsed = readScan(update.data, unknownFields_);
-    if (!parsed) {
-        const bool isFirst = pastBadScans_.level(double(badScans_)) == HealthLevel::Ok; // for a minute
-        ++badScans_;
-        if (isFirst)
-            logWarning("source", parsed.error().message);
-        lastBadScan_ = parsed.error().message;
+// The last scan of the second scanner goes with the first one's that comes next, where the two are of about
+// the same time.
+void ScanMatcher::addSecond(Scan &scan) {
+    std::optional<Scan> other = std::exchange(second_.waiting, std::nullopt);
+    if (!other)
+        return;
+    if (other->replayed == scan.replayed)
+        second_.apart_s = scan.data.addSecond(std::move(other->data));
+    const bool isPair = scan.data.second.has_value();
+    second_.apartInARow = isPair ? 0 : second_.apartInARow + 1;
+    ++(isPair ? second_.paired : second_.apart);
+}
+
+// While the first scanner is silent the second is matched alone, if it was taken before. In a replay it is
+// not: silence is real time, and a replay may be paused or slow.
+void ScanMatcher::takeSecond(Scan scan) {
+    if (scan.replayed || source_.silent_s() < silent_s || second_.state != SecondScanner::State::Taken) {
+        second_.waiting = std::move(scan);
         return;
     }
-    Scan scan = parsed.take();
-    scan.replayed |= update.replayed;
-    if (scan.partial)
-        return;
+    Scan alone;
+    alone.number = scan.number;
+    alone.replayed = scan.replayed;
+    alone.data.stamp = scan.data.middle();
+    second_.waiting = std::move(scan);
+    match(std::move(alone));
+}
+
+void ScanMatcher::takeScan(Scan scan) {
+    if (settings().flag("sensor.upside_down"))
+        scan.data.turnOver();
+    match(std::move(scan));
+}
+
+void ScanMatcher::match(Scan scan) {
     if (std::exchange(replayed_, scan.replayed) != scan.replayed)
         worker_->post([this, replayed = scan.replayed] { map_->followReplay(replayed); });
     const double before = std::exchange(replayStamp_, scan.replayed ? scan.data.stamp : -1);
@@ -188,7 +204,8 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
         scan.replayed && before >= 0 && (scan.data.stamp < before || scan.data.stamp > before + longestGap_s);
     if (leaps) // it was sought
         worker_->post([this] { map_->leapInReplay(); });
-    scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());
+    addSecond(scan);
+    scan.data.odometry = odometry_.over(scan.data.firstSeen(), scan.data.lastSeen());
     worker_->push(std::move(scan));
 }
 
@@ -201,6 +218,7 @@ void ScanMatcher::showScan(const ScanOutcome &o) {
     if (lostInARow_ == 0)
         lastRecovery_.reset();
     noteSkipped(o);
+    noteSecond(o);
     const ScanResult &r = o.result;
     noteTrust(r);
     mirror_.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
@@ -296,9 +314,19 @@ MatcherState ScanMatcher::matcherState() const {
     state.restarts = quint64(counts_.restarts);
     state.waiting = worker_ ? worker_->waiting() : 0;
     state.dropped = worker_ ? worker_->dropped() : 0;
-    state.droppedBySource = droppedBySource_;
-    state.refused = badScans_;
-    state.unknownFields = unknownFields_;
+    const SourceState first = source_.state();
+    state.droppedBySource = first.dropped;
+    state.refused = first.refused;
+    state.unknownFields = first.unknownFields;
+    state.sources.push_back(first);
+    if (SourceState second = secondSource_.state(); !second.address.isEmpty()) {
+        second.use = toText(second_.state);
+        second.paired = second_.paired;
+        second.apart = second_.apart;
+        second.apart_s = second_.apart_s;
+        second.fitting = second_.fitting;
+        state.sources.push_back(second);
+    }
     state.recoveries = recoveries_;
     state.recovered = recovered_;
     state.byOdometry = quint64(counts_.byOdometry);

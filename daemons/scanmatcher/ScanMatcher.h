@@ -1,10 +1,10 @@
 #pragma once
 
-#include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
 #include "common/daemon/PastFaults.h"
 #include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/OdometrySource.h"
+#include "daemons/scanmatcher/ScannerSource.h"
 #include "daemons/scanmatcher/TrackedMap.h"
 #include "daemons/scanmatcher/Worker.h"
 #include "protocol/messages/Matching.h"
@@ -14,6 +14,8 @@
 #include <memory>
 
 namespace hermes::scanmatcher {
+
+using vectorlib::SecondScanner;
 
 /// The daemon hermes-scanmatcher: takes scans from another daemon's topic, finds the sensor's pose, builds
 /// the vector map. Receives and answers in the main thread; the TrackedMap belongs to the
@@ -50,9 +52,12 @@ private:
     void declareRelocalization();
     void updateHealth();
 
-    void connectToSource();
+    void connectToSource(ScannerSource &source, const QString &name);
     void connectToOdometry();
-    void takeScan(const TopicUpdate &update);
+    void takeScan(Scan scan);
+    void takeSecond(Scan scan);
+    void match(Scan scan);
+    void addSecond(Scan &scan);
     void begin(bool mapping);
     void pause();
     bool closesLoops();
@@ -61,10 +66,13 @@ private:
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
     void noteSkipped(const ScanOutcome &outcome);
+    void noteSecond(const ScanOutcome &outcome);
     void noteTrust(const ScanResult &result);
     bool isBlind() const;
     QString blindText() const;
     void updateSensorHealth();
+    void updateSecondHealth();
+    QString secondText() const;
     void updateMemoryHealth();
     void updateJournalHealth();
     void updateMapHealth();
@@ -100,8 +108,17 @@ private:
     std::optional<LiveView> liveView_;
     bool replayed_ = false;   ///< the last scan
     double replayStamp_ = -1; ///< of the last scan that was replayed
-    Client source_;
-    int subscription_ = 0;
+    ScannerSource source_, secondSource_;
+    /// The second scanner, beside the first.
+    struct Second {
+        std::optional<Scan> waiting; ///< the last, for the first one's next scan
+        quint64 paired = 0, apart = 0;
+        int apartInARow = 0;
+        double apart_s = 0; ///< the last two
+        SecondScanner::State state = SecondScanner::State::OnTrial;
+        std::optional<Pose2D> fitting;
+    };
+    Second second_;
     OdometrySource odometry_;
     bool active_ = false;
     bool mapping_ = true; ///< the map grows; else it stays as it is
@@ -116,11 +133,7 @@ private:
     quint64 recoveries_ = 0,
             recovered_ = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost
-    quint64 badScans_ = 0, droppedBySource_ = 0, unknownFields_ = 0;
-    PastFaults pastBadScans_, pastDrops_, pastUnreadable_;
-    double lastScan_ = 0; // monotonic; or when it began to wait for one
-    QString sourceFault_; // why there will be none
-    QString lastBadScan_;
+    PastFaults pastDrops_;
 };
 
 } // namespace hermes::scanmatcher

@@ -71,6 +71,8 @@ ScanOutcome outcomeOf(ScanTracker &tracker, const Scan &scan) {
     o.counts = tracker.counts();
     o.contradiction = tracker.contradiction();
     o.scanner = tracker.scanner();
+    o.second = tracker.second().state();
+    o.secondFitting = tracker.second().fitting();
     o.replayed = scan.replayed;
     o.changes = takeChanges(tracker.builder.map);
     return o;

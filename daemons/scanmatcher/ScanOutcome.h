@@ -18,6 +18,8 @@ struct ScanOutcome {
     std::size_t points = 0; ///< of the scan
     std::optional<vectorlib::OdometryCheck::Ways> contradiction;
     vectorlib::ScannerCheck scanner;
+    vectorlib::SecondScanner::State second = vectorlib::SecondScanner::State::OnTrial;
+    std::optional<vectorlib::Pose2D> secondFitting; ///< where it seems to be on the robot
     bool replayed = false;
     std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
 };

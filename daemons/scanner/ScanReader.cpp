@@ -33,6 +33,8 @@ bool ScanReader::process(const std::function<bool()> &mayGoOn) {
             const ChunkBatch::Chunk &chunk = batch_.chunks[nextChunk_];
             if (chunk.lostBefore > 0 || chunk.isJump)
                 protocol_->jump();
+            if (chunk.isJump)
+                revolutions_.seek();
             protocol_->feed({batch_.bytes.data() + nextByte_, chunk.size},
                             {bounded(chunk.arrival.stamp_ns), bounded(chunk.arrival.mono_ns)});
             nextByte_ += chunk.size;
@@ -43,13 +45,8 @@ bool ScanReader::process(const std::function<bool()> &mayGoOn) {
 void ScanReader::take(const scan::Revolution &revolution) {
     lastMono_ = monotonicNow();
     clockBound_ns_ = revolution.clockBound_ns;
-    const std::int64_t begin_ns = revolution.partial ? 0 : revolution.begin_ns;
-    const std::int64_t before_ns = std::exchange(lastBegin_ns_, begin_ns);
-    if (begin_ns != 0)
+    if (!revolution.partial)
         beams_ = revolution.beams.size();
-    constexpr std::int64_t longest_ns = 1500000000; // else it was interrupted
-    if (begin_ns > before_ns && begin_ns - before_ns < longest_ns && before_ns != 0)
-        period_s_ = double(begin_ns - before_ns) * 1e-9;
     sink_(revolution);
 }
 

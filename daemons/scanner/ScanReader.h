@@ -21,9 +21,10 @@ public:
     const scan::ScannerModel &model() const { return model_; }
     scan::ScannerProtocol &protocol() { return *protocol_; }
     const scan::ScannerProtocol &protocol() const { return *protocol_; }
-    const scan::RevolutionAssembler::Counts &counts() const { return revolutions_.counts(); }
-    quint64 beams() const { return beams_; }      ///< of the last whole revolution
-    double period_s() const { return period_s_; } ///< from one revolution to the next; 0: not known
+    scan::RevolutionAssembler::Counts counts() const { return revolutions_.counts(); }
+    quint64 beams() const { return beams_; } ///< of the last whole revolution
+    /// From one revolution to the next; 0: not known.
+    double period_s() const { return double(revolutions_.period_ns()) * 1e-9; }
     std::int64_t clockBound_ns() const { return clockBound_ns_; }
     /// When the last revolution was given, by a clock that never jumps; 0: none was.
     double lastMono() const { return lastMono_; }
@@ -39,8 +40,7 @@ private:
     scan::RevolutionAssembler revolutions_;
     std::unique_ptr<scan::ScannerProtocol> protocol_;
     quint64 beams_ = 0;
-    std::int64_t lastBegin_ns_ = 0; ///< of the last revolution, if that was whole; 0: it was not
-    double period_s_ = 0, lastMono_ = 0;
+    double lastMono_ = 0;
     std::int64_t clockBound_ns_ = 0;
 };
 

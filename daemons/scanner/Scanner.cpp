@@ -14,7 +14,6 @@ using State = ReplaySource::State;
 const QString portName = "scan"; // of its file
 constexpr double stale_s = 1.5;  // no revolution is so slow
 constexpr int retry_ms = 2;
-constexpr qint64 roomTimeout_ms = 5000; // for a reader that reads no more
 
 QString toText(Interface::State state) {
     return state == Interface::State::Open      ? "open"
@@ -90,17 +89,10 @@ void Scanner::stop() {
 }
 
 ReplaySource::Actions Scanner::sourceActions() {
-    ReplaySource::Actions actions;
-    actions.live = [this](const Call &) -> Result<void> {
-        openLive();
-        return {};
-    };
-    actions.recording = [this](const Call &call, const StoredRecording &stored) {
-        return openRecording(call, stored);
-    };
-    actions.duration_s = [this] { return std::optional<double>(player_.duration_s()); };
-    actions.changed = [this] { updateHealth(); };
-    return actions;
+    return player_.actions(
+        [this] { openLive(); },
+        [this](const Call &call, const StoredRecording &stored) { return openRecording(call, stored); },
+        [this] { updateHealth(); });
 }
 
 void Scanner::openLive() {
@@ -115,7 +107,6 @@ void Scanner::openLive() {
 Result<void> Scanner::openRecording(const Call &call, const StoredRecording &stored) {
     openLive();
     source_.close();
-    sinceRoom_.start();
     Result<void> begun = player_.start(
         stored, {call.number("speed"), false, call.flag("paused")}, call.number("delay_s"),
         [this](const QString &port, const QJsonObject &sidecar) { return replayedQueue(port, sidecar); },
@@ -148,18 +139,10 @@ ChunkQueue *Scanner::replayedQueue(const QString &port, const QJsonObject &sidec
     return nullptr;
 }
 
-/// A replay without loss waits for readers who are behind, but not for one that reads no more.
-bool Scanner::mayPublish() {
-    const bool hasRoomNow = player_.playback().options().speed != 0 || hasRoom("scan2d");
-    if (hasRoomNow)
-        sinceRoom_.start();
-    return hasRoomNow || sinceRoom_.elapsed() >= roomTimeout_ms;
-}
-
 void Scanner::processReplay() {
     if (!replayed_)
         return;
-    if (!replayed_->process([this] { return mayPublish(); })) {
+    if (!replayed_->process([this] { return source_.mayShow(hasRoom("scan2d")); })) {
         retry_.start(retry_ms);
     } else if (replayEnd_) {
         replayed_->finish();
@@ -220,6 +203,7 @@ ScannerMessage Scanner::state() const {
     state.beams = reader.beams();
     state.revolutions = reader.counts().revolutions;
     state.partial = reader.counts().partial;
+    state.missed = reader.counts().missed;
     state.packets = reader.protocol().counts().packets;
     state.damaged = reader.protocol().counts().damaged;
     state.lost = reader.counts().lostPackets;
@@ -271,7 +255,7 @@ std::pair<HealthLevel, QString> Scanner::sensorHealth() {
         return {HealthLevel::Warn, name + ": it has not measured a revolution yet"};
     if (silent_s > stale_s)
         return {HealthLevel::Stale, QString("%1: no revolution for %2 s").arg(name).arg(silent_s, 0, 'f', 1)};
-    const scan::RevolutionAssembler::Counts &counts = reader.counts();
+    const scan::RevolutionAssembler::Counts counts = reader.counts();
     if (reader.period_s() == 0)
         return {HealthLevel::Ok, name + ": it measures"};
     QString text = QString("%1: %2 revolutions a minute of %3 beams, stamps to %4 ms")
@@ -281,9 +265,11 @@ std::pair<HealthLevel, QString> Scanner::sensorHealth() {
                        .arg(double(reader.clockBound_ns()) * 1e-6, 0, 'f', 1);
     if (counts.lostPackets > 0)
         text += QString("; %1 packets were lost or damaged").arg(counts.lostPackets);
+    if (counts.missed > 0)
+        text += QString("; some %1 revolutions were missed").arg(counts.missed);
     if (reader.queue().lost() > 0)
         text += QString("; %1 bytes came too fast to be read").arg(reader.queue().lost());
-    return {faults_.level(double(counts.lostPackets + reader.queue().lost())), text};
+    return {faults_.level(double(counts.lostPackets + counts.missed + reader.queue().lost())), text};
 }
 
 } // namespace hermes::scanner

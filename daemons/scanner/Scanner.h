@@ -9,8 +9,6 @@
 #include "daemons/scanner/LiveScanner.h"
 #include "daemons/scanner/ScannerMessages.h"
 
-#include <QElapsedTimer>
-
 namespace hermes::scanner {
 
 /// hermes-scanner: reads a laser scanner of one plane on a serial line or over TCP, or replays a recording of
@@ -33,7 +31,6 @@ private:
     Result<void> openRecording(const Call &call, const StoredRecording &stored);
     ChunkQueue *replayedQueue(const QString &port, const QJsonObject &sidecar);
     void processReplay();
-    bool mayPublish();
     void publishScan(const scan::Revolution &revolution, bool replayed);
 
     /// For the sidecar of recordings.
@@ -53,7 +50,6 @@ private:
     ReplaySource source_{"revolutions", identity().name, settings(), player_.playback(), sourceActions()};
     QTimer second_;
     QTimer retry_;                          ///< of publishing what is replayed, when readers had no room
-    QElapsedTimer sinceRoom_;               ///< every reader had room
     std::optional<Result<void>> replayEnd_; ///< it is at its end; what waits is yet to be published
     PastFaults faults_;
     mutable std::mutex mutex_; // guards what follows, which the recorder asks for

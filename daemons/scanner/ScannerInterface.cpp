@@ -1,5 +1,6 @@
 // What the scanner offers: its settings, topics and commands.
 #include "common/interface/InterfaceRegistry.h"
+#include "common/settings/SettingsTable.h"
 #include "daemons/scanner/Scanner.h"
 #include "protocol/wire/Fields.h"
 
@@ -9,17 +10,14 @@ void Scanner::declareSettings() {
     QStringList models{"auto"};
     for (const scan::ScannerModel &model : scan::scannerModels())
         models.append(model.name);
-    addSetting(Field::text("scanner.url",
-                           "Where it is: serial:///dev/serial/by-id/NAME, with ?baud=RATE only if "
-                           "that is not the model's; tcp://HOST:PORT")
-                   .byDefault("")
-                   .appliesOnRestart()
-                   .group("Scanner"));
-    addSetting(Field::text("scanner.model", "Which it is; auto: whichever is heard or answers on that line")
-                   .choices(models)
-                   .byDefault("auto")
-                   .appliesOnRestart()
-                   .group("Scanner"));
+    SettingsTable table;
+    table.group("Scanner", SettingsTable::Applies::OnRestart);
+    table.define("scanner.url", "",
+                 "Where it is: serial:///dev/serial/by-id/NAME, with ?baud=RATE only if that is not the "
+                 "model's; tcp://HOST:PORT");
+    table.define("scanner.model", "auto", "Which it is; auto: whichever is heard or answers on that line")
+        .choices(models);
+    table.declareIn(settings());
     settings().addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
         const QString text = values["scanner"].toObject()["url"].toString();
         const Result<InterfaceUrl> url = InterfaceUrl::parse(text);
@@ -33,9 +31,6 @@ void Scanner::declareSettings() {
             return {};
         return {{"scanner.url", text, "serial:///DEVICE or tcp://HOST:PORT, or nothing"}};
     });
-    for (const Field &field : Recording::settingFields())
-        addSetting(field);
-    settings().addRule(Recording::checkSettings);
 }
 
 void Scanner::declareTopics() {
@@ -49,14 +44,11 @@ void Scanner::declareTopics() {
 void Scanner::declareCommands() {
     addCommand(source_.openCommand("Shows what the scanner measures, or a recording; the scanner is read and "
                                    "recorded all the same"));
-    addCommand(source_.seekCommand());
-    addCommand(source_.speedCommand());
-    addCommand(source_.pauseCommand());
+    addCommands(source_.replayCommands());
     addCommand(Command("source.status", "What the topic scanner says, now")
                    .needs(Role::Observer)
                    .answers([this](const Call &) { return state(); }));
-    for (const Command &command : recording_.commands())
-        addCommand(command);
+    addCommands(recording_.commands());
     connect(&recording_, &Recording::changed, this,
             [this] { publish("scanner", [this] { return state(); }); });
 }

@@ -18,10 +18,13 @@ Fields<ScannerMessage> fieldsOf(Of<ScannerMessage>) {
         .add("url", &S::url, "Of the line")
         .add("line", &S::line, "Whether that is open")
         .choices({"open", "opening", "closed"})
-        .add("rpm", &S::rpm, "Revolutions a minute, of the last whole one", "1/min")
+        .add("rpm", &S::rpm, "Revolutions a minute, of the last whole ones", "1/min")
         .add("beams", &S::beams, "In the last whole revolution")
         .add("revolutions", &S::revolutions, "Whole ones")
         .add("partial", &S::partial, "Those of which something is missing")
+        .add("missed", &S::missed,
+             "Revolutions for which there was time, and of which nothing came; an estimate by how long one "
+             "takes")
         .add("packets", &S::packets, "With measurements")
         .add("damaged", &S::damaged, "Packets, by their checksums or by what stands in them")
         .add("lost", &S::lost, "Packets that are missing, the damaged ones among them")

@@ -23,31 +23,28 @@ FixReport reportOf(const nmea::Rmc &rmc) {
     return report;
 }
 
-FixReport reportOf(const nmea::Gga &gga) {
+/// Of GGA and GNS.
+template <typename Message>
+FixReport withQuality(FixReport::Kind kind, const Message &message) {
     FixReport report;
-    report.kind = FixReport::Kind::Gga;
-    report.time = gga.time;
-    report.valid = gga.quality > 0;
-    report.position = gga.position;
-    report.quality = gga.quality;
-    report.satellites = gga.satellites;
-    report.hdop = gga.hdop;
-    report.altitude = gga.altitude;
+    report.kind = kind;
+    report.time = message.time;
+    report.position = message.position;
+    report.quality = message.quality;
+    if (report.quality)
+        report.valid = *report.quality > 0;
+    report.satellites = message.satellites;
+    report.hdop = message.hdop;
+    report.altitude = message.altitude;
     return report;
 }
 
+FixReport reportOf(const nmea::Gga &gga) {
+    return withQuality(FixReport::Kind::Gga, gga);
+}
+
 FixReport reportOf(const nmea::Gns &gns) {
-    FixReport report;
-    report.kind = FixReport::Kind::Gns;
-    report.time = gns.time;
-    if (gns.quality)
-        report.valid = *gns.quality > 0;
-    report.position = gns.position;
-    report.quality = gns.quality;
-    report.satellites = gns.satellites;
-    report.hdop = gns.hdop;
-    report.altitude = gns.altitude;
-    return report;
+    return withQuality(FixReport::Kind::Gns, gns);
 }
 
 FixReport reportOf(const nmea::Gll &gll) {

@@ -1,4 +1,5 @@
 // What the serial logger offers: its settings, topics and commands.
+#include "common/settings/SettingsTable.h"
 #include "daemons/seriallogger/SerialLogger.h"
 #include "protocol/wire/Fields.h"
 
@@ -7,15 +8,11 @@ namespace hermes::seriallogger {
 void SerialLogger::declareSettings() {
     addSetting(PortSettings::field());
     settings().addRule(PortSettings::check);
-    for (const Field &field : Recording::settingFields())
-        addSetting(field);
-    settings().addRule(Recording::checkSettings);
-    addSetting(Field::integer("record.queue_bytes", "Bytes of each port that may wait for the disk")
-                   .unit("byte")
-                   .range(4096, 1 << 30)
-                   .byDefault(4194304) // 45 s of 921,600 baud
-                   .appliesOnRestart()
-                   .group("Recording"));
+    SettingsTable table;
+    table.group("Recording", SettingsTable::Applies::OnRestart);
+    table.define("record.queue_bytes", 4194304, // 45 s of 921,600 baud
+                 "Bytes of each port that may wait for the disk", "byte", 4096, 1 << 30);
+    table.declareIn(settings());
 }
 
 void SerialLogger::declareTopics() {
@@ -31,9 +28,7 @@ void SerialLogger::declareTopics() {
 void SerialLogger::declareSourceCommands() {
     addCommand(source_.openCommand("Shows lines and fixes of the ports, or of a recording; the ports are "
                                    "received and recorded all the same"));
-    addCommand(source_.seekCommand());
-    addCommand(source_.speedCommand());
-    addCommand(source_.pauseCommand());
+    addCommands(source_.replayCommands());
     addCommand(Command("source.status", "What the topic serial says, now")
                    .needs(Role::Observer)
                    .answers([this](const Call &) { return state(); }));
@@ -41,8 +36,7 @@ void SerialLogger::declareSourceCommands() {
 
 void SerialLogger::declareCommands() {
     declareSourceCommands();
-    for (const Command &command : recording_.commands())
-        addCommand(command);
+    addCommands(recording_.commands());
     addCommand(
         Command("record.export", "Makes a CSV of one port of a recording, beside it; the reply comes when it "
                                  "is complete")

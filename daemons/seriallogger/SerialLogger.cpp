@@ -184,8 +184,7 @@ void SerialLogger::exportRecording(const Call &call, const Reply &reply) {
         return reply.error(diskError(job.target + ": it exists already; force=true replaces it", job.target));
     exports_.start(QRunnable::create([this, job, reply] {
         const Result<quint64> count = job.run(cancelExports_);
-        reply.give(count ? Result<QJsonValue>(asJson(ExportAnswer{job.target, *count}))
-                         : Result<QJsonValue>(count.error()));
+        reply.give(count ? Result<ExportAnswer>({job.target, *count}) : Result<ExportAnswer>(count.error()));
     }));
 }
 
@@ -194,10 +193,7 @@ void SerialLogger::listMarks(const Call &call, const Reply &reply) {
         StoredRecording::find(settings().text("record.folder"), call.text("name"), identity().name);
     if (!stored)
         return reply.error(stored.error());
-    reads_.start(QRunnable::create([recording = *stored, reply] {
-        const Result<std::vector<RecordedMark>> marks = readMarks(recording);
-        reply.give(marks ? Result<QJsonValue>(asJson(*marks)) : Result<QJsonValue>(marks.error()));
-    }));
+    reads_.start(QRunnable::create([recording = *stored, reply] { reply.give(readMarks(recording)); }));
 }
 
 std::function<void()> SerialLogger::viewFilled() {

@@ -19,17 +19,10 @@ PortSettings settingsOf(const QJsonObject &sidecar, const QString &port) {
 } // namespace
 
 ReplaySource::Actions SerialLogger::sourceActions() {
-    ReplaySource::Actions actions;
-    actions.live = [this](const Call &) -> Result<void> {
-        openLive();
-        return {};
-    };
-    actions.recording = [this](const Call &call, const StoredRecording &stored) {
-        return openRecording(call, stored);
-    };
-    actions.duration_s = [this] { return std::optional<double>(player_.duration_s()); };
-    actions.changed = [this] { updateHealth(); };
-    return actions;
+    return player_.actions(
+        [this] { openLive(); },
+        [this](const Call &call, const StoredRecording &stored) { return openRecording(call, stored); },
+        [this] { updateHealth(); });
 }
 
 void SerialLogger::openLive() {

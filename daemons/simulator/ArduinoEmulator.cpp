@@ -11,28 +11,12 @@ constexpr double largestPwm = 255;
 
 } // namespace
 
-ArduinoEmulator::ArduinoEmulator(const Options &options)
-    : options_(options)
-    , channels_{MotorChannel(options.motor), MotorChannel(options.motor)}
-    , random_(options.seed) {
-    MotorChannel::Pid pid;
-    pid.qpps = options.motor.fullSpeed;
-    for (MotorChannel &channel : channels_)
-        channel.setPid(pid);
-}
-
-RoboClawEmulator::Answer ArduinoEmulator::receive(char byte) {
-    RoboClawEmulator::Answer answer{{}, faults_.delay};
-    if (faults_.silent || faults_.deaf || startsIn_ > 0)
-        return answer;
-    byte = damaged(byte);
+void ArduinoEmulator::hear(std::uint8_t received) {
+    const char byte = char(noisy(received));
     if (byte == '\r') {
         const std::string text = execute() + "\r\n";
         heard_ = {};
-        if (!chance(faults_.drop)) {
-            for (const char told : text)
-                answer.bytes.push(std::uint8_t(damaged(told)));
-        }
+        sendPlain(text);
     } else if (byte == ' ') {
         heard_.blanks = std::min(heard_.blanks + 1, heard_.texts.size());
     } else if (heard_.blanks == 0) {
@@ -40,9 +24,8 @@ RoboClawEmulator::Answer ArduinoEmulator::receive(char byte) {
     } else if (std::string &text = heard_.texts[heard_.blanks - 1]; text.size() < longestText) {
         text += byte;
     } else { // beyond its memory: what that does is not known
-        restart();
+        restart(restartTime);
     }
-    return answer;
 }
 
 std::string ArduinoEmulator::execute() {
@@ -90,13 +73,7 @@ void ArduinoEmulator::cutPower() {
         channel.stop();
 }
 
-char ArduinoEmulator::damaged(char byte) {
-    return char(byte ^ (chance(faults_.corrupt) ? 1 << random_() % 8 : 0));
-}
-
-void ArduinoEmulator::advance(double seconds, double voltage) {
-    silence_ += seconds;
-    startsIn_ = std::max(0.0, startsIn_ - seconds);
+void ArduinoEmulator::turn(double seconds) {
     const bool timedOut = mode_ != Mode::Off && silence_ >= options_.timeout && !faults_.stuckTimeout;
     counts_.timeouts += timedOut;
     if (timedOut || faults_.silent)
@@ -108,16 +85,15 @@ void ArduinoEmulator::advance(double seconds, double voltage) {
         MotorChannel &motor = channels_[i];
         if (begins && mode_ == Mode::Speed)
             motor.driveSpeed(speeds_[i]);
-        motor.advance(seconds, voltage, !options_.coasts || mode_ == Mode::Speed || motor.target() != 0);
+        motor.advance(seconds, voltage_, !options_.coasts || mode_ == Mode::Speed || motor.target() != 0);
         if (startsIn_ > 0)
             motor.setCount(0);
     }
 }
 
-void ArduinoEmulator::restart() {
-    cutPower();
+void ArduinoEmulator::reset() {
+    mode_ = Mode::Off;
     heard_ = {};
-    startsIn_ = restartTime;
 }
 
 } // namespace hermes::simulator

@@ -1,45 +1,27 @@
 #pragma once
 
-#include "daemons/simulator/RoboClawEmulator.h"
-
-#include <array>
-#include <random>
-#include <string>
+#include "daemons/simulator/MotorEmulator.h"
 
 namespace hermes::simulator {
 
-/// A microcontroller with two motors as it looks from its serial line: the text protocol of ROS Arduino
-/// Bridge, bytes in, answers out. Knows no line and no clock.
-class ArduinoEmulator {
+/// A microcontroller with two motors, 0 on the left, 1 on the right, that speaks the text protocol of ROS
+/// Arduino Bridge.
+class ArduinoEmulator : public MotorEmulator {
 public:
     static constexpr int baud = 57600;
     static constexpr double frame = 0.033;         ///< seconds; speeds are in encoder counts in one
-    static constexpr double restartTime = 2;       ///< seconds
+    static constexpr double restartTime = 2;       ///< seconds, after a reset by DTR
     static constexpr std::size_t longestText = 15; ///< of a number in a command
-    struct Options {
+    struct Options : MotorEmulator::Options {
         double timeout = 2;  ///< seconds without a command that drives, then the power is off
         bool coasts = false; ///< its bridge lets the wheels roll without power; else it brakes them
-        MotorChannel::Motor motor;
-        std::uint64_t seed = 1; ///< of the faults
     };
-    /// Those of a RoboClaw, as far as they fit; corrupt is the share of the bytes, both ways.
-    using Faults = RoboClawEmulator::Faults;
 
-    explicit ArduinoEmulator(const Options &options);
+    explicit ArduinoEmulator(const Options &options)
+        : MotorEmulator(options)
+        , options_(options) {}
 
-    /// One byte from the line; gives the answer, most often an empty one.
-    RoboClawEmulator::Answer receive(char byte);
-    /// Lets time pass. voltage: of the battery.
-    void advance(double seconds, double voltage);
-    /// As after a reset by DTR: it is dead for a while, then it answers with counts of 0.
-    void restart();
-
-    Faults &faults() { return faults_; }
-    double timeout() const { return options_.timeout; }
-    /// 0 on the left, 1 on the right.
-    MotorChannel &channel(int motor) { return channels_[std::size_t(motor)]; }
-    const MotorChannel &channel(int motor) const { return channels_[std::size_t(motor)]; }
-    const RoboClawEmulator::Counts &counts() const { return counts_; }
+    double timeout() const override { return options_.timeout; }
 
 private:
     enum class Mode { Off, Speed, Pwm };
@@ -50,22 +32,17 @@ private:
         std::size_t blanks = 0;
     };
 
+    void hear(std::uint8_t byte) override;
+    void turn(double seconds) override;
+    void reset() override;
     std::string execute();
     void cutPower();
-    char damaged(char byte);
-    bool chance(double share) {
-        return share > 0 && std::uniform_real_distribution<double>()(random_) < share;
-    }
 
     Options options_;
-    std::array<MotorChannel, 2> channels_;
-    Faults faults_;
-    RoboClawEmulator::Counts counts_;
-    std::mt19937_64 random_;
     Heard heard_;
     Mode mode_ = Mode::Off;
-    std::array<double, 2> speeds_{};                    ///< counts/s
-    double silence_ = 0, frameLeft_ = 0, startsIn_ = 0; ///< seconds
+    std::array<double, 2> speeds_{}; ///< counts/s
+    double frameLeft_ = 0;           ///< seconds
 };
 
 } // namespace hermes::simulator

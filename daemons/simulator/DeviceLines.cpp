@@ -174,7 +174,7 @@ void MotorLines::receive(int line, const QByteArray &bytes) {
             garble(moved, garbage_);
         return moved;
     };
-    for (const RoboClawEmulator::Answer &answer : device_(line, carried(bytes), monotonicNow())) {
+    for (const MotorEmulator::Answer &answer : device_(line, carried(bytes), monotonicNow())) {
         const QByteArray out = carried(
             QByteArray(reinterpret_cast<const char *>(answer.bytes.data()), int(answer.bytes.size())));
         if (answer.delay > 0)

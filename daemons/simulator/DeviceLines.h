@@ -3,14 +3,13 @@
 #include "common/Result.h"
 #include "common/interface/PtyInterface.h"
 #include "common/interface/TcpServerInterface.h"
-#include "daemons/simulator/RoboClawEmulator.h"
+#include "daemons/simulator/MotorEmulator.h"
 
 #include <QPointer>
 #include <QStringList>
 
 #include <functional>
 #include <memory>
-#include <random>
 #include <vector>
 
 namespace hermes::simulator {
@@ -83,7 +82,7 @@ class MotorLines : public QObject {
 public:
     /// What the controllers on a line (0 or 1) answer to bytes that came now (seconds, monotonic).
     using Device =
-        std::function<std::vector<RoboClawEmulator::Answer>(int line, const QByteArray &bytes, double now)>;
+        std::function<std::vector<MotorEmulator::Answer>(int line, const QByteArray &bytes, double now)>;
 
     explicit MotorLines(Device device)
         : device_(std::move(device)) {}

@@ -12,30 +12,34 @@ constexpr double patch = 1;         // metres of like ground under a wheel
 
 } // namespace
 
-std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::uint8_t *data,
-                                                          std::size_t size, double now) {
-    std::vector<RoboClawEmulator::Answer> answers;
-    const auto add = [&](RoboClawEmulator::Answer answer) {
-        delayAnswer(answer, line, now);
-        answers.push_back(answer);
-    };
+Drivetrain::Drivetrain(const Options &options)
+    : options_(options)
+    , battery_(options.battery)
+    , random_(options.seed) {
+    const MotorKind &kind = motorKind(options.kind);
+    for (int number = 0; number < kind.controllers; ++number)
+        controllers_.push_back(kind.make(options, std::size_t(number)));
+    for (Mount &mount : options_.wheels)
+        mount.controller = std::min(mount.controller, controllers() - 1);
+}
+
+std::vector<MotorEmulator::Answer> Drivetrain::receive(int line, const std::uint8_t *data, std::size_t size,
+                                                       double now) {
+    std::vector<MotorEmulator::Answer> answers;
     for (std::size_t i = 0; i < size; ++i) {
-        if (arduino_) {
-            if (const auto answer = arduino_->receive(char(data[i])); !answer.bytes.empty())
-                add(answer);
-            continue;
-        }
-        for (int number = 0; number < controllers; ++number) {
+        for (int number = 0; number < controllers(); ++number) {
             if (line != (options_.ownLines ? number : 0))
                 continue;
-            for (const RoboClawEmulator::Answer &answer : controller(number).receive(data[i], now))
-                add(answer);
+            for (MotorEmulator::Answer answer : controller(number).receive(data[i], now)) {
+                delayAnswer(answer, line, now);
+                answers.push_back(answer);
+            }
         }
     }
     return answers;
 }
 
-void Drivetrain::delayAnswer(RoboClawEmulator::Answer &answer, int line, double now) {
+void Drivetrain::delayAnswer(MotorEmulator::Answer &answer, int line, double now) {
     const double latency = latency_[std::size_t(line)];
     if (!(latency > 0))
         return;
@@ -48,17 +52,13 @@ void Drivetrain::delayAnswer(RoboClawEmulator::Answer &answer, int line, double 
 
 Twist2D Drivetrain::advance(double seconds) {
     double current = electronics;
-    const auto drive = [&](auto &device) {
-        device.advance(seconds, battery_.voltage());
+    for (const auto &device : controllers_) {
+        device->advance(seconds, battery_.voltage());
         for (const int motor : {0, 1}) // the bridge takes from the battery what the duty lets through
-            current += device.channel(motor).current() * device.channel(motor).duty();
-    };
-    if (arduino_)
-        drive(*arduino_);
-    else
-        std::for_each(controllers_.begin(), controllers_.end(), drive);
+            current += device->channel(motor).current() * device->channel(motor).duty();
+    }
     battery_.draw(current, seconds);
-    return options_.base.twistOf(gripping(seconds));
+    return options_.base.twistOf(gripping(seconds), servo().value_or(options_.base.servoCentre));
 }
 
 std::array<double, 4> Drivetrain::gripping(double seconds) {
@@ -77,8 +77,7 @@ std::array<double, 4> Drivetrain::wheelSpeeds() const {
     std::array<double, 4> speeds;
     for (std::size_t i = 0; i < speeds.size(); ++i) {
         const Mount &mount = options_.wheels[i];
-        const MotorChannel &motor =
-            arduino_ ? arduino_->channel(int(i) % 2) : controller(mount.controller).channel(mount.motor);
+        const MotorChannel &motor = controller(mount.controller).channel(mount.motor);
         speeds[i] = (mount.reversed ? -1 : 1) * motor.speed() * 2 * vectorlib::pi / options_.countsPerTurn;
     }
     return speeds;

@@ -1,12 +1,9 @@
 #pragma once
 
-#include "daemons/simulator/ArduinoEmulator.h"
-#include "daemons/simulator/RoboClawEmulator.h"
+#include "daemons/simulator/MotorKinds.h"
 #include "daemons/simulator/RobotBody.h"
 
 #include <algorithm>
-#include <optional>
-#include <random>
 
 namespace hermes::simulator {
 
@@ -48,63 +45,55 @@ private:
     double current_ = 0;
 };
 
-/// What drives the robot: two RoboClaws with two motors each, or an Arduino with one for each side; four
-/// wheels, a battery. Time comes from outside.
+/// What drives the robot: motor controllers with two motors each, four wheels, a battery. Time comes from
+/// outside.
 class Drivetrain {
 public:
-    static constexpr int controllers = 2;
     /// Which motor turns a wheel.
     struct Mount {
         int controller = 0;
         int motor = 0;
         bool reversed = false; ///< positive counts drive the robot backward
     };
-    struct Options {
+    struct Options : MotorOptions {
         WheelBase base;
-        std::array<Mount, 4> wheels{{{0, 0}, {0, 1}, {1, 0}, {1, 1}}}; ///< as in WheelBase
+        /// As in WheelBase; a single controller turns the wheels of the second one, too.
+        std::array<Mount, 4> wheels{{{0, 0}, {0, 1}, {1, 0}, {1, 1}}};
         double countsPerTurn = 38000;
         double slip = 0;       ///< share of the wheels' way that the robot does not make
         double slipSpread = 0; ///< standard deviation of each wheel's slip, drawn anew for each metre
         std::uint64_t seed = 1;
         bool ownLines = false; ///< each controller has a line of its own; else both share line 0
-        std::array<RoboClawEmulator::Options, controllers> controller = twoAddresses();
-        std::optional<ArduinoEmulator::Options> arduino; ///< instead of the controllers, on line 0
         Battery::Options battery;
     };
 
     Drivetrain()
         : Drivetrain(Options()) {}
-    explicit Drivetrain(const Options &options)
-        : options_(options)
-        , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
-        , arduino_(options.arduino)
-        , battery_(options.battery)
-        , random_(options.seed) {}
+    explicit Drivetrain(const Options &options);
 
     /// Bytes from a line (0 or 1), now: seconds of any clock; gives what is answered, in order.
-    std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
-                                                  double now);
+    std::vector<MotorEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
+                                               double now);
     /// Lets time pass; gives how the wheels move the robot.
     Twist2D advance(double seconds);
 
-    RoboClawEmulator &controller(int number) { return controllers_[std::size_t(number)]; }
-    const RoboClawEmulator &controller(int number) const { return controllers_[std::size_t(number)]; }
-    /// None where the controllers drive.
-    std::optional<ArduinoEmulator> &arduino() { return arduino_; }
+    int controllers() const { return int(controllers_.size()); }
+    MotorEmulator &controller(int number) { return *controllers_[std::size_t(number)]; }
+    const MotorEmulator &controller(int number) const { return *controllers_[std::size_t(number)]; }
     /// The motor of a wheel.
     MotorChannel &wheel(int number) {
-        if (arduino_)
-            return arduino_->channel(number % 2);
         const Mount &mount = options_.wheels[std::size_t(number)];
         return controller(mount.controller).channel(mount.motor);
     }
+    /// Position of the steering servo, 0 to 1, once its controller was told one.
+    std::optional<double> servo() const { return controller(0).servo(); }
     Battery &battery() { return battery_; }
     const Battery &battery() const { return battery_; }
     void setSlip(double share) { options_.slip = share; }
-    /// The controllers have exchanged their addresses.
+    /// The two controllers have exchanged their addresses.
     void setSwapped(bool swapped) {
         for (std::size_t i = 0; i < controllers_.size(); ++i)
-            controllers_[i].setAddress(options_.controller[swapped ? 1 - i : i].address);
+            controllers_[i]->setAddress(options_.controller[swapped ? 1 - i : i].address);
     }
     /// The host's adapter of a line (0 or 1) hands on what it receives in bunches, each so many seconds after
     /// its first byte, as the latency timer of an FTDI chip does.
@@ -114,12 +103,7 @@ public:
     bool isMoving() const;
 
 private:
-    void delayAnswer(RoboClawEmulator::Answer &answer, int line, double now);
-    static std::array<RoboClawEmulator::Options, controllers> twoAddresses() {
-        std::array<RoboClawEmulator::Options, controllers> options;
-        options[1].address = std::uint8_t(options[0].address + 1);
-        return options;
-    }
+    void delayAnswer(MotorEmulator::Answer &answer, int line, double now);
     /// The wheels' speeds less their slip.
     std::array<double, 4> gripping(double seconds);
 
@@ -129,8 +113,7 @@ private:
         double left = 0; ///< metres to the next patch
     };
     Options options_;
-    std::array<RoboClawEmulator, controllers> controllers_;
-    std::optional<ArduinoEmulator> arduino_;
+    std::vector<std::unique_ptr<MotorEmulator>> controllers_;
     Battery battery_;
     std::mt19937_64 random_;
     std::array<Ground, 4> grounds_;

@@ -1,6 +1,5 @@
 #include "daemons/simulator/RoboClawEmulator.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hermes::simulator {
@@ -12,6 +11,7 @@ namespace {
 constexpr double longestGap = 0.010;          // seconds between the bytes of one packet
 constexpr double eepromTime = 0.005;          // until a written cell is acknowledged; seconds
 constexpr double warmth = 0.03, cooling = 60; // degrees for each A^2 at last, with this time constant (s)
+constexpr double room = 25;                   // degrees Celsius
 constexpr double hot = 85, tooHot = 100;      // data sheet: the current falls from 85 degrees, to none at 100
 
 } // namespace
@@ -37,89 +37,58 @@ void RoboClawEmulator::Options::setFirmware(const std::string &number) {
     }
 }
 
-std::vector<RoboClawEmulator::Answer> RoboClawEmulator::receive(std::uint8_t byte, double now) {
+std::vector<MotorEmulator::Answer> RoboClawEmulator::receive(std::uint8_t byte, double now) {
     if (now - lastByte_ > longestGap)
         parser_.silence();
     lastByte_ = now;
-    std::vector<Answer> answers;
-    if (faults_.echo) {
-        answers.emplace_back();
-        answers.back().bytes.push(byte);
-    }
-    if (isDead() || faults_.deaf)
-        return answers;
+    return MotorEmulator::receive(byte, now);
+}
+
+void RoboClawEmulator::hear(std::uint8_t byte) {
     silence_ = 0;
     const RequestParser::Result result = parser_.feed(byte);
     counts_.crcErrors += result == RequestParser::Result::BadCrc;
     counts_.unknown += result == RequestParser::Result::Unknown;
     if (result != RequestParser::Result::Done)
-        return answers;
+        return;
     const Request &request = parser_.request();
     if (request.address != options_.address && !options_.anyAddress)
-        return answers;
+        return;
     const std::optional<Bytes> bytes = execute(request);
     if (!bytes)
-        return answers;
+        return;
     ++counts_.requests;
-    if (const auto answer = damaged(*bytes))
-        answers.push_back(*answer);
-    if (request.command == Command::WriteEeprom) {
-        Bytes written;
-        written.push(eepromWritten);
-        if (auto answer = damaged(written)) {
-            answer->delay += eepromTime;
-            answers.push_back(*answer);
-        }
-    }
-    return answers;
+    send(bytes->data(), bytes->size());
+    if (request.command == Command::WriteEeprom)
+        send(&eepromWritten, 1, eepromTime);
 }
 
-std::optional<RoboClawEmulator::Answer> RoboClawEmulator::damaged(const Bytes &bytes) {
-    if (chance(faults_.drop))
-        return {};
-    if (!chance(faults_.corrupt))
-        return Answer{bytes, faults_.delay};
-    const std::size_t bit = random_() % (bytes.size() * 8);
-    Answer answer{{}, faults_.delay};
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-        answer.bytes.push(std::uint8_t(bytes[i] ^ (bit / 8 == i ? 1 << bit % 8 : 0)));
-    return answer;
-}
-
-void RoboClawEmulator::advance(double seconds, double voltage, double ambient) {
-    voltage_ = voltage;
-    silence_ += seconds;
-    startsIn_ = std::max(0.0, startsIn_ - seconds);
-    const bool timedOut = timeoutTenths_ > 0 && !faults_.stuckTimeout && silence_ >= serialTimeout();
-    if (timedOut && silence_ - seconds < serialTimeout())
+void RoboClawEmulator::turn(double seconds) {
+    const bool timedOut = timeoutTenths_ > 0 && !faults_.stuckTimeout && silence_ >= timeout();
+    if (timedOut && silence_ - seconds < timeout())
         ++counts_.timeouts;
-    const bool powered = !isDead() && !(status() & MainVoltageLowError);
+    const bool powered = !isDead() && !(statusBits() & MainVoltageLowError);
     double heat = 0;
     for (MotorChannel &channel : channels_) {
         if (timedOut || isStopped() || isDead())
             channel.stop();
-        channel.advance(seconds, voltage, powered);
+        channel.advance(seconds, voltage_, powered);
         heat += channel.current() * channel.current() * warmth;
     }
-    temperature_ += (ambient + heat - temperature_) * (1 - std::exp(-seconds / cooling));
+    temperature_ += (room + heat - temperature_) * (1 - std::exp(-seconds / cooling));
 }
 
-void RoboClawEmulator::restart(double seconds) {
+void RoboClawEmulator::reset() {
     restoreDefaults();
     parser_.silence();
     mixedDrive_ = mixedTurn_ = std::nullopt;
-    for (MotorChannel &channel : channels_) {
-        channel.stop();
-        channel.setCount(0);
-    }
-    startsIn_ = seconds;
 }
 
 bool RoboClawEmulator::isStopped() const {
-    return status() & (EmergencyStop | TemperatureError | DriverFaultM1 | DriverFaultM2);
+    return statusBits() & (EmergencyStop | TemperatureError | DriverFaultM1 | DriverFaultM2);
 }
 
-std::uint32_t RoboClawEmulator::status() const {
+std::uint32_t RoboClawEmulator::statusBits() const {
     const auto limits = readStored(Command::ReadMainLimits, {});
     std::uint32_t bits = faults_.status;
     const auto set = [&bits](bool on, StatusBit bit) { bits |= on ? std::uint32_t(bit) : 0; };
@@ -156,7 +125,7 @@ std::optional<Bytes> RoboClawEmulator::answerTo(const Request &request) {
         return encodeText(request, options_.version, options_.versionLineFeed);
     if (request.command == Command::ReadStatus) {
         const bool old = options_.status == Dialect::Other;
-        return encodeReply(request, {old ? oldStatusOf(status()) : status()}, options_.status);
+        return encodeReply(request, {old ? oldStatusOf(statusBits()) : statusBits()}, options_.status);
     }
     auto values = read(request.command);
     if (!values)

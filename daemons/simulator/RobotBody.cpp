@@ -1,7 +1,6 @@
 #include "daemons/simulator/RobotBody.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hermes::simulator {
 
@@ -63,15 +62,6 @@ namespace {
 using Vector = vectorlib::Vector2D<double>;
 
 } // namespace
-
-Twist2D WheelBase::twistOf(const std::array<double, 4> &wheels) const {
-    const auto [fl, fr, rl, rr] = wheels;
-    const double quarter = radius / 4;
-    if (kind == Kind::Differential)
-        return {quarter * (fl + fr + rl + rr), 0, quarter * (-fl + fr - rl + rr) / halfTrack};
-    return {quarter * (fl + fr + rl + rr), quarter * (-fl + fr + rl - rr),
-            quarter * (-fl + fr - rl + rr) / (halfBase + halfTrack)};
-}
 
 Pose2D RobotBody::move(const Pose2D &from, const Twist2D &twist, double seconds, const People &people) {
     const Pose2D to = from * twist.motion(seconds);

@@ -1,11 +1,10 @@
 #pragma once
 
 #include "common/world/World.h"
-#include "protocol/messages/Motion.h"
+#include "daemons/simulator/WheelBase.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
 
-#include <array>
 #include <vector>
 
 namespace hermes::simulator {
@@ -40,20 +39,6 @@ public:
 private:
     std::vector<Person> people_;
     double nearest_ = 0; ///< to the robot, centre to centre; metres
-};
-
-/// Four wheels under a robot, in the order front left, front right, rear left, rear right.
-struct WheelBase {
-    enum class Kind { Mecanum, Differential };
-
-    Kind kind = Kind::Mecanum;
-    double radius = 0.1;     ///< of a wheel; metres
-    double halfBase = 0.25;  ///< centre to axle; metres
-    double halfTrack = 0.25; ///< centre to the middle of a wheel; metres
-
-    /// How the body moves when the wheels turn so fast (rad/s, positive forward) without slip. Least squares
-    /// where they fight each other.
-    Twist2D twistOf(const std::array<double, 4> &wheels) const;
 };
 
 /// The outline of a robot, a circle, that walls and people stop.

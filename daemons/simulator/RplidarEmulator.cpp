@@ -45,6 +45,8 @@ public:
         setSpeed(type_.motor == Motor::Pwm ? 0 : model.turns_hz);
     }
 
+    bool tellsHealth() const override { return true; }
+
 protected:
     void hear(std::uint8_t byte) override;
     bool isScanning() const override { return packet_ != 0 && (turns() || forced_) && !isBroken(); }

@@ -5,8 +5,8 @@ namespace hermes::simulator {
 
 namespace {
 
-constexpr std::int64_t longestStep_ns = 500000000; // more is a pause, in which nothing happened
-constexpr std::int64_t clockAhead_us = 23456000;   // at the start; made up
+constexpr std::int64_t longestStep_ns = 10000000000; // more is a pause, in which nothing happened
+constexpr std::int64_t clockAhead_us = 23456000;     // at the start; made up
 constexpr int usbBaud = 12000000;
 constexpr int bitsPerByte = 10;
 constexpr int heldBytes = 7; // no packet has so few, but those of 5: it ends in the middle

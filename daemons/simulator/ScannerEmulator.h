@@ -70,6 +70,7 @@ public:
     std::string_view take(std::int64_t now_ns, const Measure &measure);
 
     void setFault(const Fault &fault);
+    virtual bool tellsHealth() const { return false; } ///< so that the host can ask or see it
     const ScannerModel &model() const { return model_; }
     std::uint64_t revolutions() const { return revolutions_; }
 

@@ -47,6 +47,8 @@ public:
         setSector(first_, last_);
     }
 
+    bool tellsHealth() const override { return true; }
+
 protected:
     void hear(std::uint8_t byte) override;
     bool isScanning() const override { return (sends_ || asked_) && measures_ && turns(); }

@@ -39,7 +39,7 @@ QString toText(LidarFault::Kind kind) {
 Simulator::Simulator()
     : Daemon({"simulator", "Simulator",
               "A simulated robot in a world of walls: an HDL-32E that sends packets over UDP; on "
-              "pseudo-terminals two RoboClaws or an Arduino, a GPS receiver and a 2D scanner"})
+              "pseudo-terminals motor controllers, a GPS receiver and a 2D scanner"})
     , pump_([this](const Simulation::Truth &truth) { later([this, truth] { publishTruth(truth); }); },
             [this](const std::string &sentences) {
                 later([this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); });
@@ -51,7 +51,7 @@ Simulator::Simulator()
                 });
             })
     , lines_([this](int line, const QByteArray &bytes, double now) {
-        std::vector<RoboClawEmulator::Answer> answers;
+        std::vector<MotorEmulator::Answer> answers;
         pump_.with([&](Simulation &simulation) {
             answers = simulation.drivetrain().receive(
                 line, reinterpret_cast<const std::uint8_t *>(bytes.constData()), std::size_t(bytes.size()),
@@ -59,7 +59,7 @@ Simulator::Simulator()
         });
         return answers;
     }) {
-    SimulatorSettings().declare([this](const Field &field) { addSetting(field); });
+    SimulatorSettings().declareIn(settings());
     settings().addRule([](const QJsonObject &wanted) { return SimulatorSettings(wanted).violations(); });
     addSetting(namedFilesField());
     declareTopics();
@@ -148,9 +148,8 @@ Result<void> Simulator::start() {
     QStringList links{wanted.link};
     if (!wanted.link2.isEmpty())
         links.append(wanted.link2);
-    for (const Result<void> &opened :
-         {lines_.open(links, wanted.simulation.drivetrain.arduino ? ArduinoEmulator::baud : 0),
-          gpsLine_.open(wanted.gpsLink), openScanner(wanted)}) {
+    for (const Result<void> &opened : {lines_.open(links, motorKind(wanted.simulation.drivetrain.kind).baud),
+                                       gpsLine_.open(wanted.gpsLink), openScanner(wanted)}) {
         if (!opened)
             return opened;
     }
@@ -258,8 +257,9 @@ Result<void> Simulator::setNoise(const Call &call) {
 }
 
 Result<void> Simulator::setFault(const Call &call) {
-    if (const QString wrong = faultMismatch(call.text("device"), call.text("kind"), hasArduino());
-        !wrong.isEmpty())
+    const std::string name = settings().text("motors.kind").toStdString();
+    const MotorKind &motors = motorKind(name);
+    if (const QString wrong = faultMismatch(call.text("device"), call.text("kind"), motors); !wrong.isEmpty())
         return invalidParams({{"kind", call.value("kind"), "a fault of this device"}}, wrong);
     if (call.text("device") == "gps" || call.text("device") == "scanner")
         return setSensorFault(call);

@@ -7,8 +7,8 @@
 
 namespace hermes::simulator {
 
-/// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, two
-/// RoboClaws or an Arduino that drive it, a GPS receiver and a 2D laser scanner on pseudo-terminals.
+/// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, motor
+/// controllers that drive it, a GPS receiver and a 2D laser scanner on pseudo-terminals.
 struct SimulatorSettings;
 
 class Simulator : public Daemon {
@@ -40,7 +40,6 @@ private:
     /// Of the GPS receiver or the 2D scanner.
     Result<void> setSensorFault(const Call &call);
     Result<void> openScanner(const SimulatorSettings &wanted);
-    bool hasArduino() { return settings().text("motors.kind") == "arduino"; }
     DrivetrainState motorState(Drivetrain &drivetrain) const;
     SimulatorState state();
     void publishTruth(const Simulation::Truth &truth);

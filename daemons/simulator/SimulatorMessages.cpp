@@ -8,12 +8,11 @@ namespace hermes::simulator {
 namespace {
 
 constexpr std::array<const char *, 4> wheels{"front_left", "front_right", "rear_left", "rear_right"};
-const QStringList ofController{"silence",       "loss",     "corrupt",        "slow",
-                               "deaf",          "mute",     "latched",        "echo",
-                               "stuck_timeout", "brownout", "emergency_stop", "over_temperature",
-                               "over_current",  "driver"};
-const QStringList ofArduino{"silence", "loss", "corrupt", "slow", "deaf", "mute", "stuck_timeout", "restart"};
-const QStringList notOfArduino{"line2", "controller2", "controllers"};
+QStringList faultsOf(const MotorKind &motors) {
+    return QStringList(motors.faults.begin(), motors.faults.end());
+}
+const QStringList ofController = faultsOf(motorKind("roboclaw"));
+const QStringList ofSecond{"line2", "controller2", "controllers"};
 const QStringList ofWheel{"blocked", "encoder", "jump", "backward"};
 
 struct Device {
@@ -49,7 +48,8 @@ QStringList faultKinds() {
     QStringList kinds{"none"};
     for (const Device &device : devices)
         kinds += device.kinds;
-    kinds += ofArduino;
+    for (const MotorKind &motors : motorKinds())
+        kinds += faultsOf(motors);
     kinds.removeDuplicates();
     return kinds;
 }
@@ -62,10 +62,11 @@ QStringList faultKindsOf(const QString &device) {
     return {};
 }
 
-QString faultMismatch(const QString &device, const QString &kind, bool arduino) {
-    if (arduino && notOfArduino.contains(device))
-        return "a robot with an Arduino has no " + device;
-    const QStringList kinds = arduino && device == "controller1" ? ofArduino : faultKindsOf(device);
+QString faultMismatch(const QString &device, const QString &kind, const MotorKind &motors) {
+    if (motors.controllers < 2 && ofSecond.contains(device))
+        return QString("a robot with %1 has no %2").arg(motors.title, device);
+    const bool isController = device == "controller1" || device == "controller2";
+    const QStringList kinds = isController ? faultsOf(motors) : faultKindsOf(device);
     if (kind == "none" || kinds.contains(kind))
         return {};
     return QString("%1 has no fault %2; it has: none, %3").arg(device, kind, kinds.join(", "));
@@ -87,8 +88,8 @@ Fields<LoadedWorld> fieldsOf(Of<LoadedWorld>) {
         .add("poses", &LoadedWorld::poses, "Of its path");
 }
 
-Fields<RoboClawEmulator::Counts> fieldsOf(Of<RoboClawEmulator::Counts>) {
-    using C = RoboClawEmulator::Counts;
+Fields<MotorEmulator::Counts> fieldsOf(Of<MotorEmulator::Counts>) {
+    using C = MotorEmulator::Counts;
     return Fields<C>()
         .add("requests", &C::requests, "Carried out")
         .add("crc_errors", &C::crcErrors, "Damaged requests")
@@ -101,7 +102,7 @@ Fields<EmulatorState> fieldsOf(Of<EmulatorState>) {
     return Fields<E>()
         .add("status", &E::status, "Bits of errors and warnings, of a RoboClaw")
         .add("temperature_c", &E::temperature_c, "Of a RoboClaw", "degC")
-        .add("serial_timeout_s", &E::serialTimeout_s, "It stops then; 0: never", "s")
+        .add("serial_timeout_s", &E::timeout_s, "It stops then; 0: never", "s")
         .include(&E::counts);
 }
 

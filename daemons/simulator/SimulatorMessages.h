@@ -15,8 +15,8 @@ namespace hermes::simulator {
 QStringList faultDevices();
 /// All that any of them can do wrong, with "none".
 QStringList faultKinds();
-/// Why the device of a robot, driven by an Arduino or not, has no such fault, or an empty text.
-QString faultMismatch(const QString &device, const QString &kind, bool arduino);
+/// Why the device of a robot that is driven so has no such fault, or an empty text.
+QString faultMismatch(const QString &device, const QString &kind, const MotorKind &motors);
 /// What it can do wrong; of GPS receiver and scanner in the order of their Fault::Kind, from Silence on.
 QStringList faultKindsOf(const QString &device);
 /// Of a wheel by its name, in the order of WheelBase; -1 for other devices.
@@ -32,8 +32,8 @@ struct LoadedWorld {
 struct EmulatorState {
     std::optional<quint32> status; ///< as the temperature, of a RoboClaw
     std::optional<double> temperature_c;
-    double serialTimeout_s = 0;
-    RoboClawEmulator::Counts counts;
+    double timeout_s = 0;
+    MotorEmulator::Counts counts;
 };
 
 /// What drives the simulated robot; without a world there are its lines only.

@@ -6,43 +6,14 @@ namespace hermes::simulator {
 
 namespace {
 
-void applyFault(Drivetrain &drivetrain, int number, const Call &call) {
-    auto &arduino = drivetrain.arduino();
-    RoboClawEmulator &controller = drivetrain.controller(number);
-    RoboClawEmulator::Faults &faults = arduino ? arduino->faults() : controller.faults();
-    const QString kind = call.text("kind");
+void applyFault(MotorEmulator &controller, const Call &call) {
+    const std::string kind = call.text("kind").toStdString();
+    const bool share = kind == "loss" || kind == "corrupt";
     if (kind == "none")
-        faults = {};
-    else if (kind == "silence")
-        faults.silent = true;
-    else if (kind == "loss")
-        faults.drop = call.number("share");
-    else if (kind == "corrupt")
-        faults.corrupt = call.number("share");
-    else if (kind == "slow")
-        faults.delay = call.number("delay_s");
-    else if (kind == "deaf")
-        faults.deaf = true;
-    else if (kind == "mute")
-        faults.drop = 1;
-    else if (kind == "latched")
-        faults.latched = true;
-    else if (kind == "echo")
-        faults.echo = true;
-    else if (kind == "stuck_timeout")
-        faults.stuckTimeout = true;
-    else if (kind == "brownout")
-        controller.restart(call.number("delay_s"));
-    else if (kind == "restart")
-        arduino->restart();
-    else if (kind == "emergency_stop")
-        faults.status |= roboclaw::EmergencyStop;
-    else if (kind == "over_temperature")
-        faults.status |= roboclaw::TemperatureError;
-    else if (kind == "over_current")
-        faults.status |= roboclaw::OverCurrentWarningM1 | roboclaw::OverCurrentWarningM2;
-    else if (kind == "driver")
-        faults.status |= roboclaw::DriverFaultM1;
+        controller.faults() = {};
+    else
+        controller.setFault(kind, kind == "restart" ? ArduinoEmulator::restartTime
+                                                    : call.number(share ? "share" : "delay_s"));
 }
 
 void applyFault(MotorChannel &motor, const Call &call) {
@@ -75,7 +46,7 @@ Result<void> Simulator::setMotorFault(const Call &call) {
         else if (device == "controllers")
             drivetrain.setSwapped(kind == "swapped");
         else if (device.startsWith("controller"))
-            applyFault(drivetrain, second, call);
+            applyFault(drivetrain.controller(second), call);
         else if (device == "battery")
             drivetrain.battery().setCharge(kind == "none" ? 1 : call.number("share"));
         else if (device == "wheels")
@@ -91,11 +62,9 @@ DrivetrainState Simulator::motorState(Drivetrain &drivetrain) const {
     DrivetrainState state;
     state.wheels_rps = drivetrain.wheelSpeeds();
     state.controllers.emplace();
-    if (const auto &arduino = drivetrain.arduino())
-        state.controllers->push_back({{}, {}, arduino->timeout(), arduino->counts()});
-    for (int i = 0; i < Drivetrain::controllers && !drivetrain.arduino(); ++i) {
-        const RoboClawEmulator &c = drivetrain.controller(i);
-        state.controllers->push_back({c.status(), c.temperature(), c.serialTimeout(), c.counts()});
+    for (int i = 0; i < drivetrain.controllers(); ++i) {
+        const MotorEmulator &c = drivetrain.controller(i);
+        state.controllers->push_back({c.status(), c.temperature(), c.timeout(), c.counts()});
     }
     state.battery_v = drivetrain.battery().voltage();
     state.batteryCharge = drivetrain.battery().charge();

@@ -39,6 +39,13 @@ Result<void> Simulator::setSensorFault(const Call &call) {
     const bool gps = device == "gps";
     if (!gps && scannerModel_ == "none")
         return Error(ErrorCode::NotReady, "the robot has no scanner; scanner.model gives it one");
+    if (!gps && kind == "health" && !makeScanner(scannerModel_.toStdString())->tellsHealth()) {
+        QStringList others = faultKindsOf(device);
+        others.removeAll(kind);
+        return invalidParams(
+            {{"kind", kind, "a fault of this scanner"}},
+            QString("%1 has no fault health; it has: none, %2").arg(scannerModel_, others.join(", ")));
+    }
     if (kind == "pulled" || kind == "none")
         (gps ? gpsLine_ : scannerLine_).setPulled(kind == "pulled");
     if (kind != "pulled") {

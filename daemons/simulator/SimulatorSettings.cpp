@@ -2,6 +2,15 @@
 
 namespace hermes::simulator {
 
+namespace {
+
+/// In the order of WheelBase::Kind.
+QStringList layouts() {
+    return {"mecanum", "differential", "two_wheels", "omni3", "omni4", "ackermann"};
+}
+
+} // namespace
+
 SimulatorSettings::SimulatorSettings() {
     Simulation::Options &robot = simulation;
     LidarModel::Options &lidar = simulation.lidar;
@@ -45,8 +54,12 @@ void SimulatorSettings::addMotors() {
     Drivetrain::Options &drivetrain = simulation.drivetrain;
     MotorChannel::Motor &motor = drivetrain.controller[0].motor;
     group("Motors", Applies::OnRestart);
-    add("motors.kind", motorsKind, "What drives the wheels: two RoboClaws, or an Arduino with two motors")
-        .choices({"roboclaw", "arduino"});
+    QStringList kinds;
+    for (const MotorKind &kind : motorKinds())
+        kinds.append(kind.name);
+    add("motors.kind", motorsKind,
+        "What drives the wheels: two RoboClaws, or one of the others, with two motors")
+        .choices(kinds);
     add("motors.link", link,
         "Link to the pseudo-terminal of the motor controllers; none: sim.state tells its name");
     add("motors.link2", link2, "Link to one of its own for the second controller; none: both share one");
@@ -58,9 +71,16 @@ void SimulatorSettings::addMotors() {
     add("motors.firmware", firmware,
         "Of the controllers: 4.1.28 tells its status in 16 bits, 4.3.6 does not know commands 0 to 13")
         .choices(QStringList(versions.begin(), versions.end()));
-    add("motors.arduino.timeout_s", arduino.timeout,
+    add("motors.arduino.timeout_s", drivetrain.arduino.timeout,
         "Of its firmware: after so long without a command that drives, the power is off", "s", 0.05, 600);
-    add("motors.arduino.coasts", arduino.coasts, "Without power its wheels roll; else they brake");
+    add("motors.arduino.coasts", drivetrain.arduino.coasts, "Without power its wheels roll; else they brake");
+    add("motors.vesc.can_id", drivetrain.vesc.ids[1],
+        "Of the second VESC, which turns the right wheels; 255: there is none")
+        .range(0, 255);
+    add("motors.vesc.timeout_s", drivetrain.vesc.timeout,
+        "After so long without a command that drives it, each brakes or coasts; 0: never", "s", 0, 600);
+    add("motors.vesc.brake_current_a", drivetrain.vesc.brakeCurrent,
+        "With which they brake then; with 0 they coast", "A", 0, 200);
     add("motors.full_speed", motor.fullSpeed, "Encoder counts a second at full duty and 24 V", "1/s", 100,
         2e7);
     add("motors.lag_s", motor.lag, "Time constant with which a wheel follows", "s", 0.001, 10);
@@ -69,11 +89,22 @@ void SimulatorSettings::addMotors() {
     add("battery.empty_v", drivetrain.battery.empty,
         "Its voltage when empty, without load; below 5 % of the charge it falls to 20 V", "V", 0, 34);
     group("Wheels", Applies::OnRestart);
-    add("frame.layout", layout, "How the wheels move the robot").choices({"mecanum", "differential"});
+    add("frame.layout", layout, "How the wheels move the robot").choices(layouts());
     add("frame.wheel_radius_m", drivetrain.base.radius, "Radius of a wheel", "m", 0.01, 1);
     add("frame.half_base_m", drivetrain.base.halfBase, "From the centre to an axle", "m", 0.01, 5);
     add("frame.half_track_m", drivetrain.base.halfTrack, "From the centre to the middle of a wheel", "m",
         0.01, 5);
+    WheelBase &base = drivetrain.base;
+    add("frame.omni_radius_m", base.omniRadius, "Of omni3 and omni4: from the centre to a wheel", "m", 0.01,
+        5);
+    add("frame.omni_angle_rad", base.omniAngle,
+        "Of omni3 and omni4: where front_left is, counter-clockwise from x; the others follow evenly", "rad",
+        -6.3, 6.3);
+    add("frame.rear_motors", base.rearMotors, "Of ackermann: M1 for both wheels behind, or M1 and M2")
+        .range(1, 2);
+    add("frame.servo_centre", base.servoCentre, "Position of its servo, 0 to 1, straight ahead", "", 0, 1);
+    add("frame.servo_per_rad", base.servoPerRadian, "How far its servo goes for a radian to the left",
+        "1/rad", -100, 100);
     add("frame.counts_per_turn", drivetrain.countsPerTurn, "Encoder counts in one turn of a wheel", "", 1,
         1e7);
     add("frame.slip", drivetrain.slip, "Share of the wheels' way that the robot does not make", "", 0, 1);
@@ -118,18 +149,32 @@ SimulatorSettings::SimulatorSettings(const QJsonObject &settings)
     : SimulatorSettings() {
     read(settings);
     Drivetrain::Options &drivetrain = simulation.drivetrain;
-    const bool isArduino = motorsKind == "arduino";
-    require(!isArduino || layout == "differential", layout, "differential: an Arduino drives two motors");
-    require(!isArduino || link2.isEmpty(), link2, "empty: an Arduino has one line");
-    if (layout == "differential" || isArduino)
-        drivetrain.base.kind = WheelBase::Kind::Differential;
+    const std::string kindName = motorsKind.toStdString();
+    const MotorKind &kind = motorKind(kindName);
+    WheelBase &base = drivetrain.base;
+    base.kind = WheelBase::Kind(layouts().indexOf(layout));
+    const bool isForTwo = layout == "differential" || layout == "two_wheels", isCar = layout == "ackermann";
+    require(kind.controllers > 1 || isForTwo || isCar, layout,
+            QString("differential or two_wheels: the wheels have %1 with two motors").arg(kind.title));
+    require(!isCar || motorsKind == "vesc", layout,
+            QString("another layout, or motors.kind=vesc: %1 turns no steering servo").arg(kind.title));
+    require(base.servoPerRadian != 0, base.servoPerRadian, "not 0");
+    require(kind.controllers > 1 || link2.isEmpty(), link2,
+            QString("empty: there is one line to %1").arg(kind.title));
+    require(motorsKind != "opencr" || drivetrain.countsPerTurn == OpenCrEmulator::countsPerTurn,
+            drivetrain.countsPerTurn, "4096: so many an OpenCR counts");
+    if (base.kind == WheelBase::Kind::Ackermann) { // its motors are those of the first controller
+        drivetrain.wheels[2] = {0, 0};
+        drivetrain.wheels[3] = {0, base.rearMotors - 1};
+    }
+    drivetrain.kind = kind.name;
     drivetrain.seed = simulation.gps.seed = simulation.scanner.seed = simulation.seed;
     simulation.scannerModel = scannerModel.toStdString();
-    if (isArduino) {
-        arduino.motor = drivetrain.controller[0].motor;
-        arduino.seed = simulation.seed;
-        drivetrain.arduino = arduino;
-    }
+    for (MotorEmulator::Options *options : std::initializer_list<MotorEmulator::Options *>{
+             &drivetrain.arduino, &drivetrain.vesc, &drivetrain.openCr, &drivetrain.roboteq})
+        *options = {drivetrain.controller[0].motor, simulation.seed};
+    drivetrain.openCr.wheelRadius = drivetrain.base.radius;
+    drivetrain.openCr.halfTrack = drivetrain.base.halfTrack;
     drivetrain.controller[1].motor = drivetrain.controller[0].motor;
     for (std::size_t i = 0; i < drivetrain.controller.size(); ++i) {
         drivetrain.controller[i].setFirmware(firmware.toStdString());

@@ -18,7 +18,6 @@ struct SimulatorSettings : SettingsTable {
     QString firmware = "4.2.8"; ///< of both motor controllers
     QString layout = "mecanum";
     QString motorsKind = "roboclaw";
-    ArduinoEmulator::Options arduino;
 
     SimulatorSettings();
     /// From settings that it has declared.

@@ -35,6 +35,8 @@ public:
         , type_(typeOf(model, ydlidars))
         , scanning_(type_.oneWay) {}
 
+    bool tellsHealth() const override { return !type_.oneWay; }
+
 protected:
     void hear(std::uint8_t byte) override {
         if (last_ == 0xA5 && !type_.oneWay)

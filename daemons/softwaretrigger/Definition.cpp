@@ -1,4 +1,5 @@
 #include "daemons/softwaretrigger/Definition.h"
+#include "protocol/wire/FieldTable.h"
 
 #include <QJsonArray>
 #include <algorithm>
@@ -28,15 +29,8 @@ QJsonObject number(const char *description, const char *unit, double least, doub
             {"maximum", most}};
 }
 
-QJsonObject closed(const QJsonObject &properties, const QStringList &required) {
-    return {{"type", "object"},
-            {"properties", properties},
-            {"required", QJsonArray::fromStringList(required)},
-            {"additionalProperties", false}};
-}
-
 QJsonObject whenSchema() {
-    return closed(
+    return objectSchema(
         {{"kind", choice("What fires it", causeKinds())},
          {"period_s", number("period: firing n is n periods after the trigger was armed", "s",
                              shortestPeriod_s, longestPeriod_s)},
@@ -60,7 +54,7 @@ QJsonObject whenSchema() {
 }
 
 QJsonObject actionSchema() {
-    return closed(
+    return objectSchema(
         {{"do",
           choice("call a command of a daemon, write bytes to a serial line, pulse RTS or DTR of one, or "
                  "pulse a GPIO line",
@@ -167,8 +161,8 @@ QJsonObject triggerSchema() {
                               {"description", "What a firing does, all at once"},
                               {"items", actionSchema()},
                               {"maxItems", 16}};
-    return closed({{"id", id}, {"armed", armed}, {"when", whenSchema()}, {"actions", actions}},
-                  {"id", "when", "actions"});
+    return objectSchema({{"id", id}, {"armed", armed}, {"when", whenSchema()}, {"actions", actions}},
+                        {"id", "when", "actions"});
 }
 
 } // namespace hermes::softwaretrigger

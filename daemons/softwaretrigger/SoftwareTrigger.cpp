@@ -1,4 +1,5 @@
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
+#include "common/settings/SettingsTable.h"
 #include "protocol/wire/Fields.h"
 
 namespace hermes::softwaretrigger {
@@ -17,21 +18,14 @@ SoftwareTrigger::~SoftwareTrigger() {
 }
 
 void SoftwareTrigger::declareSettings() {
-    addSetting(
-        Field::array("triggers", "The definitions; trigger.define adds and changes one", triggerSchema())
-            .with("maxItems", 100)
-            .group("Triggers")
-            .byDefault(QJsonArray()));
-    addSetting(Field::text("firings.folder", "Folder of the CSV log of all firings; empty: none")
-                   .appliesOnRestart()
-                   .group("Log of firings")
-                   .byDefault(""));
-    addSetting(Field::number("firings.file_bytes", "Size at which the log goes on in a new file")
-                   .unit("B")
-                   .range(1000, 1e12)
-                   .appliesOnRestart()
-                   .group("Log of firings")
-                   .byDefault(1e8));
+    SettingsTable table;
+    table.group("Triggers");
+    table.defineList("triggers", "The definitions; trigger.define adds and changes one", triggerSchema())
+        .with("maxItems", 100);
+    table.group("Log of firings", SettingsTable::Applies::OnRestart);
+    table.define("firings.folder", "", "Folder of the CSV log of all firings; empty: none");
+    table.define("firings.file_bytes", 1e8, "Size at which the log goes on in a new file", "B", 1000, 1e12);
+    table.declareIn(settings());
     settings().addRule(checkTriggers);
 }
 

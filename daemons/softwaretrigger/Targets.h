@@ -2,7 +2,6 @@
 
 #include "common/client/Client.h"
 
-#include <QHash>
 #include <QSet>
 #include <map>
 #include <memory>

@@ -4,7 +4,6 @@
 #include "protocol/messages/Motion.h"
 
 #include <QJsonValue>
-#include <QMetaType>
 #include <QString>
 #include <optional>
 #include <vector>

@@ -5,7 +5,6 @@
 
 #include <QJsonArray>
 #include <QJsonObject>
-#include <QStringList>
 
 #include <algorithm>
 #include <utility>

@@ -4,6 +4,9 @@
 #include "common/interface/AnySpeed.h"
 #include "daemons/supervisor/PortUsers.h"
 #include "protocol/drive/ArduinoDevice.h"
+#include "protocol/drive/OpenCrDevice.h"
+#include "protocol/drive/RoboteqDevice.h"
+#include "protocol/drive/VescDevice.h"
 #include "protocol/nmea/SentenceParser.h"
 #include "protocol/roboclaw/Packet.h"
 #include "protocol/scan/ScannerModel.h"
@@ -69,7 +72,7 @@ FoundSerial SerialProbe::run() {
         found_.kind = mayAsk_.controller ? "silent" : "not_asked";
         if (mayAsk_.controller)
             ask();
-        if (mayAsk_.others && found_.kind != "roboclaw" && !askArduino())
+        if (mayAsk_.others && found_.kind != "roboclaw" && !askOthers())
             findScanner(false);
     }
     if (found_.kind == "talker")
@@ -184,15 +187,31 @@ bool SerialProbe::listen() {
     return true;
 }
 
-/// True: it tells its encoders. Opening its line may have restarted it, which takes about as long as the
-/// questions before.
-bool SerialProbe::askArduino() {
-    constexpr drive::Command::Kind encoders = drive::Command::Kind::ReadEncoders;
-    setBaud(drive::ArduinoDevice::usualBaud);
-    drive::ArduinoDevice device;
-    const drive::Bytes request = device.bytes({encoders});
+/// True: it is a motor controller of another kind. What an Arduino is asked, its encoders, comes first:
+/// opening its line may have restarted it, which takes about as long as the questions before. What was asked
+/// at other baud rates may lie in a Roboteq, where the first question ends it, and in a VESC as the beginning
+/// of a packet, which has to be filled.
+bool SerialProbe::askOthers() {
+    using namespace drive;
+    using Kind = drive::Command::Kind;
+    ArduinoDevice arduino;
+    RoboteqDevice roboteq;
+    OpenCrDevice opencr;
+    VescDevice vesc(VescDevice::alone);
+    return askAs("arduino", ArduinoDevice::usualBaud, arduino, {Kind::ReadEncoders}) ||
+           askAs("roboteq", RoboteqDevice::usualBaud, roboteq, {Kind::SetUp}) ||
+           askAs("roboteq", RoboteqDevice::usualBaud, roboteq, {Kind::SetUp}) ||
+           askAs("opencr", OpenCrDevice::usualBaud, opencr, {Kind::ReadEncoders}) ||
+           askAs("vesc", VescDevice::usualBaud, vesc, {Kind::SetUp}, VescDevice::longestPacket);
+}
+
+/// The question moves nothing, and only that kind answers so. It comes behind so many zeros.
+bool SerialProbe::askAs(const char *kind, int baud, drive::MotorDevice &device,
+                        const drive::Command &question, std::size_t zeros) {
+    setBaud(baud);
+    const drive::Bytes request = device.bytes(question);
     device.reader().begin(request);
-    send({reinterpret_cast<const char *>(request.data()), request.size()});
+    send(std::string(zeros, 0).append(reinterpret_cast<const char *>(request.data()), request.size()));
     auto result = drive::ReplyReader::Result::Incomplete;
     int taken = 0;
     receive(patientAnswer_ms, [&](const QByteArray &all) {
@@ -204,9 +223,11 @@ bool SerialProbe::askArduino() {
         result = device.reader().silence();
     if (result != drive::ReplyReader::Result::Done)
         return false;
-    found_.kind = "arduino";
+    drive::Readings readings;
+    device.take(question, readings);
+    found_.kind = kind;
     found_.text = QString::fromStdString(device.version());
-    found_.baud = drive::ArduinoDevice::usualBaud;
+    found_.baud = baud;
     return true;
 }
 

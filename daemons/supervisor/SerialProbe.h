@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemons/supervisor/SerialCandidates.h"
+#include "protocol/drive/MotorDevice.h"
 #include "protocol/messages/Setup.h"
 
 #include <QElapsedTimer>
@@ -13,8 +14,8 @@ namespace hermes::supervisor {
 
 /// Looks what is at the far end of one serial line, in a thread that may wait. It listens first; only a line
 /// that is silent is asked: for the version of a RoboClaw (command 21, two bytes), which moves nothing, then
-/// whether it is an Arduino with a base, or a scanner of those that are asked. A line that another program
-/// has open is left alone.
+/// whether it is a motor controller of another kind, or a scanner of those that are asked. A line that
+/// another program has open is left alone.
 class SerialProbe {
 public:
     /// What may be asked for: without either nothing is sent. What scanners are asked would turn the motors
@@ -45,7 +46,9 @@ private:
     void ask();
     void send(std::string_view bytes);
     void setDtr(bool on);
-    bool askArduino();
+    bool askOthers();
+    bool askAs(const char *kind, int baud, drive::MotorDevice &device, const drive::Command &question,
+               std::size_t zeros = 0);
     void findScanner(bool isOneWay);
     bool askAt(int baud, int timeout_ms);
 

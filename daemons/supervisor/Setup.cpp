@@ -1,10 +1,8 @@
 #include "daemons/supervisor/Setup.h"
 
-#include "common/Log.h"
 #include "common/Project.h"
-#include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
-#include "daemons/supervisor/PortUsers.h"
+#include "common/settings/SettingsTable.h"
 #include "daemons/supervisor/SettingsCheck.h"
 #include "daemons/supervisor/SetupProposal.h"
 #include "protocol/velodyne/SensorModel.h"
@@ -14,16 +12,11 @@
 #include <QCoreApplication>
 #include <QDir>
 #include <QFileInfo>
-#include <QHostAddress>
 #include <QMap>
-#include <QTimer>
 #include <algorithm>
 
 namespace hermes::supervisor {
 namespace {
-
-constexpr std::chrono::milliseconds look{20};  // whether a process has ended
-constexpr std::chrono::seconds endsWithin{10}; // SIGKILL comes after 5 s
 
 /// Settings of any daemon that a sample does not know: how it is reached, by whom, and how much it tells.
 const QStringList kept{"listen", "insecure", "access", "audit", "limits", "log", "setup"};
@@ -39,9 +32,6 @@ QJsonObject withKept(QJsonObject sample, const QJsonObject &now) {
     }
     return sample;
 }
-
-/// Daemons that open serial lines or receive from lidars as soon as they can.
-const QStringList deviceDaemons{"hermes-motorcontrol", "hermes-seriallogger", "hermes-velodynelogger"};
 
 QString asText(const QJsonValue &value) {
     return value.isUndefined() ? QString() : QString::fromUtf8(compactJson(value));
@@ -63,10 +53,6 @@ std::vector<SettingChange> changesBetween(const QJsonObject &now, const QJsonObj
     return changes;
 }
 
-Error busy(const char *what) {
-    return Error(ErrorCode::NotReady, QString("%1 is under way; try again when it has ended").arg(what));
-}
-
 /// Where an installation has them, below the same prefix as this program.
 QString installedSamples() {
     const QString found =
@@ -84,24 +70,18 @@ Field sampleField() {
 Setup::Setup(Settings &settings, Processes processes, QObject *parent)
     : QObject(parent)
     , settings_(settings)
-    , processes_(std::move(processes)) {}
-
-std::vector<Field> Setup::settingFields() {
-    const auto port = [](const char *name, const char *text, quint16 usual) {
-        return Field::integer(name, text).range(1, 65535).byDefault(usual).group("Setup");
-    };
-    return {Field::text("setup.folder", "Of the settings files of the daemons, NAME.json")
-                .byDefault("/etc/hermes")
-                .group("Setup"),
-            Field::text("setup.samples", "Of folders with settings of whole robots")
-                .byDefault(installedSamples())
-                .group("Setup"),
-            Field::array("setup.ports", "Serial lines to search beside those that the system lists",
-                         {{"type", "string"}})
-                .byDefault(QJsonArray())
-                .group("Setup"),
-            port("setup.lidar_port", "UDP port at which lidars are looked for", velodyne::dataPort),
-            port("setup.position_port", "The same for their position packets", velodyne::positionPort)};
+    , processes_(std::move(processes)) {
+    SettingsTable table;
+    table.group("Setup");
+    table.define("setup.folder", "/etc/hermes", "Of the settings files of the daemons, NAME.json");
+    table.define("setup.samples", installedSamples(), "Of folders with settings of whole robots");
+    table.defineList("setup.ports", "Serial lines to search beside those that the system lists",
+                     {{"type", "string"}});
+    table.define("setup.lidar_port", velodyne::dataPort, "UDP port at which lidars are looked for")
+        .range(1, 65535);
+    table.define("setup.position_port", velodyne::positionPort, "The same for their position packets")
+        .range(1, 65535);
+    table.declareIn(settings);
 }
 
 std::vector<Command> Setup::commands() {
@@ -115,127 +95,8 @@ SettingsFiles Setup::files() const {
     return {settings_.text("setup.folder"), settings_.text("setup.samples")};
 }
 
-Command Setup::findCommand() {
-    return Command(
-               "setup.find",
-               "Looks for a few seconds what is plugged in: serial lines, and lidars that send packets. "
-               "It listens; what is silent is asked for the version of a RoboClaw, which moves nothing, "
-               "where the line is known as a motor controller's (by USB or by the settings). Where ask is "
-               "true all others are asked, too, also whether they are laser scanners. What another program "
-               "uses is left alone")
-        .needs(Role::Engineer)
-        .param(Field::boolean("ask", "Ask all silent lines: a motor controller that is no RoboClaw in packet "
-                                     "serial mode may take the bytes for speeds; wheels off the ground")
-                   .byDefault(false))
-        .param(Field::boolean("release", "Processes of the supervisor that use serial lines or receive "
-                                         "packets of lidars are ended first, and started again afterwards")
-                   .byDefault(false))
-        .gives<Findings>()
-        .asyncHandler([this](const Call &call, const Reply &reply) {
-            if (isWriting_ || isSearching_)
-                return reply.error(busy(isWriting_ ? "a change" : "a search"));
-            isSearching_ = true;
-            searchWhenStopped(call.flag("release") ? release() : Stopped(), QDeadlineTimer(endsWithin),
-                              call.flag("ask"), reply);
-        });
-}
-
-DeviceSearch::Options Setup::searchOptions(bool ask) const {
-    DeviceSearch::Options options;
-    for (const QJsonValue &port : settings_.value("setup.ports").toArray())
-        options.ports.append(port.toString());
-    options.ask = ask;
-    options.lidarPort = quint16(settings_.integer("setup.lidar_port"));
-    options.positionPort = quint16(settings_.integer("setup.position_port"));
-    const QJsonObject current = files().readable();
-    // Also what the system does not list, as lines of the simulator.
-    const auto add = [&options](const QJsonValue &text, QStringList *others) {
-        const auto url = InterfaceUrl::parse(text.toString());
-        if (!url || url->scheme != "serial" || !QFileInfo::exists(url->path))
-            return;
-        options.ports.append(url->path);
-        if (others)
-            others->append(url->path);
-    };
-    const bool isArduino =
-        valueAt(current, "motorcontrol.controllers.kind") == "arduino"; // asked as one, if at all
-    for (const char *controller : {"1", "2"})
-        add(valueAt(current, QString("motorcontrol.controllers.%1.url").arg(controller)),
-            isArduino ? nullptr : &options.controllers);
-    for (const QJsonValue &port : valueAt(current, "seriallogger.ports").toArray())
-        add(port["url"], nullptr);
-    return options;
-}
-
-Setup::Stopped Setup::release() {
-    const QList<quint16> udp{quint16(settings_.integer("setup.lidar_port")),
-                             quint16(settings_.integer("setup.position_port"))};
-    Stopped stopped;
-    for (SupervisedProcess *const process : processes_()) {
-        const auto state = process->state();
-        if (state == SupervisedProcess::State::Stopped || state == SupervisedProcess::State::Failed)
-            continue;
-        const QString program = QFileInfo(process->entry().program).fileName();
-        if (!deviceDaemons.contains(program) &&
-            !(process->isAlive() && PortUsers::usesPorts(process->status().pid, udp)))
-            continue;
-        logInfo("setup", process->entry().name + ": ended for a search of its lines");
-        process->stop();
-        stopped.push_back({process, process->orders()});
-    }
-    return stopped;
-}
-
-void Setup::searchWhenStopped(const Stopped &stopped, QDeadlineTimer deadline, bool ask, const Reply &reply) {
-    const auto ends = std::find_if(stopped.begin(), stopped.end(), [](const Released &one) {
-        return one.process && one.process->isAlive() && one.process->orders() == one.orders;
-    });
-    if (ends != stopped.end() && deadline.hasExpired()) {
-        isSearching_ = false;
-        startAgain(stopped);
-        return reply.error(
-            Error(ErrorCode::NotReady, QString("%1 did not end within %2 s; nothing was searched")
-                                           .arg(ends->process->entry().name)
-                                           .arg(endsWithin.count())));
-    }
-    if (ends != stopped.end())
-        return QTimer::singleShot(look, this, [=] { searchWhenStopped(stopped, deadline, ask, reply); });
-    search_.begin(searchOptions(ask), [this, stopped, reply](const Findings &findings) {
-        QMetaObject::invokeMethod(
-            this, [=] { onFound(findings, stopped, reply); }, Qt::QueuedConnection);
-    });
-}
-
-QStringList Setup::startAgain(const Stopped &stopped) {
-    QStringList names;
-    for (const auto &[process, orders] : stopped) {
-        if (!process || process->orders() != orders)
-            continue;
-        names.append(process->entry().name);
-        process->start(); // one that has not ended as yet: when it has
-    }
-    return names;
-}
-
-void Setup::markSimulated(Findings &findings) const {
-    for (const SupervisedProcess *const process : processes_()) {
-        if (!process->isAlive())
-            continue;
-        for (FoundSerial &line : findings.serial)
-            line.simulated = line.simulated || PortUsers::holdsFarEnd(process->status().pid, line.device);
-        if (!process->entry().program.endsWith("hermes-simulator"))
-            continue;
-        for (FoundLidar &lidar : findings.lidars)
-            lidar.simulated = QHostAddress(lidar.address).isLoopback();
-    }
-}
-
-void Setup::onFound(Findings findings, const Stopped &stopped, const Reply &reply) {
-    isSearching_ = false;
-    markSimulated(findings);
-    findings.restarted = startAgain(stopped);
-    found_ = findings;
-    reply.result(asJson(findings));
+Error Setup::busy(const char *what) {
+    return Error(ErrorCode::NotReady, QString("%1 is under way; try again when it has ended").arg(what));
 }
 
 Command Setup::proposeCommand() {

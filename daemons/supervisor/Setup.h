@@ -19,10 +19,9 @@ class Setup : public QObject {
 public:
     using Processes = std::function<std::vector<SupervisedProcess *>()>;
 
-    /// settings: the supervisor's own; processes: those of now.
+    /// settings: the supervisor's own, to which it adds its own; processes: those of now.
     Setup(Settings &settings, Processes processes, QObject *parent);
 
-    static std::vector<Field> settingFields();
     std::vector<Command> commands();
     /// What is wrong with the settings files; nothing: empty.
     QString problem() const { return files().problem(); }
@@ -40,6 +39,7 @@ private:
     Command undoCommand();
 
     SettingsFiles files() const;
+    static Error busy(const char *what);
     DeviceSearch::Options searchOptions(bool ask) const;
     /// Ends those that use serial lines or receive packets of lidars, or are about to.
     Stopped release();

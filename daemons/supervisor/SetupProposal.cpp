@@ -5,6 +5,7 @@
 #include "common/settings/DottedPath.h"
 #include "daemons/supervisor/SupervisedProcess.h"
 #include "protocol/drive/ArduinoDevice.h"
+#include "protocol/drive/OpenCrDevice.h"
 #include "protocol/roboclaw/Command.h"
 
 #include <QFileInfo>
@@ -35,6 +36,27 @@ QString deviceOf(const QString &text) {
         return {};
     const QString device = QFileInfo(url->path).canonicalFilePath();
     return device.isEmpty() ? url->path : device;
+}
+
+/// A motor controller of another kind, one of which drives two wheels.
+struct Base {
+    const char *kind;
+    double timeout_s;
+    const char *note;
+};
+
+const Base *baseOf(const FoundSerial &line) {
+    static constexpr Base bases[] = {
+        {"arduino", drive::ArduinoDevice::timeout_s,
+         "an Arduino stops by itself only 2 s after its last command"},
+        {"vesc", 1,
+         "VESC Tool sets how soon a VESC stops by itself (1 s as it comes), and whether it then rolls; "
+         "controllers.1.address is the CAN id of the second VESC, 255 where there is none"},
+        {"opencr", drive::OpenCrDevice::timeout_s, "an OpenCR stops by itself 0.5 s after its last command"},
+        {"roboteq", drive::DeviceSettings().timeout_s, "a Roboteq needs closed-loop speed on both channels"}};
+    const auto base = std::find_if(std::begin(bases), std::end(bases),
+                                   [&](const Base &each) { return line.kind == each.kind; });
+    return base == std::end(bases) ? nullptr : base;
 }
 
 std::vector<Controller> controllersAt(const std::vector<FoundSerial> &lines) {
@@ -89,8 +111,8 @@ private:
     Findings withoutSimulated(Findings findings) {
         const auto isReal = [](const auto &one) { return !one.simulated; };
         const auto isDevice = [](const FoundSerial &line) {
-            return !line.simulated && (line.kind == "roboclaw" || line.kind == "arduino" ||
-                                       line.kind == "nmea" || line.kind == "scanner");
+            return !line.simulated &&
+                   (line.kind == "roboclaw" || baseOf(line) || line.kind == "nmea" || line.kind == "scanner");
         };
         const auto &[serial, lidars, problems, restarted] = findings;
         const bool isRobot = std::any_of(serial.begin(), serial.end(), isDevice) ||
@@ -120,9 +142,11 @@ private:
     void motors(const std::vector<FoundSerial> &lines) {
         const std::vector<Controller> found = controllersAt(lines);
         const auto numbers = numbered(found);
-        if (found.empty() && arduino(lines))
+        if (found.empty() && base(lines))
             return;
-        if (found.size() != 2)
+        if (found.empty())
+            note("no motor controllers were found: RoboClaws, VESCs, Roboteqs, an OpenCR or an Arduino");
+        else if (found.size() != 2)
             note(QString("%1 RoboClaws were found, two drive a robot (each needs an address of its own on "
                          "its line)")
                      .arg(found.size()));
@@ -133,29 +157,36 @@ private:
             set(group + "url", urlOf(controller.path, controller.baud));
             set(group + "address", controller.address);
         }
-        if (valueAt(base_, "motorcontrol.controllers.kind") == "arduino") {
-            set("motorcontrol.controllers.kind", "roboclaw");
-            set("motorcontrol.controllers.timeout_s", drive::DeviceSettings().timeout_s);
+        if (valueAt(base_, "motorcontrol.controllers.kind").toString("roboclaw") != "roboclaw") {
+            setKind("roboclaw", drive::DeviceSettings().timeout_s);
+            note("frame.layout stays as it is: it has to be that of a base with two RoboClaws");
         }
         start("motorcontrol");
         drives_ = true;
     }
 
     /// The first of them drives two wheels; false: there is none.
-    bool arduino(const std::vector<FoundSerial> &lines) {
-        const auto line = std::find_if(lines.begin(), lines.end(),
-                                       [](const FoundSerial &one) { return one.kind == "arduino"; });
+    bool base(const std::vector<FoundSerial> &lines) {
+        const auto line = std::find_if(lines.begin(), lines.end(), baseOf);
         if (line == lines.end())
             return false;
-        set("motorcontrol.controllers.kind", "arduino");
-        set("motorcontrol.controllers.timeout_s", drive::ArduinoDevice::timeout_s);
+        const Base &found = *baseOf(*line);
+        setKind(found.kind, found.timeout_s);
         set("motorcontrol.controllers.1.url", urlOf(line->path, line->baud));
-        set("motorcontrol.frame.layout", "differential");
-        note("an Arduino stops by itself only 2 s after its last command (docs/safety.md); frame.*, "
-             "frame.counts_per_turn and pid.qpps are those of your base");
+        set("motorcontrol.frame.layout", "two_wheels");
+        note(QString(found.note) +
+             " (docs/safety.md); frame.*, frame.counts_per_turn and pid.qpps are those of your base");
         start("motorcontrol");
         drives_ = true;
         return true;
+    }
+
+    /// As many as the wheels name: a number that was set may be that of another base.
+    void setKind(const char *kind, double timeout_s) {
+        set("motorcontrol.controllers.kind", kind);
+        set("motorcontrol.controllers.timeout_s", timeout_s);
+        if (valueAt(base_, "motorcontrol.controllers.count").toInt() != 0)
+            set("motorcontrol.controllers.count", 0);
     }
 
     /// Which is which stays as it is. Others get the numbers that are left, where it is clear which they are.

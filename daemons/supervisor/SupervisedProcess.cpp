@@ -11,7 +11,6 @@
 #include <QJsonObject>
 #include <QUuid>
 #include <csignal>
-#include <cstring>
 #include <sys/prctl.h>
 
 namespace hermes::supervisor {

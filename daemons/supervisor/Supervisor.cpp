@@ -66,8 +66,7 @@ Supervisor::Supervisor()
             return all;
         },
         nullptr);
-    for (const Command &command : setup_->commands())
-        addCommand(command);
+    addCommands(setup_->commands());
     addTopic(Topic("processes", "What process.list gives, each second and at each change")
                  .carries<ProcessesMessage>()
                  .snapshot([this] { return Outgoing(list()); }));
@@ -90,8 +89,6 @@ void Supervisor::declareSettings() {
             .group("Processes")
             .byDefault(usualProcesses()));
     settings().addRule(namesAreUnique);
-    for (const Field &field : Setup::settingFields())
-        addSetting(field);
 }
 
 void Supervisor::declareCommands() {

@@ -1,5 +1,6 @@
 // What the Velodyne logger offers: its settings, topics and commands.
 #include "common/files/FilesSetting.h"
+#include "common/settings/SettingsTable.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
@@ -10,98 +11,51 @@ void VelodyneLogger::declareSettings() {
     QStringList models;
     for (const std::string &model : velodyne::modelChoices())
         models.append(QString::fromStdString(model));
-    addSetting(Field::text("source.address", "Local IPv4 address to receive on; 0.0.0.0 for all")
-                   .byDefault("0.0.0.0")
-                   .appliesOnRestart()
-                   .group("Source"));
-    addSetting(Field::integer("source.port", "UDP port of the sensor's data packets")
-                   .range(1, 65535)
-                   .byDefault(velodyne::dataPort)
-                   .appliesOnRestart()
-                   .group("Source"));
-    addSetting(Field::text("source.sender", "IPv4 address of the sensor; empty: the first that sends, and no "
-                                            "other as long as it does")
-                   .with("pattern", "^$|^([0-9]{1,3}\\.){3}[0-9]{1,3}$")
-                   .byDefault("")
-                   .appliesOnRestart()
-                   .group("Source"));
-    addSetting(
-        Field::integer("source.position_port", "UDP port of the sensor's position packets; 0: not received")
-            .range(0, 65535)
-            .byDefault(velodyne::positionPort)
-            .appliesOnRestart()
-            .group("Source"));
-    addSetting(
-        Field::integer("source.receive_buffer_bytes", "Room the system keeps for packets not yet taken")
-            .unit("byte")
-            .range(65536, 268435456)
-            .byDefault(16777216) // for 3 s of packets, or 0.3 s of a burst of 20,000 a second
-            .appliesOnRestart()
-            .group("Source"));
-    addSetting(Field::text("source.pcap", "Capture file to replay at the start instead of receiving")
-                   .byDefault("")
-                   .appliesOnRestart()
-                   .group("Source"));
+    SettingsTable table;
+    table.group("Source", SettingsTable::Applies::OnRestart);
+    table.define("source.address", "0.0.0.0", "Local IPv4 address to receive on; 0.0.0.0 for all");
+    table.define("source.port", velodyne::dataPort, "UDP port of the sensor's data packets").range(1, 65535);
+    table
+        .define("source.sender", "",
+                "IPv4 address of the sensor; empty: the first that sends, and no other as long as it does")
+        .with("pattern", "^$|^([0-9]{1,3}\\.){3}[0-9]{1,3}$");
+    table
+        .define("source.position_port", velodyne::positionPort,
+                "UDP port of the sensor's position packets; 0: not received")
+        .range(0, 65535);
+    table.define("source.receive_buffer_bytes", 16777216, // for 3 s of packets, or 0.3 s of 20,000 a second
+                 "Room the system keeps for packets not yet taken", "byte", 65536, 268435456);
+    table.define("source.pcap", "", "Capture file to replay at the start instead of receiving");
+    table.define("source.loop", false, "That replay begins anew at its end");
+    table.define("source.speed", 1.0, "Of that replay: 1 real time, 0 as fast as possible without loss")
+        .range(0, 1000);
+    table.group("Decoding", SettingsTable::Applies::OnRestart);
+    table
+        .define("decode.laser", -1,
+                "Laser whose ring is published; -1: the one nearest to the horizon (" +
+                    QString::fromStdString(velodyne::horizonLasers()) + ")")
+        .range(-1, velodyne::maxLasers() - 1);
+    table.define("decode.model", "auto", "The sensor; auto: as its packets say (hdl32e where they do not)")
+        .choices(models);
+    table.define("decode.returns", "strongest", "Which returns of a sensor in dual return mode are taken")
+        .choices({"strongest", "last", "both"});
+    table.define("decode.vertical_offsets", true,
+                 "Each laser's own height, as its sensor's documents tell it, is in z; false: all lasers lie "
+                 "in the sensor's origin");
+    table
+        .define("decode.clock", "auto",
+                "Whose clock stamps the scans: the sensor's, which a GPS sets; this host's; auto: the "
+                "sensor's once a GPS has set it")
+        .choices({"auto", "gps", "host"});
+    table.define("decode.stamp_offset_s", 0.0, "Added to the stamps of scans", "s", -3600, 3600);
+    table.group("Cloud");
+    table
+        .define("cloud.max_points", 8000,
+                "Of a message of the topic cloud, about: firings are thinned evenly")
+        .range(100, 20000);
+    table.define("cloud.turn_step", 1, "Every n-th turn goes to the topic cloud").range(1, 1000);
+    table.declareIn(settings());
     addSetting(namedFilesField());
-    addSetting(Field::boolean("source.loop", "That replay begins anew at its end")
-                   .byDefault(false)
-                   .appliesOnRestart()
-                   .group("Source"));
-    addSetting(
-        Field::number("source.speed", "Of that replay: 1 real time, 0 as fast as possible without loss")
-            .range(0, 1000)
-            .byDefault(1)
-            .appliesOnRestart()
-            .group("Source"));
-    addSetting(
-        Field::integer("decode.laser", "Laser whose ring is published; -1: the one nearest to the horizon (" +
-                                           QString::fromStdString(velodyne::horizonLasers()) + ")")
-            .range(-1, velodyne::maxLasers() - 1)
-            .byDefault(-1)
-            .appliesOnRestart()
-            .group("Decoding"));
-    addSetting(Field::text("decode.model", "The sensor; auto: as its packets say (hdl32e where they do not)")
-                   .choices(models)
-                   .byDefault("auto")
-                   .appliesOnRestart()
-                   .group("Decoding"));
-    addSetting(Field::text("decode.returns", "Which returns of a sensor in dual return mode are taken")
-                   .choices({"strongest", "last", "both"})
-                   .byDefault("strongest")
-                   .appliesOnRestart()
-                   .group("Decoding"));
-    addSetting(Field::boolean("decode.vertical_offsets",
-                              "Each laser's own height, as its sensor's documents tell it, is in z; false: "
-                              "all lasers lie in the sensor's origin")
-                   .byDefault(true)
-                   .appliesOnRestart()
-                   .group("Decoding"));
-    addSetting(Field::text("decode.clock", "Whose clock stamps the scans: the sensor's, which a GPS sets; "
-                                           "this host's; auto: the sensor's once a GPS has set it")
-                   .choices({"auto", "gps", "host"})
-                   .byDefault("auto")
-                   .appliesOnRestart()
-                   .group("Decoding"));
-    addSetting(Field::number("decode.stamp_offset_s", "Added to the stamps of scans")
-                   .unit("s")
-                   .range(-3600, 3600)
-                   .byDefault(0)
-                   .appliesOnRestart()
-                   .group("Decoding"));
-    addSetting(Field::integer("cloud.max_points",
-                              "Of a message of the topic cloud, about: firings are thinned evenly")
-                   .range(100, 20000)
-                   .byDefault(8000)
-                   .group("Cloud"));
-    addSetting(Field::integer("cloud.turn_step", "Every n-th turn goes to the topic cloud")
-                   .range(1, 1000)
-                   .byDefault(1)
-                   .group("Cloud"));
-    for (const auto &fields : {Recording::settingFields(), Recording::rotationFields()}) {
-        for (const Field &field : fields)
-            addSetting(field);
-    }
-    settings().addRule(Recording::checkSettings);
     settings().addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
         const QString sender = values["source"].toObject()["sender"].toString();
         if (sender.isEmpty() || addressFrom(sender.toStdString()))
@@ -140,9 +94,7 @@ void VelodyneLogger::declareSourceCommands() {
             closeSource();
         return fine;
     }));
-    addCommand(source_.seekCommand());
-    addCommand(source_.speedCommand());
-    addCommand(source_.pauseCommand());
+    addCommands(source_.replayCommands());
     addCommand(Command("source.status", "What the topic lidar says, now")
                    .needs(Role::Observer)
                    .answers([this](const Call &) { return lidarState(); }));
@@ -157,8 +109,7 @@ void VelodyneLogger::declareSourceCommands() {
 }
 
 void VelodyneLogger::declareRecordCommands() {
-    for (const Command &command : recording_.commands())
-        addCommand(command);
+    addCommands(recording_.commands());
     connect(&recording_, &Recording::changed, this,
             [this] { publish("lidar", [this] { return lidarState(); }); });
 }

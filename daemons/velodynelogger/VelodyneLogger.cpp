@@ -15,7 +15,6 @@ namespace hermes::velodynelogger {
 namespace {
 
 constexpr int retry_ms = 2;
-constexpr qint64 roomTimeout_ms = 5000;
 constexpr qint64 captureTimeout_ms = 10000;
 
 Playback::Options replayOptions(const Call &call) {
@@ -158,7 +157,6 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
 void VelodyneLogger::opened(State state, const QString &name) {
     replayEnd_.reset();
     unopened_.clear();
-    sinceRoom_.start();
     packetsAtTick_ = datagramsAtTick_ = othersAtTick_ = goodAtTick_ = 0;
     sinceOther_.invalidate();
     sinceGood_.invalidate();
@@ -263,20 +261,11 @@ void VelodyneLogger::updateClouds() {
     feed_.wantClouds(thinning);
 }
 
-/// A replay without loss waits for readers who are behind, but not for one that reads no more.
-bool VelodyneLogger::mayPublish() {
-    const bool patient = source_.state() == State::Replay && feed_.player().playback().options().speed == 0;
-    const bool hasRoomNow = !patient || (hasRoom("scan2d") && hasRoom("cloud"));
-    if (hasRoomNow)
-        sinceRoom_.start();
-    return hasRoomNow || sinceRoom_.elapsed() >= roomTimeout_ms;
-}
-
 /// One turn, and the next after whatever else waits in the event loop: on a slow machine a message may take
 /// longer to make than a turn of the sensor.
 void VelodyneLogger::publishTurns() {
     updateClouds();
-    if (!mayPublish()) {
+    if (!source_.mayShow(hasRoom("scan2d") && hasRoom("cloud"))) {
         retry_.start(retry_ms);
         return;
     }

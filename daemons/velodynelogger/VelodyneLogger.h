@@ -48,7 +48,6 @@ private:
     void captureTurn(const Call &call, const Reply &reply);
 
     void publishTurns();
-    bool mayPublish();
     void updateClouds();
     void tick();
     LidarMessage lidarState() const;
@@ -59,12 +58,11 @@ private:
     QString otherModelText(const LidarFeed::Counts &counts);
 
     Recorder recorder_;
-    Recording recording_{identity().name, settings(), health(), recorder_};
+    Recording recording_{identity().name, settings(), health(), recorder_, Recording::Files::Several};
     LidarFeed feed_;
     ReplaySource source_{"packets", identity().name, settings(), feed_.player().playback(), sourceActions()};
     QTimer second_;
-    QTimer retry_;            ///< of publishing: the next turn, or what a reader had no room for
-    QElapsedTimer sinceRoom_; ///< every reader had room
+    QTimer retry_; ///< of publishing: the next turn, or what a reader had no room for
     bool cloudsWanted_ = false;
     QElapsedTimer sinceCapture_; ///< since the last capture.turn
     QString unopened_;           ///< why nothing can be received yet; empty: it can be, or is not wanted

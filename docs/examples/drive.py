@@ -38,11 +38,11 @@ class PathFollower:
     """Velocities that lead along way points: pure pursuit of a point ahead, slower in bends, braking at the end. Points are (x, y) in
     metres; ValueError where they are fewer than two, or another number is not above 0. speed is the largest one (m/s), turn_rate that
     of turning (rad/s), braking the deceleration at the end (m/s^2). look_ahead is the way to the point ahead, tolerance ends the
-    drive (both metres)."""
+    drive (both metres). least_radius (metres) is that of the tightest bend; 0: the robot turns on the spot."""
 
     WINDOW_M = 1.0  # where the robot may have got to since the last time; a path may cross itself
 
-    def __init__(self, points, speed=0.5, turn_rate=1.0, braking=0.5, look_ahead=0.4, tolerance=0.03):
+    def __init__(self, points, speed=0.5, turn_rate=1.0, braking=0.5, look_ahead=0.4, tolerance=0.03, least_radius=0.0):
         points = [tuple(map(float, point[:2])) for point in points]
         if len(points) < 2 or not all(map(math.isfinite, sum(points, ()))):
             raise ValueError("two or more way points of finite numbers expected")
@@ -50,7 +50,7 @@ class PathFollower:
             if not 0 < value < math.inf:
                 raise ValueError(f"{name} is {value}, expected a number above 0")
         self.speed, self.turn_rate, self.braking = speed, turn_rate, braking
-        self.look_ahead, self.tolerance = look_ahead, tolerance
+        self.look_ahead, self.tolerance, self.least_radius = look_ahead, tolerance, least_radius
         self.legs = []  # where each begins along the path, its length, first point and direction
         self.length = 0.0
         for (ax, ay), (bx, by) in zip(points, points[1:]):
@@ -80,20 +80,27 @@ class PathFollower:
         return min(ways, key=lambda way: math.dist(self.at(way), (x, y)))
 
     def command(self, x, y, theta):
-        """(vx, omega), m/s and rad/s, from this pose (metres, radians, the frame of the points); None at the end."""
+        """(vx, omega), m/s and rad/s, from this pose (metres, radians, the frame of the points); None at the end. DriveError where the
+        tightest bend led past the last point."""
         if self.length - self.way > self.tolerance:
             self.way = self.nearest(x, y)
         left = self.length - self.way
         if left <= self.tolerance:
             self.way = self.length
+            if self.least_radius > 0 and (off := math.dist((x, y), self.at(self.length))) > self.look_ahead / 2:
+                raise DriveError(f"the way ends {off:.2f} m beside its last point: no tighter bend than of {self.least_radius:.2f} m")
             return None
         px, py = self.at(self.way + self.look_ahead)
         ahead = math.cos(theta) * (px - x) + math.sin(theta) * (py - y)
         aside = math.cos(theta) * (py - y) - math.sin(theta) * (px - x)
         bearing = math.atan2(aside, ahead)
-        if abs(bearing) > 1.0:  # far aside or behind: turn on the spot
-            return 0.0, math.copysign(self.turn_rate, bearing)
         curvature = 2 * aside / (aside * aside + ahead * ahead)
+        if abs(bearing) > 1.0:  # far aside or behind: turn on the spot, or as tightly as it can
+            if self.least_radius <= 0:
+                return 0.0, math.copysign(self.turn_rate, bearing)
+            curvature = math.copysign(math.inf, bearing)
+        if self.least_radius > 0:
+            curvature = max(-1 / self.least_radius, min(curvature, 1 / self.least_radius))
         speed = min(self.speed, math.sqrt(2 * self.braking * left), self.turn_rate / max(abs(curvature), 1e-9))
         return speed, speed * curvature
 
@@ -244,7 +251,8 @@ def main():
                 if time.monotonic() > deadline:
                     raise DriveError(f"{poses.name}: no pose comes: {poses.fault()}")
                 time.sleep(PERIOD_S)
-            drive(motors, poses, PathFollower([here, *arguments.points], arguments.speed, arguments.turn_rate))
+            radius = motors.call("motor.state").get("least_radius_m", 0.0)  # a base of one's own may not tell it
+            drive(motors, poses, PathFollower([here, *arguments.points], arguments.speed, arguments.turn_rate, least_radius=radius))
             print("arrived")
     except KeyboardInterrupt:
         print("\ndrive.py: interrupted: the robot was told to stop.", file=sys.stderr)

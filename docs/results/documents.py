@@ -1,4 +1,5 @@
-"""The results of experiments with the thesis and the papers: docs/sources.md, docs/hermes-vector.md, docs/algorithms.md."""
+"""The results of experiments with the thesis and the papers: docs/sources.md, docs/experiments.md, docs/algorithms.md
+and the pages that go on from them."""
 import re
 import statistics
 

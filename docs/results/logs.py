@@ -1,4 +1,5 @@
-"""The results of the five public logs, and of the drawn buildings beside them: docs/algorithms.md, docs/maps.md, docs/hermes-vector.md."""
+"""The results of the five public logs, and of the drawn buildings beside them: docs/places.md, docs/pairs.md, docs/mapping.md,
+docs/maps.md, docs/hermes-vector-map.md."""
 import gzip
 
 from running import FIVE, json_of, percent, rows_of

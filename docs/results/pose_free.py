@@ -1,4 +1,4 @@
-"""The results of experiments with the pose-free thesis, chapter 6: docs/sources.md."""
+"""The results of experiments with the pose-free thesis, chapter 6: docs/sources-papers.md."""
 import math
 
 from running import FIVE, json_of, number, rows_of

@@ -29,7 +29,6 @@
 #include <QCloseEvent>
 #include <QJsonDocument>
 #include <QPlainTextEdit>
-#include <QPushButton>
 #include <QScreen>
 #include <QToolBar>
 #include <QToolTip>

@@ -17,19 +17,10 @@
 #include <QDateTime>
 #include <QEventLoop>
 #include <QJsonArray>
-#include <QJsonDocument>
 #include <functional>
 
 namespace hermes::ctl {
 namespace {
-
-QString pretty(const QJsonValue &value) {
-    if (value.isObject())
-        return QString::fromUtf8(QJsonDocument(value.toObject()).toJson()).trimmed();
-    if (value.isArray())
-        return QString::fromUtf8(QJsonDocument(value.toArray()).toJson()).trimmed();
-    return QString::fromUtf8(compactJson(value));
-}
 
 // "name=value" words as an object; dotted names make nested objects.
 Result<QJsonObject> assignments(const QStringList &words) {
@@ -224,7 +215,7 @@ Result<void> discover(Client &client, const Arguments &arguments) {
     const auto description = ask(client, arguments, "rpc.discover");
     if (!description)
         return description.error();
-    printLine(arguments.json ? pretty(*description) : descriptionAsText(description->toObject()));
+    printLine(arguments.json ? indentedJson(*description) : descriptionAsText(description->toObject()));
     return {};
 }
 
@@ -252,7 +243,7 @@ Result<void> call(Client &client, const Arguments &arguments) {
     const auto result = askAgain(client, arguments, arguments.words.at(1), params);
     if (!result)
         return result.error();
-    printLine(pretty(*result));
+    printLine(indentedJson(*result));
     noteAngles(client, "rpc.discover", params, schemaOf);
     return {};
 }
@@ -262,7 +253,7 @@ Result<void> getSettings(Client &client, const Arguments &arguments) {
         ask(client, arguments, "settings.get", QJsonObject{{"path", arguments.words.value(1)}});
     if (!value)
         return value.error();
-    printLine(pretty(*value));
+    printLine(indentedJson(*value));
     return {};
 }
 

@@ -22,6 +22,8 @@ Result<void> setUp(const Arguments &arguments);
 Result<void> simulate(const Arguments &arguments);
 /// Error: a kind of drive that cannot be simulated.
 Result<void> checkSimulate(const Arguments &arguments);
+/// Kinds of drive that a simulated robot with this base can have.
+QStringList kinematicsOf(const QString &base);
 
 Result<void> stopRobots(const Arguments &arguments);
 Result<void> emergencyStopRobots(const Arguments &arguments);

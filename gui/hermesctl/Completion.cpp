@@ -4,9 +4,11 @@
 #include "common/Role.h"
 #include "common/client/DaemonAddress.h"
 #include "common/schema/SchemaText.h"
+#include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Hosts.h"
 #include "gui/hermesctl/Subcommands.h"
+#include "protocol/messages/Setup.h"
 
 #include <QJsonArray>
 #include <algorithm>
@@ -137,6 +139,10 @@ private:
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option == "--format")
             return plain({"csv", "tum", "carmen", "mcap"}, before);
+        if (option == "--base" && line_.arguments.command == "simulate")
+            return plain(FoundSerial::controllerKinds(), before);
+        if (option == "--kinematics")
+            return plain(kinematicsOf(line_.arguments.base), before);
         if (option == "--recorder" || option == "--base")
             return daemons(before);
         if (option != "--daemons" && option != "--without")

@@ -12,8 +12,8 @@
 #include "protocol/wire/Fields.h"
 
 #include <QElapsedTimer>
-#include <QEventLoop>
 #include <QTimer>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -41,6 +41,12 @@ QString text(const Pose2D &pose) {
         .arg(pose.x, 0, 'f', 3)
         .arg(pose.y, 0, 'f', 3)
         .arg(pose.theta / degree, 0, 'f', 1);
+}
+
+/// Of the tightest bend, metres; 0: the robot turns on the spot, or does not tell.
+double leastRadiusOf(Client &client, const Arguments &arguments) {
+    const auto state = ask(client, arguments, "motor.state");
+    return state ? (*state)["least_radius_m"].toDouble() : 0;
 }
 
 Result<void> tellWhereItWent(Client &client, const Arguments &arguments, const Driver &driver) {
@@ -164,9 +170,12 @@ Result<void> drive(Client &client, const Arguments &arguments) {
     if (const auto ready = waitUntilReady(client, arguments); !ready)
         return ready;
     const std::optional<Twist2D> velocity = *velocityOf(arguments);
+    const double radius = leastRadiusOf(client, arguments);
     DriveKeys keys;
     Driver driver(client, arguments, "motor.drive", [&] {
-        const Twist2D request = velocity ? *velocity : keys.request(monotonicNow());
+        Twist2D request = velocity ? *velocity : keys.request(monotonicNow());
+        if (const double most = std::abs(request.vx) / radius; !velocity && radius > 0)
+            request.omega = std::clamp(request.omega, -most, most);
         if (!velocity)
             show(request);
         return asJson(request).toObject();

@@ -3,7 +3,6 @@
 #include "common/client/DaemonAddress.h"
 #include "common/schema/SchemaKeys.h"
 #include "gui/hermesctl/Commands.h"
-#include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Markdown.h"
 
 #include <QJsonArray>

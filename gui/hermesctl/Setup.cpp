@@ -34,13 +34,13 @@ QString initials(const QString &wheel) {
 }
 
 /// The mean speed that the encoder of a wheel tells while it turns, in rad/s.
-Result<double> turn(Client &motors, const Arguments &arguments, const QString &wheel) {
+Result<double> turn(Client &motors, const Arguments &arguments, const QString &wheel, double speed) {
     QEventLoop loop;
     Result<double> measured = 0.0;
     WheelTurn turn(motors, "hermesctl on " + QHostInfo::localHostName(), arguments.timeout);
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &turn, &WheelTurn::giveUp);
-    turn.begin(wheel, [&](const Result<double> &result) {
+    turn.begin(wheel, speed, [&](const Result<double> &result) {
         measured = result;
         loop.quit();
     });
@@ -64,17 +64,22 @@ std::optional<SeenWheel> seenWheel(const QString &told, const QString &answer) {
 /// Turns each wheel slowly for a second and asks what a person has seen; gives the settings `wheels` that are
 /// to change. The robot stands when it is back. Error: the test was given up.
 Result<QJsonObject> testWheels(Client &motors, const Arguments &arguments) {
-    const auto settings =
-        motors.callAndWait("settings.get", QJsonObject{{"path", "wheels"}}, arguments.timeout);
+    const auto settings = motors.callAndWait("settings.get", QJsonObject(), arguments.timeout);
     if (!settings)
         return settings.error();
+    const auto state = motors.callAndWait("motor.state", QJsonObject(), arguments.timeout);
+    if (!state)
+        return state.error();
+    const auto plan = WheelPlan::from(settings->toObject(), state->toObject());
+    if (!plan)
+        return plan.error();
     std::map<QString, SeenWheel> seen;
-    for (const QString &wheel : wheelNames()) {
+    for (const QString &wheel : plan->wheels) {
         note(QString("%1 is told to turn forward, at %2 rad/s for %3 s")
                  .arg(wheel)
-                 .arg(WheelTurn::speed)
+                 .arg(plan->speed)
                  .arg(WheelTurn::turn_s));
-        const auto measured = turn(motors, arguments, wheel);
+        const auto measured = turn(motors, arguments, wheel, plan->speed);
         if (!measured)
             return measured.error();
         note(QString("its encoder tells %1 rad/s").arg(*measured, 0, 'f', 2));
@@ -87,7 +92,7 @@ Result<QJsonObject> testWheels(Client &motors, const Arguments &arguments) {
         }
         seen[wheel] = *one;
     }
-    return wheelSettings(settings->toObject(), seen);
+    return wheelSettings(plan->settings, seen);
 }
 
 class SetUp {

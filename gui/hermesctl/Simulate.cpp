@@ -3,6 +3,11 @@
 #include "common/daemon/SignalWatcher.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Waiting.h"
+#include "protocol/drive/ArduinoDevice.h"
+#include "protocol/drive/OpenCrDevice.h"
+#include "protocol/drive/RoboteqDevice.h"
+#include "protocol/drive/VescDevice.h"
+#include "protocol/messages/Setup.h"
 
 #include <QDir>
 #include <QEventLoop>
@@ -11,10 +16,49 @@
 #include <QProcess>
 #include <QTemporaryDir>
 
+#include <algorithm>
+
 namespace hermes::ctl {
 namespace {
 
 constexpr int sickPort = 2112;
+
+/// What drives such a robot in place of two RoboClaws: two motors.
+struct SimulatedBase {
+    const char *kind;
+    int baud, countsPerTurn;
+    double timeout_s; ///< its own
+};
+constexpr SimulatedBase simulatedBases[] = {
+    {"arduino", drive::ArduinoDevice::usualBaud, 3600, drive::ArduinoDevice::timeout_s},
+    {"vesc", drive::VescDevice::usualBaud, 3600, 0.2},
+    {"opencr", drive::OpenCrDevice::usualBaud, 4096, drive::OpenCrDevice::timeout_s},
+    {"roboteq", drive::RoboteqDevice::usualBaud, 3600, 0.2}};
+constexpr int canId = 10, fullSpeed = 12000; // of their motors: counts a second
+
+const SimulatedBase *findBase(const QString &kind) {
+    const auto found = std::find_if(std::begin(simulatedBases), std::end(simulatedBases),
+                                    [&](const SimulatedBase &base) { return kind == base.kind; });
+    return found == std::end(simulatedBases) ? nullptr : found;
+}
+
+/// Changes the settings of simulator and motor control so that this drives the robot.
+void putBase(const SimulatedBase &base, const QString &layout, QMap<QString, QJsonObject> &settings) {
+    QJsonObject motors = settings["simulator"]["motors"].toObject();
+    motors["kind"] = base.kind;
+    motors["full_speed"] = fullSpeed;
+    motors["vesc"] = QJsonObject{{"timeout_s", base.timeout_s}, {"brake_current_a", 20}, {"can_id", canId}};
+    settings["simulator"]["motors"] = motors;
+    QJsonObject line{{"url", QString("serial://%1?baud=%2").arg(motors["link"].toString()).arg(base.baud)}};
+    QJsonObject controllers{{"kind", base.kind}, {"timeout_s", base.timeout_s}};
+    if (base.kind == QString("vesc"))
+        line["address"] = canId;
+    controllers["1"] = line;
+    if (layout == "differential")
+        controllers["count"] = 1; // the wheels behind have no motors
+    settings["motorcontrol"]["controllers"] = controllers;
+    settings["motorcontrol"]["pid"] = QJsonObject{{"qpps", fullSpeed}};
+}
 
 /// A world that came with the programs, in an installation or a source tree.
 QString usualWorld(const QString &programs) {
@@ -30,7 +74,12 @@ QMap<QString, QJsonObject> settingsOf(const Arguments &arguments, const QString 
     const QString motors = folder + "/motors", laser = folder + "/laser", here = QDir::currentPath();
     const auto portOf = [](const char *daemon) { return QString("127.0.0.1:%1").arg(defaultPort(daemon)); };
     const QJsonObject line{{"url", QString("serial://%1?baud=115200").arg(motors)}};
-    const QJsonObject frame{{"layout", arguments.kinematics}}, record{{"folder", here + "/recordings"}};
+    const SimulatedBase *base = findBase(arguments.base);
+    const bool isUsual = base && !arguments.given.contains("--kinematics");
+    QJsonObject frame{{"layout", isUsual ? "two_wheels" : arguments.kinematics}};
+    if (base)
+        frame["counts_per_turn"] = base->countsPerTurn;
+    const QJsonObject record{{"folder", here + "/recordings"}};
     const bool hasScanner = !arguments.scanner.isEmpty();
     QMap<QString, QJsonObject> settings{
         {"simulator", {{"world", world}, {"motors", QJsonObject{{"link", motors}}}, {"frame", frame}}},
@@ -40,6 +89,10 @@ QMap<QString, QJsonObject> settingsOf(const Arguments &arguments, const QString 
           {"odometry", QJsonObject{{"address", portOf("motorcontrol")}}},
           {"map", QJsonObject{{"folder", here + "/maps"}}}}},
         {"recorder", {{"record", record}}}};
+    if (base)
+        putBase(*base, frame["layout"].toString(), settings);
+    if (arguments.kinematics == "ackermann")
+        settings["motorcontrol"]["wheels"] = QJsonObject{{"rear_left", QJsonObject{{"controller", 1}}}};
     if (hasScanner) {
         const bool isOnNetwork = arguments.scanner.startsWith("sick-"); // SICK's have no serial line
         QJsonObject simulated{{"model", arguments.scanner}}, read{{"model", arguments.scanner}};
@@ -97,12 +150,24 @@ Result<void> write(const QString &programs, const QString &folder,
 
 } // namespace
 
+QStringList kinematicsOf(const QString &base) {
+    QStringList kinds{"mecanum", "differential", "two_wheels", "omni3", "omni4"};
+    if (base == "vesc")
+        kinds.append("ackermann"); // it has an output for the servo
+    return kinds;
+}
+
 Result<void> checkSimulate(const Arguments &arguments) {
-    if (arguments.kinematics == "mecanum" || arguments.kinematics == "differential")
+    const QStringList bases = FoundSerial::controllerKinds();
+    if (!arguments.base.isEmpty() && !bases.contains(arguments.base))
+        return Error(
+            ErrorCode::InvalidParams,
+            QString("--base: found \"%1\", expected one of %2").arg(arguments.base, bases.join(", ")));
+    const QStringList kinds = kinematicsOf(arguments.base);
+    if (kinds.contains(arguments.kinematics))
         return {};
-    return Error(
-        ErrorCode::InvalidParams,
-        QString("--kinematics: found \"%1\", expected mecanum or differential").arg(arguments.kinematics));
+    return Error(ErrorCode::InvalidParams, QString("--kinematics: found \"%1\", expected one of %2")
+                                               .arg(arguments.kinematics, kinds.join(", ")));
 }
 
 Result<void> simulate(const Arguments &arguments) {
@@ -126,9 +191,10 @@ Result<void> simulate(const Arguments &arguments) {
     supervisor.start(programs + "/hermes-supervisor", {"--config", folder.path() + "/supervisor.json"});
     if (!supervisor.waitForStarted())
         return Error(ErrorCode::InputOutput, programs + "/hermes-supervisor: " + supervisor.errorString());
-    note(QString("a robot is simulated in %1: %2; recordings and maps are put below %3\n"
+    note(QString("a robot is simulated in %1: %2; recordings and maps are put below %3, its settings are in "
+                 "%4 until it ends\n"
                  "hermesctl drive motorcontrol drives it, hermes-gui shows it, Ctrl-C ends it")
-             .arg(world, QStringList(settings.keys()).join(", "), QDir::currentPath()));
+             .arg(world, QStringList(settings.keys()).join(", "), QDir::currentPath(), folder.path()));
     QEventLoop loop;
     QObject::connect(&supervisor, qOverload<int, QProcess::ExitStatus>(&QProcess::finished), &loop,
                      &QEventLoop::quit);

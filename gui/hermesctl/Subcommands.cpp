@@ -75,7 +75,7 @@ const std::vector<Subcommand> &subcommands() {
          "finds what is plugged in and writes the settings for it; SAMPLE: those of a whole robot",
          "--list --yes --undo --wheels --daemons", setUp},
         {"simulate", "starts a whole simulated robot on this computer, until Ctrl-C",
-         "--scanner --world --kinematics", simulate, checkSimulate},
+         "--scanner --base --world --kinematics", simulate, checkSimulate},
         {"stop [D...]", "stops all robots that are there, at once, and tells which stand", "", stopRobots},
         {"estop [D...]", "the same, and they stay stopped until motor.reset_estop", "", emergencyStopRobots},
         {"session start [NAME]", "the recorder begins to record all of the robot, or nothing begins",

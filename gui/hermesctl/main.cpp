@@ -12,7 +12,6 @@
 #include "protocol/wire/JsonText.h"
 
 #include <QCoreApplication>
-#include <cstdio>
 #include <optional>
 
 using namespace hermes;

@@ -33,8 +33,9 @@ WheelTurn::WheelTurn(Client &motors, QString holder, std::chrono::milliseconds t
     });
 }
 
-void WheelTurn::begin(const QString &wheel, const Done &done) {
+void WheelTurn::begin(const QString &wheel, double speed, const Done &done) {
     wheel_ = wheel;
+    speed_ = speed;
     done_ = done;
     phase_ = Phase::Preparing;
     failure_ = {};
@@ -136,15 +137,18 @@ void WheelTurn::tick() {
     if (measured_s() >= turn_s - settled_s || turning_.hasExpired(longest.count()))
         return stop();
     call(
-        "motor.wheels", {{wheel_, speed}, {"stamp", stampNow() + clock_.seconds()}},
+        "motor.wheels", {{wheel_, speed_}, {"stamp", stampNow() + clock_.seconds()}},
         [this](const Result<QJsonValue> &result) {
             const bool isLate =
                 !result && result.error().is(ErrorCode::NotReady) && result.error().data.isUndefined();
-            if (!result && !isLate && phase_ == Phase::Turning) // after a late one the next may be in time
-                fail(Error(ErrorCode::DeviceFault,
-                           QString("%1: %2; where its encoder counts against its motor, or not at all, swap "
-                                   "the wires A and B of the encoder, or connect it")
-                               .arg(wheel_, result.error().message)));
+            if (result || isLate || phase_ != Phase::Turning)
+                return; // after a late one the next may be in time
+            const Error &why = result.error();
+            fail(Error(ErrorCode::DeviceFault,
+                       wheel_ + ": " + why.message +
+                           (why.data["encoder"].isUndefined()
+                                ? ""
+                                : "; swap the wires A and B of its encoder, or connect it")));
         },
         timeout_, Client::Repeats::None); // a late one would move the robot
 }

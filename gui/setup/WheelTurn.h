@@ -16,7 +16,6 @@ namespace hermes {
 class WheelTurn : public QObject {
     Q_OBJECT
 public:
-    static constexpr double speed = 1; ///< rad/s
     static constexpr double turn_s = 1;
     /// Called once, when the robot stands: the mean speed in rad/s, or why the turn ended early.
     using Done = std::function<void(const Result<double> &)>;
@@ -25,8 +24,8 @@ public:
     /// the connection and with controllers that are not found yet.
     WheelTurn(Client &motors, QString holder, std::chrono::milliseconds timeout, QObject *parent = nullptr);
 
-    /// One turn at a time.
-    void begin(const QString &wheel, const Done &done);
+    /// One turn at a time; speed in rad/s.
+    void begin(const QString &wheel, double speed, const Done &done);
     bool isBusy() const { return done_ != nullptr; }
     /// The control was asked for, and nobody knows yet whether it was given.
     bool isAcquiring() const { return isAcquiring_; }
@@ -57,6 +56,7 @@ private:
     QTimer timer_;
     QElapsedTimer waiting_, turning_;
     QString wheel_;
+    double speed_ = 0; // rad/s
     Done done_;
     Phase phase_ = Phase::Standing;
     ClockOffset clock_;

@@ -5,7 +5,6 @@
 #include "gui/vector/evaluation/Evaluation.h"
 
 #include <filesystem>
-#include <memory>
 
 namespace hermes::vector {
 
@@ -37,11 +36,11 @@ struct EvaluateCommand {
 } // namespace
 
 void addEvaluateCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "evaluate", "Errors of a trajectory beside a log's corrected poses: from pose to pose, and where a "
-                    "place is met again (JSON)");
-    auto *const command =
-        commandOf<EvaluateCommand>(*sub, "hermes-vector evaluate intel.log.gz intel.tum --svg errors.svg");
+    const auto [sub, command] = addCommand<EvaluateCommand>(
+        app, "evaluate",
+        "Errors of a trajectory beside a log's corrected poses: from pose to pose, and where a "
+        "place is met again (JSON)",
+        "hermes-vector evaluate intel.log.gz intel.tum --svg errors.svg");
     sub->add_option("LOG", command->log, "CARMEN log whose scan poses are a corrected reference")->required();
     sub->add_option("TRAJECTORY", command->trajectory,
                     "TUM file: stamp x y z qx qy qz qw; of as many poses as the log has scans, or poses at "

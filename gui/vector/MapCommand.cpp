@@ -44,7 +44,7 @@ private:
         if (!std::filesystem::is_directory(std::filesystem::u8path(path), ignored))
             return;
         auto session = std::make_shared<RecordedSession>(path);
-        if (!captureIn(path) && session->scanTopic().empty())
+        if (!captureIn(path) && session->scanTopics().first.empty())
             return;
         options.source.session = std::move(session);
         if (!options.isSigmaGiven())

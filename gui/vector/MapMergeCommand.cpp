@@ -6,9 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <iostream>
-#include <memory>
-
 namespace hermes::vector {
 
 namespace {
@@ -121,10 +118,9 @@ private:
 } // namespace
 
 void addMapMergeCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "map-merge", "Join two maps where they show the same place (the motion between them as JSON)");
-    auto *const command =
-        commandOf<MapMergeCommand>(*sub, "hermes-vector map-merge monday.csv tuesday.csv --out both.csv");
+    const auto [sub, command] = addCommand<MapMergeCommand>(
+        app, "map-merge", "Join two maps where they show the same place (the motion between them as JSON)",
+        "hermes-vector map-merge monday.csv tuesday.csv --out both.csv");
     sub->add_option("A", command->first, "A map (CSV by map --out-map); the result has its frame")
         ->required();
     sub->add_option("B", command->second, "The map that is moved onto it")->required();

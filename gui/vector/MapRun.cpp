@@ -99,7 +99,7 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     const Transformation2D tracked =
         trajectory_.empty() ? pose : tracker.tracked(Transformation2D(trajectory_.back().pose));
     drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none, tracked,
-               tracker.trackedBy());
+               tracker.trackedBy(), std::uint32_t(tracker.builder.own()));
     refine_.add(scan.points, tracked);
     if (drive_.loops.isDue())
         drive_.loops.correct();

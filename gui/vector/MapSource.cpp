@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <tuple>
+#include <utility>
 
 namespace hermes::vector {
 
@@ -129,11 +130,18 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
     scan.fault = turn.partial ? MapScan::Fault::Partial : MapScan::Fault::None;
 }
 
-void reportSession(const RecordedSession &session, const MapSourceOptions &options, MapSourceReport &report) {
+void reportSession(const RecordedSession &session, bool isCapture, const MapSourceOptions &options,
+                   MapSourceReport &report) {
     report.odometryRefused = session.refused();
     report.mount = options.mount.value_or(session.tracker().sensorOnRobot);
-    if (const std::string problems = session.problems(); !problems.empty())
-        report.otherSensors += (report.otherSensors.empty() ? "" : "; ") + problems;
+    auto [first, second, left] = session.scanTopics();
+    if (isCapture && !second.empty())
+        left += (left.empty() ? "" : ", ") + std::exchange(second, "");
+    for (const std::string &text :
+         {second.empty() ? "" : first + " and " + second + " are two scanners of one robot",
+          left.empty() ? "" : "left out: " + left, session.problems()})
+        if (!text.empty())
+            report.otherSensors += (report.otherSensors.empty() ? "" : "; ") + text;
 }
 
 void readCapture(Input &input, const MapSourceOptions &options, const MapScanSink &sink,
@@ -154,7 +162,7 @@ void readCapture(Input &input, const MapSourceOptions &options, const MapScanSin
                                        session ? session->clock() : velodyne::ClockChoice::Gps)
                               .read(assembler);
     if (session)
-        reportSession(*session, options, report);
+        reportSession(*session, true, options, report);
 }
 
 /// Of a session whose scanner has no capture: the scans that its daemon published.
@@ -168,10 +176,10 @@ void readScans(const MapSourceOptions &options, const MapScanSink &sink, MapSour
         static_cast<vectorlib::TimedScan &>(scan) = read;
         scan.fault = partial ? MapScan::Fault::Partial : MapScan::Fault::None;
         if (!scan.points.empty())
-            scan.odometry = session.over(scan.begin(), scan.end());
+            scan.odometry = session.over(scan.firstSeen(), scan.lastSeen());
         sink(scan, (scans - 1) / options.every, 0);
     });
-    reportSession(session, options, report);
+    reportSession(session, false, options, report);
 }
 
 void readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
@@ -184,7 +192,11 @@ void readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
         return std::pair(orderOf(a), a) < std::pair(orderOf(b), b);
     });
     if (names.empty())
-        throw Failure(options.path + ": found no file *.csv or *.pcd, expected points files, one a scan");
+        throw Failure(options.path +
+                      (fs::exists(fs::u8path(options.path) / "scanner-scan.raw")
+                           ? ": found a recording of hermes-scanner, expected a session of "
+                             "hermes-recorder, whose recorder-0001.mcap has the scans"
+                           : ": found no file *.csv or *.pcd, expected points files, one a scan"));
     MapScan scan;
     scan.closed = !options.open;
     for (std::size_t i = 0; i < names.size(); i += options.every) {

@@ -183,12 +183,11 @@ struct MatchCommand {
 } // namespace
 
 void addMatchCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "match",
+    const auto [sub, command] = addCommand<MatchCommand>(
+        app, "match",
         "Find the motion between two scans, or the place of a scan in a map, without known partners (JSON). "
-        "Both must show the same place: scans of different places that look alike match, too");
-    auto *const command =
-        commandOf<MatchCommand>(*sub, "hermes-vector match first.csv second.csv --svg match.svg");
+        "Both must show the same place: scans of different places that look alike match, too",
+        "hermes-vector match first.csv second.csv --svg match.svg");
     const std::string kinds = "points (CSV x,y or ascii PCD), segments (CSV x1,y1,x2,y2)";
     sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
         ->required();

@@ -1,5 +1,7 @@
 #include "gui/vector/MatchOutcome.h"
 
+#include "vectorlib/geometry/Transformation2D.h"
+
 #include <algorithm>
 
 namespace hermes::vector {
@@ -15,7 +17,7 @@ namespace {
 /// Whether another accepted solution lies more than 0.5 m or 10 degrees from the first one.
 bool haveRival(const SearchResult &found) {
     return std::any_of(found.solutions.begin(), found.solutions.end(), [&](const Solution &s) {
-        const Transformation2D way = found.solutions[0].pose.inverse() * s.pose;
+        const vectorlib::Transformation2D way = found.solutions[0].pose.inverse() * s.pose;
         return s.accepted && (way.translation().norm() > 0.5 || std::abs(way.alpha()) > 0.17);
     });
 }

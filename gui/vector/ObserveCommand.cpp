@@ -89,11 +89,11 @@ struct ObserveCommand {
 } // namespace
 
 void addObserveCommand(CLI::App &app) {
-    CLI::App *sub =
-        app.add_subcommand("observe", "What a sensor sees of a world: the exact view (CSV x1,y1,x2,y2) or a "
-                                      "simulated scan (CSV x,y), in the sensor's frame");
-    auto *const command = commandOf<ObserveCommand>(
-        *sub, "hermes-vector observe pillars --pose 1,1,0.5 --scan 720 --noise 0.01");
+    const auto [sub, command] =
+        addCommand<ObserveCommand>(app, "observe",
+                                   "What a sensor sees of a world: the exact view (CSV x1,y1,x2,y2) or a "
+                                   "simulated scan (CSV x,y), in the sensor's frame",
+                                   "hermes-vector observe pillars --pose 1,1,0.5 --scan 720 --noise 0.01");
     sub->add_option("WORLD", command->in,
                     "World: JSON with edges, or the name of one that came with the program")
         ->required();

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace hermes::vector {
 
@@ -91,13 +92,16 @@ private:
 /// The footer of a command's help: an example of its use.
 std::string example(const std::string &text);
 
-/// What a subcommand runs, for its options to set; the subcommand keeps it. usage: an example for its help.
+/// A new subcommand, and what it runs, for its options to set; the subcommand keeps it. usage: an example for
+/// its help.
 template <typename Command>
-Command *commandOf(CLI::App &sub, const std::string &usage) {
+std::pair<CLI::App *, Command *> addCommand(CLI::App &app, const std::string &name, const std::string &about,
+                                            const std::string &usage) {
+    CLI::App *const sub = app.add_subcommand(name, about);
     const auto command = std::make_shared<Command>();
-    sub.footer(example(usage));
-    sub.callback([command] { command->run(); });
-    return command.get();
+    sub->footer(example(usage));
+    sub->callback([command] { command->run(); });
+    return {sub, command.get()};
 }
 
 // One function a subcommand; each in a file of its own.

@@ -53,6 +53,12 @@ std::optional<double> numberAt(const JsonData &message, const std::string &place
     return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
+/// Of a daemon's address, which may be a URL.
+std::string withoutScheme(const std::string &address) {
+    const std::size_t at = address.find("//");
+    return at == std::string::npos ? address : address.substr(at + 2);
+}
+
 /// What a message of the topic `odometry` tells, when it has all members and a robot can do so.
 std::optional<vectorlib::OdometrySample> sampleFrom(const mcap::Message &message) {
     const JsonData data = JsonData::parse(message.data, nullptr, false);
@@ -166,6 +172,8 @@ vectorlib::ScanTrackerSettings RecordedSession::tracker() const {
     return vectorlib::namedTrackerSettings([&](const char *name) {
         if (const auto value = number(matcherTopic, name))
             return *value;
+        if (std::string_view(name).substr(0, 8) == "sensor2.") // recorded before there were two scanners
+            return 0.0;
         throw Failure(files_[0] + ": found no setting " + name +
                       " in scanmatcher/settings, expected a number");
     });
@@ -189,29 +197,64 @@ velodyne::ClockChoice RecordedSession::clock() const {
     return velodyne::clockChoiceFromText(found->second.at(path).get<std::string>());
 }
 
-std::string RecordedSession::scanTopic() const {
+RecordedSession::ScanTopics RecordedSession::scanTopics() const {
+    const auto hostOf = [this](const char *source) {
+        const auto found = settings_.find(matcherTopic);
+        const JsonData::json_pointer place(std::string("/") + source + "/address");
+        const JsonData address = found == settings_.end() || !found->second.is_object()
+                                     ? JsonData()
+                                     : found->second.value(place, JsonData());
+        return address.is_string() ? withoutScheme(address.get<std::string>()) : std::string();
+    };
+    const std::string first = hostOf("source"), second = hostOf("source2");
+    std::map<std::string, std::string> hosts; // by topic
     for (const mcap::Reader &reader : readers_)
         for (const auto &[id, channel] : reader.channels())
-            if (channel.topic.size() > scanSuffix.size() &&
-                channel.topic.compare(channel.topic.size() - scanSuffix.size(), scanSuffix.size(),
-                                      scanSuffix) == 0)
-                return channel.topic;
-    return {};
+            if (const std::string &topic = channel.topic;
+                topic.size() > scanSuffix.size() &&
+                topic.substr(topic.size() - scanSuffix.size()) == scanSuffix) {
+                const auto address = channel.metadata.find("address");
+                hosts.emplace(topic, address == channel.metadata.end() ? "" : withoutScheme(address->second));
+            }
+    ScanTopics topics;
+    for (const auto &[topic, host] : hosts)
+        if (!second.empty() && host == second)
+            topics.second = topic;
+        else if (topics.first.empty() || (!first.empty() && host == first))
+            topics.first = topic;
+    for (const auto &[topic, host] : hosts)
+        if (topic != topics.first && topic != topics.second)
+            topics.others += (topics.others.empty() ? "" : ", ") + topic;
+    return topics;
 }
 
 void RecordedSession::readScans(
     const std::function<void(const vectorlib::TimedScan &scan, bool partial)> &take) {
-    const std::string topic = scanTopic();
+    const ScanTopics topics = scanTopics();
+    std::optional<vectorlib::TimedScan> waiting; // of the second scanner
     for (const std::string &file : files_) {
         mcap::Reader reader = valueOrFail(mcap::Reader::open(file)); // beside those of the odometry
-        reader.select([&](const mcap::Channel &channel) { return channel.topic == topic; });
+        reader.select([&](const mcap::Channel &channel) {
+            return channel.topic == topics.first || channel.topic == topics.second;
+        });
         while (const auto message = reader.next()) {
+            const bool isFirst = reader.channels().at(message->channel).topic == topics.first;
             const JsonData data = JsonData::parse(message->data, nullptr, false);
-            const auto scan = scanFrom(data);
-            if (scan)
-                take(*scan, numberAt(data, "/partial").value_or(0) != 0);
-            else
-                ++refusedScans_;
+            const bool isPartial = numberAt(data, "/partial").value_or(0) != 0;
+            auto scan = scanFrom(data);
+            refusedScans_ += !scan;
+            if (!scan || (!isFirst && isPartial))
+                continue;
+            if (number(matcherTopic, isFirst ? "sensor.upside_down" : "sensor2.upside_down").value_or(0) != 0)
+                scan->turnOver();
+            if (!isFirst) {
+                waiting = std::move(scan);
+                continue;
+            }
+            if (waiting)
+                scan->addSecond(std::move(*waiting));
+            waiting.reset();
+            take(*scan, isPartial);
         }
     }
 }

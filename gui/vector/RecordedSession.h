@@ -1,6 +1,7 @@
 #pragma once
 
 #include "protocol/mcap/Reader.h"
+#include "protocol/velodyne/ClockChoice.h"
 #include "protocol/velodyne/TurnAssembler.h"
 #include "vectorlib/mapping/ScanTracker.h"
 #include "vectorlib/mapping/TimedScan.h"
@@ -37,9 +38,14 @@ public:
     velodyne::ClockChoice clock() const;
     std::optional<double> sigma() const { return number(matcherTopic, "matcher.sigma_m"); }
 
-    /// The topic of its scans among those recorded, as of a scanner without a capture; empty: there is none.
-    std::string scanTopic() const;
-    /// Gives all scans of that topic; partial: too little of a revolution.
+    /// Topics of scans among those recorded, as of scanners without a capture.
+    struct ScanTopics {
+        std::string first;  ///< the one that the matcher took; empty: there is none
+        std::string second; ///< of its second scanner; empty: there is none
+        std::string others;
+    };
+    ScanTopics scanTopics() const;
+    /// Gives all scans of the first, each with that of the second; partial: too little of a revolution.
     void readScans(const std::function<void(const vectorlib::TimedScan &scan, bool partial)> &take);
 
     /// The robot's way during a scan (seconds since the Unix epoch), when it is known. Scans in the order of

@@ -90,10 +90,9 @@ struct RegisterCommand {
 } // namespace
 
 void addRegisterCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "register", "Find the motion that brings segments onto their known partners (JSON)");
-    auto *const command =
-        commandOf<RegisterCommand>(*sub, "hermes-vector register pairs.csv --weights length");
+    const auto [sub, command] = addCommand<RegisterCommand>(
+        app, "register", "Find the motion that brings segments onto their known partners (JSON)",
+        "hermes-vector register pairs.csv --weights length");
     sub->add_option("IN", command->in,
                     "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
         ->required();

@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <optional>
 
 namespace hermes::vector {
@@ -179,10 +178,9 @@ struct RelocalizeCommand {
 } // namespace
 
 void addRelocalizeCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "relocalize", "Find where in a whole map a scan was taken, without an expected pose (JSON)");
-    auto *const command =
-        commandOf<RelocalizeCommand>(*sub, "hermes-vector relocalize map.csv scan.csv --svg place.svg");
+    const auto [sub, command] = addCommand<RelocalizeCommand>(
+        app, "relocalize", "Find where in a whole map a scan was taken, without an expected pose (JSON)",
+        "hermes-vector relocalize map.csv scan.csv --svg place.svg");
     sub->add_option("MAP", command->map, "A map by hermes-vector map, or segments (CSV x1,y1,x2,y2)")
         ->required();
     sub->add_option("SCAN", command->scan,

@@ -96,11 +96,11 @@ struct RingCommand {
 } // namespace
 
 void addRingCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an " +
-                                                   velodyne::sensorNames() +
-                                                   " (CSV turn,stamp,azimuth,range,intensity,x,y)");
-    auto *const command =
-        commandOf<RingCommand>(*sub, "hermes-vector ring drive.pcap --turn 3 --out ring.csv");
+    const auto [sub, command] =
+        addCommand<RingCommand>(app, "ring",
+                                "Decode one horizontal ring a turn from a capture of an " +
+                                    velodyne::sensorNames() + " (CSV turn,stamp,azimuth,range,intensity,x,y)",
+                                "hermes-vector ring drive.pcap --turn 3 --out ring.csv");
     sub->add_option("PCAP", command->in,
                     "Capture, pcap or pcapng; of a recording NAME-0001.pcap, NAME-0002.pcap ... its "
                     "first file, or its folder")

@@ -56,11 +56,11 @@ struct SegmentCommand {
 } // namespace
 
 void addSegmentCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "segment", "Split a scan into clusters of neighbouring points (CSV index,cluster; -1 is "
-                   "an outlier)");
-    auto *const command =
-        commandOf<SegmentCommand>(*sub, "hermes-vector segment scan.csv --open --svg scan.svg");
+    const auto [sub, command] = addCommand<SegmentCommand>(
+        app, "segment",
+        "Split a scan into clusters of neighbouring points (CSV index,cluster; -1 is "
+        "an outlier)",
+        "hermes-vector segment scan.csv --open --svg scan.svg");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
     command->segment.addTo(*sub, "defaults 10, 0.05, 0.20, 15");
     command->output.addTo(*sub, true);

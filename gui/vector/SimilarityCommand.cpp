@@ -39,11 +39,10 @@ struct SimilarityCommand {
 } // namespace
 
 void addSimilarityCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "similarity",
-        "How much segments differ from their known partners under motions (CSV x,y,alpha,criterion)");
-    auto *const command =
-        commandOf<SimilarityCommand>(*sub, "hermes-vector similarity pairs.csv --pose 0,0,0 --pose 1,-2,0.3");
+    const auto [sub, command] = addCommand<SimilarityCommand>(
+        app, "similarity",
+        "How much segments differ from their known partners under motions (CSV x,y,alpha,criterion)",
+        "hermes-vector similarity pairs.csv --pose 0,0,0 --pose 1,-2,0.3");
     sub->add_option("IN", command->in,
                     "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
         ->required();

@@ -121,10 +121,9 @@ struct VectorizeCommand {
 } // namespace
 
 void addVectorizeCommand(CLI::App &app) {
-    CLI::App *sub = app.add_subcommand(
-        "vectorize", "Replace points by line segments (CSV cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
-    auto *const command = commandOf<VectorizeCommand>(
-        *sub, "hermes-vector vectorize scan.csv --algorithm ftls --sigma 0.02 --polyline");
+    const auto [sub, command] = addCommand<VectorizeCommand>(
+        app, "vectorize", "Replace points by line segments (CSV cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)",
+        "hermes-vector vectorize scan.csv --algorithm ftls --sigma 0.02 --polyline");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
     command->settings.polyline = false;
     std::vector<std::string> names;

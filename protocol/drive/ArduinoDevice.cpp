@@ -1,9 +1,9 @@
 #include "protocol/drive/ArduinoDevice.h"
 
+#include "protocol/drive/AnswerText.h"
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace hermes::drive {
@@ -13,38 +13,23 @@ namespace {
 constexpr std::size_t longestLine = 32;
 constexpr long mostPerFrame = 32767; // its int has 16 bits
 
-bool takeInt(std::string_view &text, std::uint32_t &value) {
-    std::int32_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc())
-        return false;
-    value = std::uint32_t(number);
-    text.remove_prefix(std::size_t(end - text.data()));
-    return true;
-}
-
 } // namespace
 
 Bytes ArduinoDevice::bytes(const Command &command) const {
-    char text[48] = "e\r";
-    if (command.kind == Command::Kind::SetSpeeds || command.kind == Command::Kind::CutPower) {
-        std::array<long, 2> perFrame{};
-        for (std::size_t i = 0; i < 2; ++i)
-            perFrame[i] =
-                std::clamp(std::lround(command.speeds[i] / framesPerSecond), -mostPerFrame, mostPerFrame);
-        std::snprintf(text, sizeof(text), "m %ld %ld\r", perFrame[0], perFrame[1]);
-    }
+    std::string text = command.isSetPoint() ? "m" : "e";
+    for (std::size_t i = 0; i < 2 && command.isSetPoint(); ++i)
+        text += ' ' + std::to_string(std::clamp(std::lround(command.target()[i] / framesPerSecond),
+                                                -mostPerFrame, mostPerFrame));
     Bytes bytes;
     if (!isClean_)
         bytes.push('\r');
-    for (const char *letter = text; *letter != 0; ++letter)
-        bytes.push(std::uint8_t(*letter));
+    bytes.push(text); // short enough to need no heap
+    bytes.push('\r');
     return bytes;
 }
 
 MotorDevice::Name ArduinoDevice::nameOf(const Command &command) const {
-    const bool moves = command.kind == Command::Kind::SetSpeeds || command.kind == Command::Kind::CutPower;
-    return {moves ? "m (speeds)" : "e (encoders)"};
+    return {command.isSetPoint() ? "m (speeds)" : "e (encoders)"};
 }
 
 void ArduinoDevice::begin(const Bytes &request) {
@@ -84,15 +69,9 @@ ReplyReader::Result ArduinoDevice::done() {
 bool ArduinoDevice::takeLine() {
     if (!asksCounts_)
         return line_ == "OK";
-    std::string_view text = line_;
-    std::array<std::uint32_t, 2> counts{};
-    if (!takeInt(text, counts[0]) || text.empty() || text[0] != ' ')
-        return false;
-    text.remove_prefix(1);
-    if (!takeInt(text, counts[1]) || !text.empty())
-        return false;
-    counts_ = counts;
-    return true;
+    const auto counts = numbersIn<2>(line_, ' ');
+    counts_ = counts.value_or(counts_);
+    return counts.has_value();
 }
 
 } // namespace hermes::drive

@@ -3,6 +3,7 @@
 #include "protocol/drive/ReplyReader.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,17 +18,25 @@ struct VelocityPid {
     bool operator==(const VelocityPid &o) const { return p == o.p && i == o.i && d == o.d && qpps == o.qpps; }
 };
 
-/// What a device is set up with.
+/// What a device is set up with; each takes what it can use.
 struct DeviceSettings {
     VelocityPid pid;
-    double timeout_s = 0.2; ///< without a host, after which it shall stop by itself
+    double timeout_s = 0.2;      ///< without a host, after which it shall stop by itself
+    bool mayLackTimeout = false; ///< it is driven also when it would never stop by itself
+    double brake_a = 5;     ///< with which a motor brakes that is told to stand, where a current does that
+    double leastErpm = 900; ///< electrical turns a minute below which a motor would be released
+    double countsPerTurn = 38000, wheelRadius_m = 0.1, halfTrack_m = 0.25; ///< of the wheels
 };
 
 /// The time-out of a device: it stops its motors by itself when its host is silent for so long.
 struct DeviceTimeout {
-    double seconds;  ///< after the set-up
-    double atMost_s; ///< before
-    bool isFixed;    ///< else it is written in the set-up, and its loss tells of a restart
+    double seconds;      ///< after the set-up; infinite: it never does
+    double atMost_s;     ///< before; 0: silence does not help
+    bool isFixed;        ///< else it is written in the set-up, and its loss tells of a restart
+    bool coasts = false; ///< then its motors are released; else they brake
+
+    /// After so long without a host its motors stop, if ever.
+    double silence_s() const { return std::isinf(seconds) ? atMost_s : seconds; }
 };
 
 /// What a device has told last. Beside the encoders, which are read in every cycle, there are slow readings,
@@ -39,10 +48,11 @@ struct Readings {
     std::array<double, 2> current_a{};           ///< of M1 and M2
     std::optional<std::array<double, 2>> duty{}; ///< of M1 and M2, -1 to 1; nothing: it does not tell
     double temperature_c = 0;
-    std::uint32_t status = 0; ///< bits of roboclaw::StatusBit
-    bool complete = false;    ///< each vital one of the slow ones has been read since it was set up
-    int setups = 0;           ///< times it was set up: it may have been without power in between
-    int restarts = 0;         ///< times that its counts told of one
+    std::uint32_t status = 0;             ///< bits of roboclaw::StatusBit
+    std::array<const char *, 2> faults{}; ///< of M1 and M2, by other devices; nullptr: none
+    bool complete = false; ///< each vital one of the slow ones has been read since it was set up
+    int setups = 0;        ///< times it was set up: it may have been without power in between
+    int restarts = 0;      ///< times that its counts told of one
 };
 
 /// What a device with two motors is told or asked.
@@ -57,8 +67,15 @@ struct Command {
     };
     Kind kind;
     int number = 0;                       ///< of the reading or the step, from 0
-    std::array<std::int32_t, 2> speeds{}; ///< counts/s
+    std::array<std::int32_t, 2> speeds{}; ///< counts/s, of SetSpeeds
     std::uint32_t deceleration = 1;       ///< counts/s^2
+    std::optional<double> servo{};        ///< position of its steering servo, 0 to 1; nothing: it has none
+
+    bool isSetPoint() const { return kind == Kind::SetSpeeds || kind == Kind::CutPower; }
+    /// What a set-point demands of a device whose power cannot be cut otherwise, counts/s.
+    std::array<std::int32_t, 2> target() const {
+        return kind == Kind::SetSpeeds ? speeds : std::array<std::int32_t, 2>{};
+    }
 };
 
 /// What is said to one motor controller with two motors, and what it answers, byte for byte. Decides
@@ -66,9 +83,9 @@ struct Command {
 /// is answered: where a device does not acknowledge, its driver asks something behind.
 class MotorDevice {
 public:
-    /// For people; and what follows when it does not know the command, or nothing.
+    /// For people; and what follows when it does not know the command, or answers nothing whole; or nothing.
     struct Name {
-        std::string command, ifUnknown{};
+        std::string command, ifUnknown{}, ifSilent{};
     };
 
     virtual ~MotorDevice() = default;
@@ -94,6 +111,21 @@ public:
     virtual std::array<std::uint32_t, 2> counts() const = 0;
     /// Latin-1; empty until it was told.
     virtual const std::string &version() const = 0;
+};
+
+/// One that reads its answers itself, and needs all of them.
+class SelfReadingDevice : public MotorDevice, protected ReplyReader {
+public:
+    bool isVital(const Command &) const override { return true; }
+    ReplyReader &reader() override { return *this; }
+    const std::string &version() const override { return version_; }
+
+protected:
+    Result silence() override { return Result::Incomplete; }
+    std::size_t received() const override { return received_; }
+
+    std::string version_;
+    std::size_t received_ = 0;
 };
 
 } // namespace hermes::drive

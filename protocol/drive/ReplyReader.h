@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace hermes::drive {
 
@@ -17,6 +18,14 @@ public:
     void push(std::uint8_t byte) {
         if (size_ < data_.size())
             data_[size_++] = byte;
+    }
+    void push(const Bytes &bytes) {
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+            push(bytes[i]);
+    }
+    void push(std::string_view text) {
+        for (const char letter : text)
+            push(std::uint8_t(letter));
     }
     void push16(std::uint16_t value) {
         push(std::uint8_t(value >> 8));

@@ -11,10 +11,10 @@ Fields<FoundSerial> fieldsOf(Of<FoundSerial>) {
         .add("device", &S::device, "Its name of today")
         .addMaybe("about", &S::about, "What the system knows of the adapter, or empty")
         .add("kind", &S::kind,
-             "A RoboClaw; an Arduino with the text protocol of a base; NMEA sentences; a laser scanner of "
-             "one plane; something else that talks by itself; "
-             "something that answers, "
-             "but not as a RoboClaw; silent, also when asked; silent and not asked; in use by another "
+             "A RoboClaw; an Arduino with the text protocol of a base; a VESC; an OpenCR; a Roboteq; NMEA "
+             "sentences; a laser scanner of one plane; something else that talks by itself; something that "
+             "answers, but not as a RoboClaw; silent, also when asked; silent and not asked; in use by "
+             "another "
              "program, and left alone; cannot be opened")
         .choices(S::kinds())
         .addMaybe("text", &S::text, "The version of a controller, a sentence, or why there is nothing")

@@ -21,13 +21,14 @@ struct FoundSerial {
     bool simulated = false;     ///< a process of the supervisor is at the far end
     QString model = {};         ///< of a scanner, as the setting scanner.model has it; empty: it is none
 
-    /// "roboclaw", "arduino" (a base with its text protocol), "nmea", "scanner" (a laser scanner of one
-    /// plane), "talker" (says something else by itself), "other" (answers, but not as a RoboClaw), "silent",
-    /// "not_asked" (silent, and nothing was sent to it), "in_use", "failed".
+    /// "roboclaw", "arduino" (a base with its text protocol), "vesc", "opencr", "roboteq", "nmea", "scanner"
+    /// (a laser scanner of one plane), "talker" (says something else by itself), "other" (answers, but not as
+    /// a RoboClaw), "silent", "not_asked" (silent, and nothing was sent to it), "in_use", "failed".
     static QStringList kinds() {
-        return {"roboclaw", "arduino", "nmea",      "scanner", "talker",
-                "other",    "silent",  "not_asked", "in_use",  "failed"};
+        return controllerKinds() +
+               QStringList{"nmea", "scanner", "talker", "other", "silent", "not_asked", "in_use", "failed"};
     }
+    static QStringList controllerKinds() { return {"roboclaw", "arduino", "vesc", "opencr", "roboteq"}; }
 };
 
 /// A lidar whose packets came.

@@ -6,12 +6,11 @@ namespace {
 
 constexpr double maxAge_s = 1e6;
 constexpr int maxStation = 9999;
-constexpr int leastFields = 9; // up to the altitude
 
 } // namespace
 
 FieldFault decode(const Sentence &sentence, Gga &gga) {
-    if (sentence.type() != "GGA" || sentence.fieldCount() < leastFields)
+    if (!sentence.is("GGA", 9)) // up to the altitude
         return {0, "GGA with 9 fields or more"};
     FieldReader read(sentence);
     gga = Gga();

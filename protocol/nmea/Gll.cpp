@@ -2,14 +2,8 @@
 
 namespace hermes::nmea {
 
-namespace {
-
-constexpr int leastFields = 6; // up to the status
-
-} // namespace
-
 FieldFault decode(const Sentence &sentence, Gll &gll) {
-    if (sentence.type() != "GLL" || sentence.fieldCount() < leastFields)
+    if (!sentence.is("GLL", 6)) // up to the status
         return {0, "GLL with 6 fields or more"};
     FieldReader read(sentence);
     gll = Gll();

@@ -6,7 +6,6 @@ namespace hermes::nmea {
 
 namespace {
 
-constexpr int leastFields = 9; // up to the altitude
 constexpr int modeField = 6;
 constexpr const char *modeExpected = "the mode, a letter of ADEFMNPRS for each constellation";
 
@@ -32,7 +31,7 @@ std::optional<int> qualityOf(FieldReader &read, std::string_view letters) {
 } // namespace
 
 FieldFault decode(const Sentence &sentence, Gns &gns) {
-    if (sentence.type() != "GNS" || sentence.fieldCount() < leastFields)
+    if (!sentence.is("GNS", 9)) // up to the altitude
         return {0, "GNS with 9 fields or more"};
     FieldReader read(sentence);
     gns = Gns();

@@ -4,14 +4,8 @@
 
 namespace hermes::nmea {
 
-namespace {
-
-constexpr int leastFields = 9; // up to the date
-
-} // namespace
-
 FieldFault decode(const Sentence &sentence, Rmc &rmc) {
-    if (sentence.type() != "RMC" || sentence.fieldCount() < leastFields)
+    if (!sentence.is("RMC", 9)) // up to the date
         return {0, "RMC with 9 fields or more"};
     FieldReader read(sentence);
     rmc = Rmc();

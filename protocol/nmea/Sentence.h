@@ -26,6 +26,10 @@ public:
     /// The type whoever talks: "RMC" of GPRMC and of GNRMC. Empty for a proprietary sentence ($P...) and for
     /// an address that has not five characters.
     std::string_view type() const;
+    /// Of this type, with so many fields behind the address or more.
+    bool is(std::string_view wanted, int leastFields) const {
+        return type() == wanted && fieldCount() >= leastFields;
+    }
     /// The n-th field behind the address, from 1; empty when unknown or beyond the last.
     std::string_view field(int n) const;
     /// Fields behind the address.

@@ -4,7 +4,6 @@ namespace hermes::nmea {
 
 namespace {
 
-constexpr int leastFields = 8;  // up to the unit of the second speed
 constexpr double kmh = 1 / 3.6; // m/s
 
 /// A number with the letter of its unit; anything else is nothing.
@@ -17,7 +16,7 @@ std::optional<double> withUnit(const Sentence &sentence, int field, double most,
 } // namespace
 
 FieldFault decode(const Sentence &sentence, Vtg &vtg) {
-    if (sentence.type() != "VTG" || sentence.fieldCount() < leastFields)
+    if (!sentence.is("VTG", 8)) // up to the unit of the second speed
         return {0, "VTG with 8 fields or more"};
     vtg = Vtg();
     vtg.course_deg = withUnit(sentence, 1, 360, "T");

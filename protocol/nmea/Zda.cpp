@@ -4,13 +4,12 @@ namespace hermes::nmea {
 
 namespace {
 
-constexpr int leastFields = 4; // up to the year
 constexpr const char *dateExpected = "day, month and year as numbers: all three, or none";
 
 } // namespace
 
 FieldFault decode(const Sentence &sentence, Zda &zda) {
-    if (sentence.type() != "ZDA" || sentence.fieldCount() < leastFields)
+    if (!sentence.is("ZDA", 4)) // up to the year
         return {0, "ZDA with 4 fields or more"};
     FieldReader read(sentence);
     zda = Zda();

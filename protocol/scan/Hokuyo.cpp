@@ -62,14 +62,14 @@ std::string_view cutLine(std::string_view &text) {
 } // namespace
 
 Hokuyo::Hokuyo(RevolutionAssembler &revolutions)
-    : ScannerDialogue(revolutions)
-    , clock_(stampPeriod24_ns) {
+    : ScannerProtocol(revolutions)
+    , clock_(stampPeriod24_ns, HostClock::Receiver::NeverJumps) {
     identity_.model = "Hokuyo";
 }
 
 void Hokuyo::jump() {
-    ScannerDialogue::jump();
-    clock_ = HostClock(stampPeriod24_ns);
+    ScannerProtocol::jump();
+    clock_ = HostClock(stampPeriod24_ns, HostClock::Receiver::NeverJumps);
     lastStamp_ns_.reset();
 }
 
@@ -93,7 +93,7 @@ void Hokuyo::prepare(const std::string &prerequisite) {
         sweep_ = sweep;
 }
 
-std::optional<ScannerDialogue::Request> Hokuyo::request(int step) const {
+std::optional<ScannerProtocol::Request> Hokuyo::request(int step) const {
     static constexpr const char *commands[] = {"QT\n", "SCIP2.0\n", "TM2\n", "VV\n", "PP\n", "BM\n"};
     if (step > Begin)
         return {};
@@ -207,7 +207,7 @@ void Hokuyo::tellLost(std::int64_t stamp_ns, double period_ns) {
         const double missing = passed_ns < longGap_ns ? std::round(double(passed_ns) / period_ns) - 1 : 0;
         const auto lost = std::uint64_t(std::max(missing, 1.0));
         counts_.damaged += lost;
-        revolutions_.loseSweeps(lost);
+        revolutions_.lose(lost);
         revolutions_.endSweep(); // what follows is whole
     }
     isBroken_ = false;
@@ -240,7 +240,7 @@ bool Hokuyo::takeScan(std::string_view block, const Arrival &arrival) {
     // How long the line takes is not known: its rate is that of no line where it is USB.
     const std::int64_t stamp_ns = valueOf(stamp.substr(0, 4)) * std::int64_t(1000000);
     tellLost(stamp_ns, period_ns);
-    const HostClock::Time time = clock_.take(stamp_ns, arrival.stamp_ns, afterRear_ns(last));
+    const HostClock::Time time = clock_.take(stamp_ns, arrival.mono_ns, afterRear_ns(last));
     revolutions_.setClockBound(time.bound_ns + 1000000);
     for (int step = first; step <= last; ++step) {
         const int range_mm = valueOf(std::string_view(values_).substr(std::size_t(step - first) * 3, 3));

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "protocol/scan/HostClock.h"
-#include "protocol/scan/ScannerDialogue.h"
+#include "protocol/scan/ScannerProtocol.h"
 
 namespace hermes::scan {
 
 /// Hokuyo URG, UTM and UST by SCIP 2: lines of text, each with a sum, in blocks that end with an empty line.
 /// Sources: the maker's C-42-03320B (SCIP 2.0) and urg_c.
-class Hokuyo : public ScannerDialogue {
+class Hokuyo : public ScannerProtocol {
 public:
     explicit Hokuyo(RevolutionAssembler &revolutions);
 

@@ -42,7 +42,10 @@ HostClock::Time HostClock::take(std::int64_t stamp_ns, std::int64_t receive_ns, 
     if (passed_ns < -period_ns_ / 2)
         passed_ns += period_ns_;
     const std::int64_t measured_ns = receive_ns - duration_ns;
-    if (!started_ || std::abs(measured_ns - (sensor_ns_ + passed_ns) - offset_ns_) > parted_ns) {
+    const std::int64_t behind_ns = measured_ns - (sensor_ns_ + passed_ns) - offset_ns_;
+    const bool neverJumps = receiver_ == Receiver::NeverJumps;
+    const bool mayBeLate = neverJumps && std::abs(passed_ns) < parted_ns;
+    if (!started_ || (std::abs(behind_ns) > parted_ns && !mayBeLate)) {
         restarts_ += started_ && std::abs(passed_ns) > parted_ns;
         return begin(measured_ns);
     }
@@ -51,8 +54,9 @@ HostClock::Time HostClock::take(std::int64_t stamp_ns, std::int64_t receive_ns, 
         endSecond();
     earliest_ns_ = std::min(earliest_ns_, measured_ns - sensor_ns_);
     const std::int64_t reach_ns = std::max<std::int64_t>(passed_ns, 0) / 4;
-    const std::int64_t left_ns = std::min(earliest_ns_, before_ns_) - offset_ns_;
-    offset_ns_ += std::clamp(left_ns, -reach_ns, reach_ns);
+    const std::int64_t left_ns = late_ns();
+    const bool steps = neverJumps && std::abs(left_ns) > stepped_ns;
+    offset_ns_ += steps ? left_ns : std::clamp(left_ns, -reach_ns, reach_ns);
     return {sensor_ns_ + offset_ns_, spread_ns_ == none ? unknown_ns : spread_ns_ + std::abs(left_ns)};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -14,15 +15,20 @@ namespace hermes::scan {
 class HostClock {
 public:
     struct Time {
-        std::int64_t stamp_ns; ///< since the Unix epoch
+        std::int64_t stamp_ns; ///< by the receiver's clock
         std::int64_t bound_ns; ///< how far that may be off, beside what all packets are late alike
     };
 
-    /// After so long the sensor's stamps begin again.
-    explicit HostClock(std::int64_t period_ns)
-        : period_ns_(period_ns) {}
+    /// What the receiver's clock does. Where that never jumps, packets that are late by seconds are just
+    /// late, as the host was held up; and its times follow at once where the clocks part by more than 50 ms.
+    enum class Receiver { MayBeSet, NeverJumps };
 
-    /// When what a packet stamps was measured. receive_ns: when the packet came in, since the Unix epoch.
+    /// After so long the sensor's stamps begin again.
+    explicit HostClock(std::int64_t period_ns, Receiver receiver = Receiver::MayBeSet)
+        : period_ns_(period_ns)
+        , receiver_(receiver) {}
+
+    /// When what a packet stamps was measured. receive_ns: when the packet came in.
     /// duration_ns: from the stamp until the sensor has sent it.
     Time take(std::int64_t stamp_ns, std::int64_t receive_ns, std::int64_t duration_ns);
     /// The clocks parted by more than a second, as the sensor's stamps did not go on: it was started anew.
@@ -35,8 +41,11 @@ private:
 
     Time begin(std::int64_t measured_ns);
     void endSecond();
+    /// How much later the packets that come soonest come than its times say.
+    std::int64_t late_ns() const { return std::min(earliest_ns_, before_ns_) - offset_ns_; }
 
     std::int64_t period_ns_;
+    Receiver receiver_;
     bool started_ = false;
     std::int64_t last_ns_ = 0;        ///< the stamp before
     std::int64_t sensor_ns_ = 0;      ///< since the first packet, by its clock; goes on over the hours

@@ -29,17 +29,17 @@ constexpr auto crcTable = makeCrcTable();
 } // namespace
 
 Ldrobot::Ldrobot(int samples_hz, int baud, RevolutionAssembler &revolutions)
-    : ScannerDialogue(revolutions)
+    : ScannerProtocol(revolutions)
     , sample_ns_(1e9 / samples_hz)
     , byte_ns_(1e10 / baud)
-    , clock_(stampPeriod_ms * ms) {
+    , clock_(stampPeriod_ms * ms, HostClock::Receiver::NeverJumps) {
     identity_.model = "LDROBOT";
 }
 
 void Ldrobot::jump() {
-    ScannerDialogue::jump();
+    ScannerProtocol::jump();
     stamp_ms_.reset();
-    clock_ = HostClock(stampPeriod_ms * ms);
+    clock_ = HostClock(stampPeriod_ms * ms, HostClock::Receiver::NeverJumps);
 }
 
 /// The two bytes of its head may stand within a packet: only the checksum tells where one begins.
@@ -85,7 +85,7 @@ void Ldrobot::takePacket(const std::uint8_t *bytes, const Arrival &arrival, std:
     head_deg_ = first_deg + width_deg;
     stamp_ms_ = stamp_ms;
     const auto wire_ns = std::int64_t(double(bytesSince) * byte_ns_);
-    const HostClock::Time end = clock_.take(stamp_ms * ms, arrival.stamp_ns, wire_ns);
+    const HostClock::Time end = clock_.take(stamp_ms * ms, arrival.mono_ns, wire_ns);
     revolutions_.setClockBound(end.bound_ns + 1000000);
     const double sample_ns = speed_degps > 0 ? width_deg / (packetBeams - 1) / speed_degps * 1e9 : sample_ns_;
     for (int i = 0; i < packetBeams; ++i) {

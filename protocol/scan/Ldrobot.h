@@ -1,13 +1,13 @@
 #pragma once
 
 #include "protocol/scan/HostClock.h"
-#include "protocol/scan/ScannerDialogue.h"
+#include "protocol/scan/ScannerProtocol.h"
 
 namespace hermes::scan {
 
 /// LDROBOT LD06, LD19 and STL-27L: packets of twelve beams, which the scanner sends as soon as it turns. It
 /// takes no commands. Source: the maker's manual of the LD06 (v1.0) and driver (ldlidar_stl_ros2).
-class Ldrobot : public ScannerDialogue {
+class Ldrobot : public ScannerProtocol {
 public:
     /// samples_hz: beams that it measures in a second.
     Ldrobot(int samples_hz, int baud, RevolutionAssembler &revolutions);

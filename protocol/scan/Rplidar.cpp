@@ -34,7 +34,7 @@ std::string withPayload(std::uint8_t command, std::initializer_list<int> payload
 } // namespace
 
 Rplidar::Rplidar(int baud, bool turnsByDtr, RevolutionAssembler &revolutions)
-    : ScannerDialogue(revolutions)
+    : ScannerProtocol(revolutions)
     , packets_(baud, revolutions)
     , turnsByDtr_(turnsByDtr) {}
 
@@ -53,7 +53,7 @@ void Rplidar::prepare(const std::string &prerequisite) {
 }
 
 void Rplidar::jump() {
-    ScannerDialogue::jump();
+    ScannerProtocol::jump();
     packets_.jump();
     skipped_ = 1; // it may begin within a packet, which is no damage
 }
@@ -62,7 +62,7 @@ bool Rplidar::hasModes() const {
     return firmware_ >= 124 || model_ >> 4 >= 4;
 }
 
-std::optional<ScannerDialogue::Request> Rplidar::request(int step) const {
+std::optional<ScannerProtocol::Request> Rplidar::request(int step) const {
     const std::optional<bool> dtr = turnsByDtr_ ? std::optional(false) : std::nullopt;
     const auto ask = [](std::string text) { return Request{Until::Answer, std::move(text), 500}; };
     const int low = mode_ & 0xFF, high = mode_ >> 8;
@@ -153,7 +153,8 @@ std::size_t Rplidar::takeAnswer(std::string_view bytes) {
     if (form == 0x04) {
         takeInfo(value);
     } else if (form == 0x06) {
-        takeHealth(value);
+        needsReset_ = takeHealth(value);
+        answered(Health);
     } else if (form == 0x15) {
         rates_us_ = {word(value), word(value + 2)};
         answered(Rates);
@@ -187,16 +188,6 @@ void Rplidar::takeInfo(const std::uint8_t *data) {
     answered(Info);
 }
 
-void Rplidar::takeHealth(const std::uint8_t *data) {
-    needsReset_ = data[0] == 2;
-    char text[80];
-    std::snprintf(text, sizeof text, "the scanner tells of a fault, code %04X%s", unsigned(word(data + 1)),
-                  needsReset_ ? "; it is reset" : "");
-    if (data[0] != 0)
-        problem_ = trouble_ = text;
-    answered(Health);
-}
-
 void Rplidar::takeConf(std::uint32_t what, const std::uint8_t *value, std::size_t size) {
     if (what == typicalMode && size >= 2) {
         mode_ = word(value);
@@ -211,7 +202,7 @@ void Rplidar::takeConf(std::uint32_t what, const std::uint8_t *value, std::size_
 }
 
 std::string Rplidar::farewell() const {
-    return ScannerDialogue::farewell() + (isOfS()   ? withPayload(0xA8, {0, 0})
+    return ScannerProtocol::farewell() + (isOfS()   ? withPayload(0xA8, {0, 0})
                                           : hasPwm_ ? withPayload(0xF0, {0, 0})
                                                     : std::string());
 }

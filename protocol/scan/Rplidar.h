@@ -1,7 +1,7 @@
 #pragma once
 
 #include "protocol/scan/RplidarPackets.h"
-#include "protocol/scan/ScannerDialogue.h"
+#include "protocol/scan/ScannerProtocol.h"
 
 #include <array>
 
@@ -9,7 +9,7 @@ namespace hermes::scan {
 
 /// Slamtec RPLIDAR, series A, C and S on serial lines. Asked who it is and how it is, its motor is started,
 /// and the mode that it calls typical is taken. Source: the maker's interface manual and SDK (2.1).
-class Rplidar : public ScannerDialogue {
+class Rplidar : public ScannerProtocol {
 public:
     /// turnsByDtr: the motor needs DTR low.
     Rplidar(int baud, bool turnsByDtr, RevolutionAssembler &revolutions);
@@ -27,7 +27,6 @@ private:
     std::size_t take(std::string_view bytes, const Arrival &arrival) override;
     std::size_t takeAnswer(std::string_view bytes);
     void takeInfo(const std::uint8_t *data);
-    void takeHealth(const std::uint8_t *data);
     void takeConf(std::uint32_t what, const std::uint8_t *value, std::size_t size);
     bool hasModes() const;
     bool isOfS() const { return model_ >> 4 >= 6; }

@@ -128,9 +128,12 @@ void RplidarPackets::take(const std::uint8_t *bytes, const Arrival &arrival, std
     // The SDK's figure: half a beam measured, and one that the device takes to work.
     const double late_ns = double(bytesSince) * byte_ns_ + 1.5 * clock_.sample_ns();
     const SampleClock::Time time =
-        clock_.take({head_deg, count, isGap_, arrival.stamp_ns - std::int64_t(late_ns),
-                     arrival.mono_ns - std::int64_t(late_ns)});
+        clock_.take({head_deg, count, isGap_, arrival.mono_ns - std::int64_t(late_ns)});
     revolutions_.setClockBound(time.bound_ns);
+    if (time.slips) {
+        revolutions_.slip();
+        hasLast_ = false; // its time was another
+    }
     if (time.lost > 0) {
         revolutions_.lose(time.lost);
         step_deg_ = isGap_ ? step_deg_ : 0; // it may have been wrong

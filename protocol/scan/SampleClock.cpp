@@ -8,13 +8,15 @@ namespace {
 
 constexpr double rateWindow_ns = 1e10; // long enough that packets that come late do not matter
 constexpr double leastStep_deg = 0.01; // a head that stands nearly
-constexpr double mostGone = 100;       // revolutions; more is a clock that was set
+constexpr double mostUnseen = 8;       // packets; of more the number is a guess
+constexpr double mostGone = 100;       // revolutions
 
 } // namespace
 
 void SampleClock::jump() {
-    clock_ = HostClock(period_ns);
+    clock_ = HostClock(period_ns, HostClock::Receiver::NeverJumps);
     head_deg_.reset();
+    last_ns_ = 0;
     rateSince_ns_ = 0;
 }
 
@@ -24,16 +26,21 @@ void SampleClock::expect(double head_deg, double step_deg) {
 }
 
 /// How many beams it measures is a setting of some models: the host's clock tells, where it is another than
-/// is known of it.
+/// is known of it. But for the first time two windows in a row must tell the same, as a
+/// host that was held up reads late.
 void SampleClock::followRate(double beams, std::int64_t mono_ns) {
     const double passed_ns = double(mono_ns - rateSince_ns_);
     rateBeams_ += beams;
-    if (passed_ns >= 0 && passed_ns < rateWindow_ns)
+    if (passed_ns >= 0 && passed_ns < rateWindow_ns && beams < mostUnseen * fullBeams_)
         return;
     const double each_ns = passed_ns / rateBeams_;
     const bool isPossible = each_ns > usual_ns_ / 4 && each_ns < usual_ns_ * 4;
-    if (passed_ns < 2 * rateWindow_ns && isPossible && std::abs(each_ns / sample_ns_ - 1) > 0.02)
-        sample_ns_ = each_ns;
+    const auto isOther = [each_ns](double than_ns) { return std::abs(each_ns / than_ns - 1) > 0.02; };
+    if (passed_ns >= rateWindow_ns && passed_ns < 2 * rateWindow_ns && isPossible) {
+        if (isOther(sample_ns_) && (windowBefore_ns_ <= 0 || !isOther(windowBefore_ns_)))
+            sample_ns_ = each_ns;
+        windowBefore_ns_ = each_ns;
+    }
     rateSince_ns_ = mono_ns;
     rateBeams_ = 0;
 }
@@ -48,7 +55,7 @@ SampleClock::Time SampleClock::take(const Packet &packet) {
         const double tolerance = packet.isBehindGap ? std::min(tolerance_, half) : tolerance_;
         missing = apart - around * std::floor((apart + tolerance) / around);
         if (packet.isBehindGap || missing > tolerance) {
-            const double passed = double(packet.mono_ns - lastMono_ns_) / sample_ns_ - packet.beams;
+            const double passed = double(packet.measured_ns - last_ns_) / sample_ns_ - packet.beams;
             missing = std::max(missing, 0.0);
             missing += std::clamp(std::round((passed - missing) / around), 0.0, mostGone) * around;
             const double packets = (missing - std::min(tolerance, half)) / fullBeams_;
@@ -60,11 +67,15 @@ SampleClock::Time SampleClock::take(const Packet &packet) {
         jump();
         lost = 1;
     }
-    followRate(packet.beams + missing, packet.mono_ns);
+    followRate(packet.beams + missing, packet.measured_ns);
     sensor_ns_ = std::fmod(sensor_ns_ + (packet.beams + missing) * sample_ns_, double(period_ns));
-    lastMono_ns_ = packet.mono_ns;
     const HostClock::Time time = clock_.take(std::int64_t(sensor_ns_), packet.measured_ns, 0);
-    return {time.stamp_ns, time.bound_ns, lost};
+    const double slip = double(time.stamp_ns - last_ns_) / sample_ns_ - packet.beams - missing; // beams
+    const double revolutions = head_deg_ ? slip * step_deg_ / 360 : 0;
+    const bool slips =
+        std::abs(revolutions) > 0.5 && std::abs(std::remainder(revolutions, 1)) < 0.25; // not by chance
+    last_ns_ = time.stamp_ns;
+    return {time.stamp_ns, time.bound_ns, lost, slips};
 }
 
 } // namespace hermes::scan

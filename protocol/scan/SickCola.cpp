@@ -28,19 +28,19 @@ double floatOf(std::uint32_t bits) {
 } // namespace
 
 SickCola::SickCola(RevolutionAssembler &revolutions)
-    : ScannerDialogue(revolutions)
-    , clock_(stampPeriod32_ns) {
+    : ScannerProtocol(revolutions)
+    , clock_(stampPeriod32_ns, HostClock::Receiver::NeverJumps) {
     identity_.model = "SICK";
 }
 
 void SickCola::jump() {
-    ScannerDialogue::jump();
-    clock_ = HostClock(stampPeriod32_ns);
+    ScannerProtocol::jump();
+    clock_ = HostClock(stampPeriod32_ns, HostClock::Receiver::NeverJumps);
     telegram_.reset();
 }
 
 /// It measures by itself. Only one that does not is started, which takes the rights of a client.
-std::optional<ScannerDialogue::Request> SickCola::request(int step) const {
+std::optional<ScannerProtocol::Request> SickCola::request(int step) const {
     static constexpr const char *texts[] = {"sEN LMDscandata 0", "sMN SetAccessMode 3 F4724744",
                                             "sMN LMCstartmeas", "sMN Run", "sEN LMDscandata 1"};
     if (step > Begin)
@@ -149,7 +149,7 @@ bool SickCola::takeScan(const Arrival &arrival) {
     if (words_[0] == "sSN")
         tellLost(telegram);
     const HostClock::Time time =
-        clock_.take(std::int64_t(stamp_us) * 1000, arrival.stamp_ns, std::int64_t(late_us) * 1000);
+        clock_.take(std::int64_t(stamp_us) * 1000, arrival.mono_ns, std::int64_t(late_us) * 1000);
     revolutions_.setClockBound(time.bound_ns);
     for (std::size_t i = 0; i < ranges.count; ++i) {
         const std::uint32_t value = hex(ranges.first + i);
@@ -175,7 +175,7 @@ bool SickCola::takeScan(const Arrival &arrival) {
 void SickCola::tellLost(std::uint32_t telegram) {
     const std::uint32_t lost = telegram_ ? (telegram - *telegram_ - 1) & 0xFFFF : 0;
     if (lost > 0 && lost < manyLost) {
-        revolutions_.loseSweeps(lost);
+        revolutions_.lose(lost);
         revolutions_.endSweep(); // what follows is whole
     }
     telegram_ = telegram;

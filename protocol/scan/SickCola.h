@@ -1,7 +1,7 @@
 #pragma once
 
 #include "protocol/scan/HostClock.h"
-#include "protocol/scan/ScannerDialogue.h"
+#include "protocol/scan/ScannerProtocol.h"
 
 #include <vector>
 
@@ -9,7 +9,7 @@ namespace hermes::scan {
 
 /// SICK TiM and LMS by CoLa A: telegrams of words between STX and ETX, numbers in hexadecimal. They have no
 /// checksum. Source: the maker's telegram listings and driver (sick_scan_xd).
-class SickCola : public ScannerDialogue {
+class SickCola : public ScannerProtocol {
 public:
     explicit SickCola(RevolutionAssembler &revolutions);
 

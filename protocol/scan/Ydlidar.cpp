@@ -2,7 +2,6 @@
 
 #include "protocol/scan/LittleEndian.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -17,7 +16,7 @@ constexpr double tolerance = 5;               // beams that packets may lie besi
 } // namespace
 
 Ydlidar::Ydlidar(Kind kind, const ScannerModel &model, RevolutionAssembler &revolutions)
-    : ScannerDialogue(revolutions)
+    : ScannerProtocol(revolutions)
     , kind_(kind)
     , isOneWay_(model.isOneWay)
     , motor_(model.motor)
@@ -28,7 +27,7 @@ Ydlidar::Ydlidar(Kind kind, const ScannerModel &model, RevolutionAssembler &revo
 }
 
 void Ydlidar::jump() {
-    ScannerDialogue::jump();
+    ScannerProtocol::jump();
     restart();
 }
 
@@ -38,7 +37,7 @@ void Ydlidar::restart() {
     skipped_ = 1; // it may begin within a packet, which is no damage
 }
 
-std::optional<ScannerDialogue::Request> Ydlidar::request(int step) const {
+std::optional<ScannerProtocol::Request> Ydlidar::request(int step) const {
     switch (isOneWay_ && step != Wake ? Scan : step) {
     case Wake: {
         Request wake{Until::Time, isOneWay_ ? std::string() : std::string(1, '\0'), 20};
@@ -93,10 +92,12 @@ std::size_t Ydlidar::takeAnswer(std::string_view bytes) {
     }
     if (bytes.size() < answerHead + length)
         return more;
-    if (form == 0x06)
-        takeHealth(data + answerHead);
-    else if (length == 20)
+    if (form == 0x06) {
+        needsReset_ = takeHealth(data + answerHead);
+        answered(Health);
+    } else if (length == 20) {
         takeInfo(data + answerHead);
+    }
     return answerHead + length;
 }
 
@@ -112,16 +113,6 @@ void Ydlidar::takeInfo(const std::uint8_t *data) {
         identity_.serial += text;
     }
     answered(Info);
-}
-
-void Ydlidar::takeHealth(const std::uint8_t *data) {
-    needsReset_ = data[0] == 2;
-    char text[80];
-    std::snprintf(text, sizeof text, "the scanner tells of a fault, code %04X%s", unsigned(word(data + 1)),
-                  needsReset_ ? "; it is reset" : "");
-    if (data[0] != 0)
-        problem_ = trouble_ = text;
-    answered(Health);
 }
 
 /// The exclusive or of all words but its own; an intensity of one byte counts alone.
@@ -159,10 +150,11 @@ std::size_t Ydlidar::takePacket(std::string_view bytes, const Arrival &arrival) 
     const double first_deg = (word(data + 4) >> 1) / 64.0;
     const double width_deg = std::fmod((word(data + 6) >> 1) / 64.0 - first_deg + 360, 360);
     const auto wire_ns = std::int64_t(double(bytes.size()) * byte_ns_);
-    const SampleClock::Time end =
-        clock_.take({first_deg, count, skipped_ > 0, arrival.stamp_ns - wire_ns, arrival.mono_ns - wire_ns});
+    const SampleClock::Time end = clock_.take({first_deg, count, skipped_ > 0, arrival.mono_ns - wire_ns});
     skipped_ = 0;
     revolutions_.setClockBound(end.bound_ns);
+    if (end.slips)
+        revolutions_.slip();
     if (end.lost > 0)
         revolutions_.lose(end.lost);
     if (count > 1 && width_deg > 0 && width_deg < 180)

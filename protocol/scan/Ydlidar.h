@@ -1,14 +1,14 @@
 #pragma once
 
 #include "protocol/scan/SampleClock.h"
-#include "protocol/scan/ScannerDialogue.h"
 #include "protocol/scan/ScannerModel.h"
+#include "protocol/scan/ScannerProtocol.h"
 
 namespace hermes::scan {
 
 /// YDLIDAR: packets of up to 80 beams, with one of a single beam where the head passes its mark. Revolutions
 /// are cut by the angle, as that packet may be lost. Source: the maker's protocol manual and SDK.
-class Ydlidar : public ScannerDialogue {
+class Ydlidar : public ScannerProtocol {
 public:
     enum class Kind {
         Triangulation, ///< X, G
@@ -31,7 +31,6 @@ private:
     std::size_t takePacket(std::string_view bytes, const Arrival &arrival);
     bool isRight(const std::uint8_t *bytes, int count) const;
     void takeInfo(const std::uint8_t *data);
-    void takeHealth(const std::uint8_t *data);
     void addBeam(const std::uint8_t *beam, double head_deg, std::int64_t stamp_ns);
 
     const Kind kind_;

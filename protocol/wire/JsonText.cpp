@@ -2,6 +2,8 @@
 
 #include "protocol/wire/JsonWriters.h"
 
+#include <QJsonDocument>
+
 namespace hermes {
 
 std::optional<QJsonValue> parseJson(const QByteArray &text, WireError *error) {
@@ -13,6 +15,13 @@ QByteArray compactJson(const QJsonValue &value) {
     JsonTextWriter writer;
     writer.json(value);
     return writer.take();
+}
+
+QString indentedJson(const QJsonValue &value) {
+    const QByteArray text = value.isObject()  ? QJsonDocument(value.toObject()).toJson().trimmed()
+                            : value.isArray() ? QJsonDocument(value.toArray()).toJson().trimmed()
+                                              : compactJson(value);
+    return QString::fromUtf8(text);
 }
 
 } // namespace hermes

@@ -3,7 +3,6 @@
 #include <QJsonArray>
 #include <QJsonObject>
 #include <QVariant>
-#include <cmath>
 
 namespace hermes {
 

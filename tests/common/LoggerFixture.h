@@ -58,9 +58,6 @@ private:
 struct Logger {
     explicit Logger(const QString &root, const QString &name = "logger")
         : recording(name, settings, health, writer) {
-        for (const Field &field : Recording::settingFields())
-            settings.declare(field);
-        settings.addRule(Recording::checkSettings);
         set("folder", root);
         set("free_floor_bytes", 0);
         set("free_warn_bytes", 0);

@@ -84,6 +84,26 @@ private Q_SLOTS:
         QVERIFY(client.callAndWait("hang").error().is(ErrorCode::Disconnected));
     }
 
+    // Its bytes are written at once, and so it is seen at once that nobody takes them.
+    void anUrgentCallFailsWithTheConnectionToo() {
+        QTcpServer server;
+        QVERIFY(server.listen(QHostAddress::LocalHost));
+        ConnectedClient client(QString("tcp://127.0.0.1:%1").arg(server.serverPort()));
+        QTRY_VERIFY(server.hasPendingConnections());
+        QTcpSocket *const peer = server.nextPendingConnection();
+        server.close();
+        peer->abort();
+        bool isWaiting = true;
+        client.call(
+            "stop", {}, [&isWaiting](const Result<QJsonValue> &) { isWaiting = false; },
+            std::chrono::hours(1), Client::Repeats::AtOnce);
+        QVERIFY(isWaiting); // its answer comes when it has returned
+        const auto result =
+            client.Client::callAndWait("stop", {}, std::chrono::hours(1), Client::Repeats::AtOnce);
+        QVERIFY(result.error().is(ErrorCode::Disconnected));
+        QTRY_VERIFY(!isWaiting && !client.isConnected());
+    }
+
     void reconnectsAndSubscribesAgain() {
         Client client;
         QSignalSpy connected(&client, &Client::connected);
@@ -154,6 +174,36 @@ private Q_SLOTS:
         QCOMPARE(client.rejected().unreadable, quint64(wrong.size()));
         VERIFY_STARTS(client.rejected().last, "topic a: stamp: found 1");
         QCOMPARE(failures, 1); // a reply without a subscription is no success
+    }
+
+    // On its way before the program goes on, whatever that computes next.
+    void urgentRequestsLeaveAtOnce() {
+        QTcpServer server;
+        QVERIFY(server.listen(QHostAddress(QHostAddress::LocalHost)));
+        Client client;
+        QVERIFY(client.connectTo(QString("127.0.0.1:%1").arg(server.serverPort())));
+        QTRY_VERIFY(client.isConnected() && server.hasPendingConnections());
+        QTcpSocket *const peer = server.nextPendingConnection();
+        client.call(
+            "halt", QJsonObject(), [](const auto &) {}, Client::defaultTimeout, Client::Repeats::AtOnce);
+        QVERIFY(peer->waitForReadyRead(1000)); // in which no events of the client are processed
+        VERIFY_CONTAINS(QString(peer->readAll()), QString("halt"));
+    }
+
+    // Who does not read holds nobody up: it waits behind what fills the sockets.
+    void urgentRequestsToWhoReadsNothingReturn() {
+        QTcpServer server;
+        QVERIFY(server.listen(QHostAddress(QHostAddress::LocalHost)));
+        Client client;
+        QVERIFY(client.connectTo(QString("127.0.0.1:%1").arg(server.serverPort())));
+        QTRY_VERIFY(client.isConnected() && server.hasPendingConnections());
+        server.nextPendingConnection()->setReadBufferSize(1);
+        for (int i = 0; i < 40; ++i)
+            client.call("usual", QJsonObject{{"text", QString(250000, 'x')}}, [](const auto &) {});
+        for (int i = 0; i < 20; ++i)
+            client.call(
+                "halt", QJsonObject(), [](const auto &) {}, Client::defaultTimeout, Client::Repeats::AtOnce);
+        QVERIFY(client.isConnected());
     }
 
     void closesFromInsideACallback() {

@@ -66,7 +66,7 @@ private Q_SLOTS:
 
     void eachCallOnceOnADamagedLine() {
         const QByteArray given = qgetenv("HERMES_CALLS");
-        const int calls = given.isEmpty() ? 400 : given.toInt(), atOnce = 4;
+        const int calls = given.isEmpty() ? 150 : given.toInt(), atOnce = 4;
         damage();
         int begun = 0, ended = 0, failed = 0;
         std::vector<double> took_s;
@@ -119,7 +119,7 @@ private Q_SLOTS:
         FETCH(bool, ofDaemon, bool, ofClient, bool, isDamaged);
         if (isDamaged)
             damage();
-        const int bytes = 1000000, stops = 60;
+        const int bytes = 1000000, stops = 30;
         int under = 0;
         const auto done = [&under](const Result<QJsonValue> &) { --under; };
         if (ofDaemon) {

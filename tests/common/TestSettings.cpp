@@ -73,7 +73,7 @@ private Q_SLOTS:
     void tableDeclaresAndFills() {
         Settings declared;
         ChargeSettings table;
-        table.declare([&](const Field &field) { declared.declare(field); });
+        table.declareIn(declared);
         QCOMPARE(declared.values(), QJsonObject({{"battery", QJsonObject{{"low_v", 21}, {"full_v", 25}}},
                                                  {"name", "left"},
                                                  {"port", 7000},

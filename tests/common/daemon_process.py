@@ -60,7 +60,8 @@ class CommandLine(unittest.TestCase):
     def test_usage_errors_name_the_option(self):
         for arguments, says in ((["--foo"], "--foo"), (["extra"], "extra"), (["--config"], "--config"),
                                 (["--set", "period_s"], "--set"), (["--set", "period=1"], "period"),
-                                (["--set", "period_s=0"], "from 0.001 to 60"), (["--check=1"], "--check")):
+                                (["--set", "period_s=0"], "from 0.001 to 60"), (["--check=1"], "--check"),
+                                (["--config="], "--config needs a value"), (["--listen", ""], "--listen needs a value")):
             shown = run(*arguments)
             self.assertEqual(shown.returncode, 2, arguments)
             self.assertIn(says, shown.stderr.splitlines()[-1], "the supervisor shows the last line")

@@ -9,6 +9,7 @@ class ControllerBench {
 public:
     using Bytes = hermes::roboclaw::Bytes;
     using Command = hermes::roboclaw::Command;
+    static constexpr qint32 fast = 30000; ///< counts/s: half a metre a second
     /// What was sent: when, to which controller (0, 1), what.
     struct Packet {
         double time;
@@ -32,8 +33,7 @@ public:
 
     explicit ControllerBench(int count = 2, double timeout_s = 0.2) {
         hermes::Settings values;
-        hermes::motorcontrol::declareMotorSettings(
-            [&](const hermes::Field &field) { values.declare(field); });
+        hermes::motorcontrol::declareMotorSettings(values);
         settings = hermes::motorcontrol::MotorSettings::from(values);
         settings.serialTimeout_s = timeout_s;
         std::vector<hermes::motorcontrol::MotorController *> onLine;
@@ -77,6 +77,13 @@ public:
                 return true;
         }
         return false;
+    }
+    /// With all motors, until they are fast.
+    void driveOff() {
+        QVERIFY2(runUntil([this] { return areReady(); }), qPrintable(controller(0).error()));
+        speed = fast;
+        QVERIFY(runUntil([this] { return fastest() > 0.95 * fast; }));
+        sent.clear();
     }
     bool areReady() {
         return std::all_of(controllers_.begin(), controllers_.end(), [](auto &c) { return c->isReady(); });

@@ -16,10 +16,7 @@ public:
         , name_(name)
         , asked_(asked)
         , recording(name, settings(), health(), writer) {
-        for (const Field &field : Recording::settingFields())
-            addSetting(field);
-        for (const Command &command : recording.commands())
-            addCommand(command);
+        addCommands(recording.commands());
         if (replays)
             addSourceCommands();
         if (prepare({name, "--listen", "tcp://127.0.0.1:0", "--set", "record.folder=" + root, "--set",

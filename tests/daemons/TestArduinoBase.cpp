@@ -1,197 +1,13 @@
 // A base of two wheels with an Arduino that speaks the text protocol, on a clock of its own: what is sent to
 // it, what stops it when it restarts, is not heard or loses bytes, and that no time is promised that it
 // cannot keep.
-#include "daemons/motorcontrol/DriveEngine.h"
-#include "daemons/motorcontrol/LineMaster.h"
+#include "ArduinoBench.h"
 #include "daemons/motorcontrol/MotorMessages.h"
 #include "protocol/drive/ArduinoDevice.h"
 
-#include <deque>
-
 using namespace hermes;
 using namespace hermes::motorcontrol;
-
-namespace {
-
-/// The device's end of the line, from the text of its firmware: letters until CR, of which the last before
-/// the blank counts; a missing argument is 0, what follows no number is left out.
-class FakeArduino {
-public:
-    std::array<double, 2> counts{}, speeds{}; ///< counts; counts/s
-    std::array<int, 2> perFrame{};            ///< as it was told
-    bool latched = false;                     ///< it answers, and keeps its set-point
-    bool answersEmpty = true;                 ///< "Invalid Command" to a CR alone
-    double sinceSetPoint = 10;
-
-    /// It hears nothing for so long, and begins anew.
-    void restart(double seconds) {
-        dead_ = seconds;
-        perFrame = {};
-        text_.clear();
-    }
-    void advance(double seconds) {
-        dead_ -= seconds;
-        sinceSetPoint += seconds;
-        if (sinceSetPoint >= 2)
-            perFrame = {};
-        for (std::size_t i = 0; i < 2; ++i) {
-            const double target = 30.0 * perFrame[i], most = 8000 * seconds; // counts/s^2
-            speeds[i] += std::clamp(target - speeds[i], -most, most);
-            counts[i] = dead_ > 0 ? 0 : counts[i] + speeds[i] * seconds;
-        }
-    }
-    std::string receive(std::uint8_t byte) {
-        if (dead_ > 0)
-            return {};
-        if (byte != '\r') {
-            text_.push_back(char(byte));
-            return {};
-        }
-        const std::string command = std::exchange(text_, {});
-        const auto blank = command.find(' ');
-        const char letter = command.empty() || blank == 0 ? 0 : command[std::min(blank, command.size()) - 1];
-        if (letter == 'e')
-            return std::to_string(std::int64_t(counts[0])) + ' ' + std::to_string(std::int64_t(counts[1])) +
-                   "\r\n";
-        if (letter != 'm')
-            return answersEmpty || letter != 0 ? "Invalid Command\r\n" : "";
-        int left = 0, right = 0;
-        std::sscanf(command.c_str() + blank, " %d", &left);
-        const auto second = command.find(' ', blank + 1);
-        if (second != std::string::npos)
-            std::sscanf(command.c_str() + second, " %d", &right);
-        sinceSetPoint = 0;
-        if (!latched)
-            perFrame = {left, right};
-        return "OK\r\n";
-    }
-    double fastest() const { return std::max(std::abs(speeds[0]), std::abs(speeds[1])); }
-
-private:
-    std::string text_;
-    double dead_ = 0;
-};
-
-QJsonObject arduinoSettings(const QJsonObject &more = {}) {
-    QJsonObject all{{"controllers", QJsonObject{{"kind", "arduino"}, {"timeout_s", 2}}},
-                    {"frame", QJsonObject{{"layout", "differential"},
-                                          {"wheel_radius_m", 0.033},
-                                          {"half_track_m", 0.1},
-                                          {"counts_per_turn", 3000}}},
-                    {"pid", QJsonObject{{"qpps", 6000}}},
-                    {"safety", QJsonObject{{"deceleration", 0.5}}},
-                    {"faults", QJsonObject{{"encoder_hold_s", 1.0}}},
-                    {"wheels", QJsonObject{{"front_right", QJsonObject{{"reversed", true}}}}},
-                    {"motion", QJsonObject{{"vx", 0.3}}}};
-    for (auto group = more.begin(); group != more.end(); ++group) {
-        QJsonObject values = all[group.key()].toObject();
-        const QJsonObject changed = group.value().toObject();
-        for (auto value = changed.begin(); value != changed.end(); ++value)
-            values[value.key()] = value.value();
-        all[group.key()] = values;
-    }
-    return all;
-}
-
-Result<MotorSettings> settingsOf(const QJsonObject &json) {
-    Settings settings;
-    declareMotorSettings([&](const Field &field) { settings.declare(field); });
-    settings.addRule(checkMotorSettings);
-    const auto set = settings.set(json);
-    if (!set)
-        return set.error();
-    return MotorSettings::from(settings);
-}
-
-struct Base {
-    struct Packet {
-        double time;
-        std::string text;
-    };
-
-    explicit Base(const MotorSettings &settings = *settingsOf(arduinoSettings()))
-        : engine(settings)
-        , line({&engine.controller(0)}) {
-        line.setOpen();
-    }
-
-    void run(double seconds) {
-        for (const double end = now + seconds; now < end;)
-            step();
-    }
-    bool runUntil(const std::function<bool()> &isSo, double limit = 10) {
-        for (const double end = now + limit; now < end; step()) {
-            if (isSo())
-                return true;
-        }
-        return false;
-    }
-    /// The program dies: the device alone goes on.
-    void die(double seconds) {
-        for (const double end = now + seconds; now < end; now += tick)
-            arduino.advance(tick);
-    }
-    bool isReady() { return engine.controller(0).isReady(); }
-    bool driveOff(double vx = 0.2) {
-        if (!runUntil([this] { return isReady(); }))
-            return false;
-        run(0.02); // the next cycle
-        if (!engine.drive().acquire(client, "test", 10, now))
-            return false;
-        speed = vx;
-        return runUntil([&] { return arduino.fastest() > 0.9 * vx / 0.033 * 3000 / 6.2832; }, 2);
-    }
-    /// Without the ramp.
-    void stop() {
-        speed = 0;
-        engine.drive().stop(client, "test");
-        engine.obey();
-    }
-    static bool isStop(const Packet &packet) { return packet.text.find("m 0 0\r") != std::string::npos; }
-
-    static constexpr double tick = 0.001;
-    static constexpr quint64 client = 1;
-    double now = 1, speed = 0;
-    FakeArduino arduino;
-    DriveEngine engine;
-    LineMaster line;
-    std::vector<Packet> sent;
-    /// What arrives of what is sent, and of what is answered.
-    std::function<std::string(const std::string &)> hears = [](const std::string &text) { return text; },
-                                                    passes = [](const std::string &text) { return text; };
-
-private:
-    void step() {
-        now += tick;
-        arduino.advance(tick);
-        if (now >= nextCycle_) {
-            nextCycle_ += 0.02;
-            engine.cycle(now);
-            if (engine.drive().lease().isHeldBy(client))
-                engine.drive().driveTwist(client, {speed, 0, 0}, 0, now);
-            engine.obey();
-        }
-        while (!answers_.empty() && answers_.front().time <= now) {
-            const std::string text = answers_.front().text;
-            answers_.pop_front();
-            line.feed(reinterpret_cast<const std::uint8_t *>(text.data()), text.size(), now);
-        }
-        while (const drive::Bytes *packet = line.poll(now)) {
-            sent.push_back(
-                {now, std::string(reinterpret_cast<const char *>(packet->data()), packet->size())});
-            for (const char letter : hears(sent.back().text)) {
-                const std::string answer = passes(arduino.receive(std::uint8_t(letter)));
-                if (!answer.empty())
-                    answers_.push_back({now + 0.004, answer});
-            }
-        }
-    }
-
-    double nextCycle_ = 1;
-    std::deque<Packet> answers_;
-};
-
-} // namespace
+using Base = ArduinoBench;
 
 class TestArduinoBase : public QObject {
     Q_OBJECT
@@ -208,7 +24,8 @@ private Q_SLOTS:
         const Telemetry &told = base.engine.report();
         QVERIFY2(std::abs(told.twist.vx - 0.2) < 0.005, saying(told.twist.vx));
         QCOMPARE(told.controllers.size(), std::size_t(1));
-        QCOMPARE(told.controllers[0].timeout_s, 2.0);
+        QCOMPARE(told.controllers[0].timeout_s.value_or(0), 2.0);
+        QVERIFY(told.controllers[0].coasts);
         QVERIFY(told.pose.x > 0.2 && std::abs(told.pose.theta) < 0.01);
         base.speed = 0;
         QVERIFY(base.runUntil([&] { return base.arduino.fastest() == 0; }, 0.6));
@@ -227,6 +44,14 @@ private Q_SLOTS:
         base.run(5);
         QVERIFY(!base.isReady());
         VERIFY_CONTAINS(base.engine.controller(0).error(), QString("controllers.timeout_s promises 0.2 s"));
+        for (int i = 0; i < 100; ++i) { // it stands all the time, and that is known
+            base.run(0.01);
+            QVERIFY(base.engine.controller(0).stands());
+        }
+        base.passes = [](const std::string &) { return std::string(); };
+        QVERIFY(base.runUntil([&] { return !base.engine.controller(0).stands(); }, 0.3)); // nor is it heard
+        base.passes = [](const std::string &text) { return text; };
+        QVERIFY(base.runUntil([&] { return base.engine.controller(0).stands(); }, 5));
         for (const auto &packet : base.sent)
             QVERIFY(Base::isStop(packet) || packet.text.find('m') == std::string::npos);
         settings.serialTimeout_s = 2;
@@ -237,34 +62,7 @@ private Q_SLOTS:
         QVERIFY(base.runUntil([&] { return base.arduino.fastest() == 0; }, 1));
         base.run(3);
         QVERIFY(!base.isReady() && base.arduino.fastest() == 0);
-    }
-
-    void settingsFitTogether_data() {
-        const Rows<QJsonObject, QString> row("changes", "refused");
-        row("as they should", QJsonObject(), QString());
-        row("a time that it cannot keep", {{"controllers", QJsonObject{{"timeout_s", 0.5}}}},
-            QString("controllers.timeout_s"));
-        row("a RoboClaw for so long", {{"controllers", QJsonObject{{"kind", "roboclaw"}}}},
-            QString("controllers.timeout_s"));
-        row("mecanum", {{"frame", QJsonObject{{"layout", "mecanum"}}}}, QString("frame.layout"));
-        row("two wheels on one motor", {{"wheels", QJsonObject{{"front_left", QJsonObject{{"motor", 2}}}}}},
-            QString("wheels.front_right.motor"));
-        row("on a second controller",
-            {{"wheels", QJsonObject{{"front_left", QJsonObject{{"controller", 2}}}}}},
-            QString("wheels.front_left.controller"));
-        row("too coarse",
-            {{"frame", QJsonObject{{"counts_per_turn", 300}}}, {"pid", QJsonObject{{"qpps", 600}}}},
-            QString("faults.encoder_commanded_rad_s"));
-    }
-
-    void settingsFitTogether() {
-        FETCH(QJsonObject, changes, QString, refused);
-        const auto settings = settingsOf(arduinoSettings(changes));
-        const QString message = settings ? QString() : settings.error().message;
-        if (refused.isEmpty())
-            QCOMPARE(message, refused);
-        else
-            VERIFY_CONTAINS(message, refused);
+        QCOMPARE(base.engine.report().twist.vx, 0.0); // not what it was when it was read last
     }
 
     void theWayWithoutThisProgramIsTold() {
@@ -336,6 +134,37 @@ private Q_SLOTS:
         QVERIFY2(std::abs(base.engine.report().pose.x - x) < 0.1, saying(base.engine.report().pose.x - x));
     }
 
+    // A digit that is lost makes a wrong number, and an answer that is lost one that comes too late: neither
+    // is a restart.
+    void damageIsNoRestart() {
+        Base base;
+        QVERIFY(base.driveOff());
+        const double x = base.engine.report().pose.x, begin = base.now;
+        int answers = 0;
+        base.passes = [&](const std::string &text) {
+            const bool isCounts = text.size() > 6 && text[0] != 'O' && text[0] != 'I';
+            ++answers;
+            return isCounts && answers % 20 == 7 ? text.substr(1) : answers % 50 == 33 ? std::string() : text;
+        };
+        base.run(5);
+        QVERIFY(base.isReady());
+        QCOMPARE(base.engine.controller(0).readings().restarts, 0);
+        const double way = base.engine.report().pose.x - x;
+        QVERIFY2(std::abs(way - 0.2 * (base.now - begin)) < 0.02, saying(way));
+    }
+
+    // Whose encoders have no supply any more stands by its counts, while it still rolls.
+    void noStandBeforeItCanHaveBraked() {
+        Base base;
+        QVERIFY(base.driveOff(0.3));
+        base.arduino.showsCounts = false;
+        base.run(0.3);
+        base.stop();
+        const double begin = base.now;
+        QVERIFY(base.runUntil([&] { return base.engine.controller(0).stands(); }, 3));
+        QVERIFY2(base.now - begin > 0.9 * 0.3 / 0.5, saying(base.now - begin)); // safety.deceleration
+    }
+
     // What is left of a command in its buffer would take the next one in.
     void aLostEndSwallowsNoStop_data() {
         const Rows<bool> row("answersEmpty");
@@ -387,6 +216,27 @@ private Q_SLOTS:
         }
         base.passes = [](const std::string &text) { return text; };
         QVERIFY(base.runUntil([&] { return base.isReady(); }, 6));
+    }
+
+    // The zero that was sent last may be lost: so long as it turns it is not told to stand.
+    void whoHasNotHeardItsStopMayTurn_data() {
+        const Rows<double> row("later");
+        row("at once", 0);
+        row("before it is lost", 0.1);
+        row("when it is lost", 0.4);
+    }
+    void whoHasNotHeardItsStopMayTurn() {
+        QFETCH(double, later);
+        Base base;
+        QVERIFY(base.driveOff());
+        base.hears = [](const std::string &) { return std::string(); };
+        base.run(later);
+        base.stop();
+        QVERIFY(base.runUntil([&] { return !base.isReady(); }, 1));
+        const auto mayTurn = [&] { return base.engine.controller(0).mayTurn(); };
+        QVERIFY(base.runUntil([&] { return base.arduino.fastest() == 0 || !mayTurn(); }, 4));
+        QVERIFY(mayTurn());
+        QVERIFY(base.runUntil([&] { return !mayTurn(); }, 4)); // nor for ever
     }
 
     void whoDoesNotObeyIsStoppedBySilence() {

@@ -146,7 +146,7 @@ private Q_SLOTS:
     void restartLosesTheCounts() {
         send("m 100 100\r");
         pass(0.5);
-        arduino().restart();
+        arduino().restart(ArduinoEmulator::restartTime);
         pass(1.9);
         QCOMPARE(send("e\r"), QByteArray());
         QVERIFY(!drivetrain_.isMoving());
@@ -217,10 +217,11 @@ private:
     void make(const ArduinoEmulator::Options &options) {
         Drivetrain::Options robot;
         robot.base.kind = WheelBase::Kind::Differential;
+        robot.kind = "arduino";
         robot.arduino = options;
         drivetrain_ = Drivetrain(robot);
     }
-    ArduinoEmulator &arduino() { return *drivetrain_.arduino(); }
+    MotorEmulator &arduino() { return drivetrain_.controller(0); }
     QByteArray send(const QByteArray &bytes) {
         QByteArray answer;
         for (const auto &part :

@@ -106,7 +106,7 @@ private Q_SLOTS:
         Telemetry told = ready();
         told.controllers[1].readings.battery_v = 24.2;
         const auto reading = batteryOf(told);
-        QVERIFY(reading && reading->voltages == (std::array{24.0, 24.2}) && reading->motors_a == 8);
+        QVERIFY(reading && reading->voltages == (std::vector{24.0, 24.2}) && reading->motors_a == 8);
         told.controllers[0].ready = false; // half of the current is no guess for all of it
         QVERIFY(!batteryOf(told));
         QCOMPARE(batteryOf(told).error().message, QString("no controller tells voltage and current"));
@@ -118,7 +118,7 @@ private Q_SLOTS:
         told.controllers[1].readings.duty.reset();
         QVERIFY(!batteryOf(told));
         QCOMPARE(batteryOf(told).error().message,
-                 QString("controller 2 answers, but not command 48 (duties)"));
+                 QString("controller 2 does not tell the duties of its motors"));
         const PowerMessage power = powerOf(told, {});
         QVERIFY(asJson(power.controllers[0]).toObject().contains("duty"));
         const QJsonObject without = asJson(power.controllers[1]).toObject();

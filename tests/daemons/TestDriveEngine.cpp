@@ -31,9 +31,9 @@ private Q_SLOTS:
         QCOMPARE(told.counterJumps, 0ULL);
         QVERIFY(!told.latch.isSet());
         QVERIFY(away(drive) < 0.02);
-        for (int i = 0; i < controllerCount; ++i) {
+        for (int i = 0; i < drive.engine.controllers(); ++i) {
             QVERIFY(drive.engine.controller(i).readings().setups == 1);
-            QCOMPARE(drive.robot.controller(i).serialTimeout(), 0.2);
+            QCOMPARE(drive.robot.controller(i).timeout(), 0.2);
             for (int motor : {0, 1})
                 QCOMPARE(drive.robot.controller(i).channel(motor).pid().qpps, 150000.0);
         }
@@ -57,11 +57,43 @@ private Q_SLOTS:
         drive.run(2, 0.001);
         drive.stall(0.5);
         drive.run(0.05, 0.001);
-        for (int i = 0; i < controllerCount; ++i)
+        for (int i = 0; i < drive.engine.controllers(); ++i)
             QVERIFY2(drive.engine.controller(i).isReady(), qPrintable(drive.engine.controller(i).error()));
         drive.rest(1);
         QCOMPARE(drive.engine.report().counterJumps, 0ULL);
         QVERIFY2(away(drive) < 0.01, saying(away(drive)));
+    }
+
+    // Settings that are changed while the daemon ends do not let it drive again.
+    void whoIsRetiredDrivesNoMore() {
+        VirtualDrive drive(0);
+        drive.run(2, 0.001);
+        QVERIFY(drive.engine.controller(0).isReady() && drive.engine.controller(1).isReady());
+        drive.engine.retire("the daemon is stopping");
+        Settings settings;
+        declareMotorSettings(settings);
+        drive.engine.configure(MotorSettings::from(settings));
+        const auto acquired = drive.engine.drive().acquire(2, "another", 10, 10);
+        QVERIFY(!acquired);
+        VERIFY_CONTAINS(acquired.error().message, QString("the daemon is stopping"));
+    }
+
+    // A wheel whose controller is not open would be left behind.
+    void wheelsThatWaitForAControllerAreToldOn() {
+        Settings values;
+        declareMotorSettings(values);
+        const MotorSettings both = MotorSettings::from(values);
+        MotorSettings one = both;
+        one.controllers.resize(1);
+        for (WheelMount &wheel : one.wheels)
+            if (wheel.controller > 0)
+                wheel = WheelMount::none();
+        DriveEngine engine(one);
+        QCOMPARE(engine.report().unopened, QString());
+        engine.configure(both);
+        VERIFY_CONTAINS(engine.report().unopened, QString("the wheels need controller 2"));
+        VERIFY_CONTAINS(engine.report().haltReason, QString("the wheels need controller 2"));
+        QVERIFY(!engine.drive().acquire(1, "test", 10, 1));
     }
 
     void drivingNeedsNoMoreMemory() {
@@ -74,7 +106,7 @@ private Q_SLOTS:
 private:
     static quint64 failures(VirtualDrive &drive) {
         quint64 all = drive.line.strayBytes();
-        for (int i = 0; i < controllerCount; ++i) {
+        for (int i = 0; i < drive.engine.controllers(); ++i) {
             const auto &counts = drive.line.counts(drive.engine.controller(i));
             all += counts.timeouts + counts.crcErrors + counts.unexpected;
         }

@@ -30,6 +30,8 @@ static QString difference(const MappedDrive &a, const MappedDrive &b) {
                           std::abs(std::remainder(p.theta - q.theta, 2 * vectorlib::pi))});
         if (a.edges()[i].size() != b.edges()[i].size())
             return QString("edges of scan %1").arg(i);
+        if (a.own()[i] != b.own()[i])
+            return QString("own edges of scan %1").arg(i);
         for (std::size_t e = 0; e < a.edges()[i].size(); ++e)
             apart = std::max(apart, 1e-4 * (a.edges()[i][e].sums.mean - b.edges()[i][e].sums.mean).norm());
     }
@@ -281,7 +283,7 @@ private:
             if (at != before)
                 motion = motion * Transformation2D(0, 0, 0.0005);
             memory.add(points, eyes.edges(), i ? motion : Transformation2D(way[0]),
-                       i == from ? first : TrackedBy::Map);
+                       i == from ? first : TrackedBy::Map, i % 400 == 7 ? 1 : MappedDrive::all);
             if (memory.loops.isDue())
                 memory.loops.correct();
         }

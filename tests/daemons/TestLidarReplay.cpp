@@ -155,12 +155,11 @@ private Q_SLOTS:
         QVERIFY(listener.play(1));
         QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
         listener.feed.player().playback().setPaused(true);
-        std::uint64_t packets = 0; // one may be on its way
-        QTRY_VERIFY(packets == std::exchange(packets, listener.feed.counts().packets.packets));
+        const std::uint64_t packets = listener.feed.counts().packets.packets + 1; // one may be on its way
         auto timer = runningTimer();
         while (timer.elapsed() < 700) // in which 1200 packets would have been played
             QTest::qWait(10);
-        QCOMPARE(listener.feed.counts().packets.packets, packets);
+        QVERIFY(listener.feed.counts().packets.packets <= packets);
         QVERIFY(listener.feed.player().playback().status().paused && !listener.ended);
         listener.feed.player().playback().setPaused(false);
         QVERIFY(listener.waitForEnd()); // and does not hurry to catch up: the rest takes its time

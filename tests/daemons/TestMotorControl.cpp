@@ -35,7 +35,7 @@ private Q_SLOTS:
                     QCOMPARE(controller.channel(motor).pid().d, 0.0);
                     QCOMPARE(controller.channel(motor).pid().qpps, 140000.0);
                 }
-                QCOMPARE(controller.serialTimeout(), 0.2);
+                QCOMPARE(controller.timeout(), 0.2);
             }
         });
         QTRY_COMPARE(healthItem("controller_1")["values"].toObject()["version"].toString(),
@@ -308,54 +308,5 @@ private Q_SLOTS:
         daemon_->shutDown();
         QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now()); // the last bytes may still be in the line
         daemon_.reset();
-    }
-
-    void settingsAreCheckedAgainstEachOther_data() {
-        const Rows<QStringList, QString> row("settings", "path");
-        row("a path alone", {"controllers.1.url=/dev/ttyACM0"}, "controllers.1.url");
-        row("unknown scheme", {"controllers.2.url=serail:///dev/ttyACM0"}, "controllers.2.url");
-        row("one address twice", {"controllers.2.address=128"}, "controllers.2.address");
-        row("one motor twice", {"wheels.rear_left.controller=1"}, "wheels.rear_left.motor");
-        row("thresholds crossed", {"faults.battery_v=24"}, "faults.battery_v");
-        row("encoder fault while braking", {"safety.deceleration=1"}, "faults.encoder_hold_s");
-        row("motor.wheels is faster than any twist",
-            {"motion.vx=0.1", "motion.vy=0.1", "motion.omega=0.1", "safety.deceleration=2"},
-            "faults.encoder_hold_s");
-        row("a fault that comes too late", {"faults.encoder_hold_s=5"}, "faults.encoder_hold_s");
-        row("turning counts as standing",
-            {"faults.encoder_moving_rad_s=0.9", "faults.encoder_commanded_rad_s=0.9"},
-            "faults.encoder_moving_rad_s");
-        row("standing may be a command", {"faults.encoder_commanded_rad_s=5"},
-            "faults.encoder_commanded_rad_s");
-        row("an encoder that shows no turning", {"frame.counts_per_turn=50", "pid.qpps=150"},
-            "frame.counts_per_turn");
-    }
-
-    void settingsAreCheckedAgainstEachOther() {
-        FETCH(QStringList, settings, QString, path);
-        MotorControl daemon;
-        const auto result = daemon.settings().set([&] {
-            QJsonObject values;
-            for (const QString &text : settings) {
-                const auto assignment = parseAssignment(text);
-                values = withValueAt(values, assignment->first, assignment->second);
-            }
-            return values;
-        }());
-        QVERIFY(!result.ok());
-        QVERIFY(result.error().is(ErrorCode::InvalidSetting));
-        QCOMPARE(result.error().data["errors"].toArray().first().toObject()["path"].toString(), path);
-    }
-
-    void aTenthOfAVoltIsEnough() {
-        MotorControl daemon;
-        const auto set = [&](double empty_v, double full_v) {
-            const QJsonObject battery{{"empty_v", empty_v}, {"full_v", full_v}};
-            return daemon.settings().set({{"battery", battery}}).ok();
-        };
-        for (int tenths = 10; tenths < 599; ++tenths)
-            QVERIFY2(set(tenths / 10.0, (tenths + 1) / 10.0), saying(tenths));
-        QVERIFY(!set(24.8, 24.89));
-        QVERIFY(!set(24.8, 24.8));
     }
 };

@@ -232,8 +232,9 @@ private Q_SLOTS:
             QCOMPARE(heard == text, wanted == baud);
             if (wanted == baud)
                 QTRY_VERIFY(came.endsWith(text));
+            else // what is on its way yet comes when the speed fits again
+                QVERIFY(!came.contains(text));
         }
-        QVERIFY(!came.contains("9600"));
     }
 
     void programMayBeBehindForAWhile() {

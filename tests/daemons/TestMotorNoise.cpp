@@ -43,7 +43,7 @@ private Q_SLOTS:
         QVERIFY2(away < 0.02, saying(away));
         rig_->with([](auto &all) {
             for (const RoboClawEmulator &controller : all) {
-                QCOMPARE(controller.serialTimeout(), 0.2);
+                QCOMPARE(controller.timeout(), 0.2);
                 for (int motor : {0, 1})
                     QCOMPARE(controller.channel(motor).pid().qpps, 150000.0);
             }

@@ -56,10 +56,8 @@ public:
     Rig(const QString &root, const QString &kind)
         : isLidar_(kind == "velodynelogger") {
         serial_.setPorts({{"gps", "", &queue_}});
-        recording_ = std::make_unique<Recording>(kind, settings_, health_, writer());
-        for (const auto &fields : {Recording::settingFields(), Recording::rotationFields()})
-            for (const Field &field : fields)
-                settings_.declare(field);
+        recording_ =
+            std::make_unique<Recording>(kind, settings_, health_, writer(), Recording::Files::Several);
         const QJsonObject values{{"folder", root},
                                  {"free_floor_bytes", 0},
                                  {"free_warn_bytes", 0},

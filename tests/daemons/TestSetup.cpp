@@ -42,6 +42,8 @@ private Q_SLOTS:
     void moreThanTwoControllersAreNotChosenFrom();
     void whatIsSimulatedIsNoRobot();
     void oneControllerIsNoRobot();
+    void oneOfAnotherKindIs_data();
+    void oneOfAnotherKindIs();
     void receiversAreAddedOnce();
     void lidarAndProcesses();
     void writesAndPutsBack();
@@ -144,6 +146,37 @@ void TestSetup::oneControllerIsNoRobot() {
     QVERIFY(proposal.settings.isEmpty());
     QVERIFY2(proposal.notes.first().contains("1 RoboClaws were found, two drive a robot"),
              qPrintable(proposal.notes.join('\n')));
+    const auto none = propose({{}, {}, {}, {}}, {}, "/etc/hermes");
+    QVERIFY2(none.notes.first().contains("no motor controllers were found"),
+             qPrintable(none.notes.join('\n')));
+}
+
+void TestSetup::oneOfAnotherKindIs_data() {
+    const Rows<QString, double> row("kind", "timeout_s");
+    row("arduino", "arduino", 2);
+    row("vesc", "vesc", 1);
+    row("opencr", "opencr", 0.5);
+    row("roboteq", "roboteq", 0.2);
+}
+
+void TestSetup::oneOfAnotherKindIs() {
+    FETCH(QString, kind, double, timeout_s);
+    FoundSerial line = controllers("/dev/a", {});
+    line.kind = kind;
+    const QJsonObject motors =
+        propose({{line}, {}, {}, {}}, {}, "/etc/hermes").settings["motorcontrol"].toObject();
+    const QJsonObject expected{
+        {"kind", kind}, {"timeout_s", timeout_s}, {"1", QJsonObject{{"url", "serial:///dev/a?baud=115200"}}}};
+    QCOMPARE(motors["controllers"].toObject(), expected);
+    QCOMPARE(motors["frame"]["layout"].toString(), QString("two_wheels"));
+    const QJsonObject counted =
+        merged({{"motorcontrol", motors}}, json(R"({"motorcontrol": {"controllers": {"count": 1}}})"));
+    const auto back = propose({{controllers("/dev/a", {0x80, 0x81})}, {}, {}, {}}, counted, "/etc/hermes");
+    const QJsonObject then = merged(counted, back.settings)["motorcontrol"].toObject();
+    QCOMPARE(then["controllers"]["kind"].toString(), QString("roboclaw"));
+    QCOMPARE(then["controllers"]["timeout_s"].toDouble(), 0.2);
+    QCOMPARE(then["controllers"]["count"].toInt(-1), 0);
+    QCOMPARE(then["frame"]["layout"].toString(), QString("two_wheels"));
 }
 
 void TestSetup::receiversAreAddedOnce() {

@@ -44,7 +44,7 @@ private Q_SLOTS:
     }
 
     void packetsAreSentAtTheirRate() {
-        if (qEnvironmentVariableIsSet("HERMES_SLOWNESS"))
+        if (slowness > 5)
             QSKIP("1808 packets a second need real time, which an emulator (HERMES_SLOWNESS) does not have");
         QUdpSocket receiver;
         QVERIFY(receiver.bind(QHostAddress(QHostAddress::LocalHost), 0));

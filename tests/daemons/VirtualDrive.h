@@ -60,8 +60,7 @@ private:
 
     static hermes::motorcontrol::MotorSettings defaults() {
         hermes::Settings settings;
-        hermes::motorcontrol::declareMotorSettings(
-            [&](const hermes::Field &field) { settings.declare(field); });
+        hermes::motorcontrol::declareMotorSettings(settings);
         return hermes::motorcontrol::MotorSettings::from(settings);
     }
 

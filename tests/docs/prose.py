@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Fails on sentences of more than 30 words in the manual and in the help texts of the programs. What must be longer has a line in
-prose_allowed.txt: the beginning of the sentence, a tab, the reason. Fails also where a page says wrongly how many lines a file has."""
+prose_allowed.txt: the beginning of the sentence, a tab, the reason. Fails also where a page has more than 500 lines, or says wrongly how
+many a file has."""
 import glob
 import os
 import re
@@ -10,6 +11,7 @@ import sys
 import pages
 
 MOST_WORDS = 30
+MOST_LINES = 500  # a page that grows past this is two pages, or too long
 GENERATED = {"docs/protocol-reference.md"}  # of the programs' own texts, where tests/layout and the descriptions are judged
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(pages.SOURCE, "build", "release", "bin"))
 
@@ -25,8 +27,10 @@ def help_sentences(program):
 
 
 def miscounts(page, text):
-    """Where the page says "in N lines" behind a link to a file, or to a page whose longest block that is, and is wrong. "About" may be off
-    by a fifth."""
+    """Where the page has too many lines, or says "in N lines" behind a link to a file, or to a page whose longest block that is, and is
+    wrong. "About" may be off by a fifth."""
+    if page not in GENERATED and text.count("\n") > MOST_LINES:
+        yield f"{page}: {text.count(chr(10))} lines, at most {MOST_LINES} are permitted"
     for link, kind, said in re.findall(r"\]\(([^)#:]+)\)(?:(?!\]\(|\.\s).){0,80}?\b((?:about|less\sthan)\s)?([\d,]+)\slines", text, re.S):
         path = os.path.normpath(os.path.join(os.path.dirname(page), link))
         if path.endswith(".md"):
@@ -51,7 +55,7 @@ def main():
         texts.update({os.path.basename(p): list(help_sentences(p)) for p in sorted(glob.glob(os.path.join(BINARIES, "hermes*")))})
     if all(len(s.split()) <= 5 for found in texts.values() for _, s in found):
         sys.exit("the check itself finds no sentences")
-    if len(list(miscounts("README.md", "[a](LICENSE), in 3\nlines, [b](LICENSE) in about 21 lines. Then 5 lines"))) != 1:
+    if len(list(miscounts("README.md", "[a](LICENSE), in 3\nlines, [b](LICENSE) in about 21 lines. Then 5 lines" + MOST_LINES * "\n"))) != 2:
         sys.exit("the check itself counts no lines")
     count = wrong = 0
     for page in wanted:

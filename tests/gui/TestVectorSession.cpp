@@ -5,6 +5,9 @@
 #include "tests/daemons/Pillars.h"
 #include "tests/support/SessionFolder.h"
 #include "vectorlib/io/Tum.h"
+#include "vectorlib/observation/SimulatedScanner.h"
+
+#include <tuple>
 
 namespace simulator = hermes::simulator;
 namespace velodyne = hermes::velodyne;
@@ -19,6 +22,8 @@ class TestVectorSession : public QObject {
     SessionFolder session_;
     std::vector<vectorlib::StampedPose> truth_; // of the sensor
     int messages_ = 0;
+    const QByteArray settings_ =
+        R"({"matcher":{"compensate_motion":true,"expected_deviation_m":0.05,"expected_deviation_rad":0.1,"permitted_m":0.5,"permitted_rad":0.4,"min_matched_share":0.15,"relocalize_after":10,"relocalize_s":3,"sigma_m":0.02},"sensor":{"x_m":0.2,"y_m":0,"theta_rad":0}})";
 
     /// A drive through the room with pillars; its wheels slip by 1 %.
     void record() {
@@ -89,10 +94,7 @@ class TestVectorSession : public QObject {
 
 private Q_SLOTS:
     void initTestCase() {
-        session_.add(
-            0, "scanmatcher/settings",
-            QByteArray(
-                R"({"matcher":{"compensate_motion":true,"expected_deviation_m":0.05,"expected_deviation_rad":0.1,"permitted_m":0.5,"permitted_rad":0.4,"min_matched_share":0.15,"relocalize_after":10,"relocalize_s":3,"sigma_m":0.02},"sensor":{"x_m":0.2,"y_m":0,"theta_rad":0}})"));
+        session_.add(0, "scanmatcher/settings", settings_);
         for (const char *const wrong : {"", "[", R"({"pose":1})", R"({"pose":{"x":1e999}})"})
             session_.add(0, "motorcontrol/odometry", QByteArray(wrong));
         record();
@@ -133,6 +135,55 @@ private Q_SLOTS:
         QVERIFY(QFile::copy(partPath(1), other));
         refused(run({"map", session_.path()}), 1, "found two captures");
         QVERIFY(QFile::remove(other));
+    }
+
+    // One ahead, one back; a third is on no robot that the matcher knows.
+    void twoScannersMakeOneMap_data() { falseAndTrue("both", "the first alone", "both"); }
+    void twoScannersMakeOneMap() {
+        QFETCH(bool, both);
+        using Point = vectorlib::Vector2D<float>;
+        const std::vector<vectorlib::LineSegment2D<float>> room{{Point(-3, -2), Point(6, -2)},
+                                                                {Point(6, -2), Point(6, 3)},
+                                                                {Point(6, 3), Point(-3, 2)},
+                                                                {Point(-3, 2), Point(-3, -2)}};
+        SessionFolder folder;
+        folder.addresses = {{"scanner@127.0.0.1:7470", "tcp://127.0.0.1:7470"},
+                            {"scanner", "tcp://127.0.0.1:7471"},
+                            {"laser", "tcp://127.0.0.1:7472"}};
+        QByteArray settings = settings_;
+        settings.chop(1);
+        folder.add(0, "scanmatcher/settings",
+                   settings + R"(,"source":{"address":"127.0.0.1:7470"},"source2":{"address":")" +
+                       (both ? "127.0.0.1:7471" : "") +
+                       R"("},"sensor2":{"x_m":-0.2,"y_m":0,"theta_rad":3.141592654}})");
+        vectorlib::SimulatedScanner<> scanner;
+        scanner.rays = 401;
+        scanner.fieldOfView = 200 * vectorlib::pi / 180;
+        for (int i = 0; i < 60; ++i)
+            for (const auto &[daemon, mount, late] :
+                 {std::tuple("scanner", vectorlib::Pose2D{-0.2, 0, vectorlib::pi}, 0.03),
+                  {"laser", vectorlib::Pose2D{0, 0, 1}, 0.05},
+                  {"scanner@127.0.0.1:7470", vectorlib::Pose2D{0.2, 0, 0}, 0.08}}) {
+                const double t = 0.1 * i + late;
+                QJsonArray x, y;
+                for (const Point &p : scanner(room, vectorlib::Pose2D{0.5 * t, 0, 0.1 * t} * mount)) {
+                    x.append(double(p.x));
+                    y.append(double(p.y));
+                }
+                folder.add(
+                    t, QString(daemon) + "/scan2d",
+                    QJsonDocument(QJsonObject{{"stamp", t}, {"rays", 720}, {"x", x}, {"y", y}}).toJson());
+            }
+        folder.finish();
+        const Result map = ran({"map", folder.path(), "--out-map", folder.filePath("map.csv"), "--force"});
+        QCOMPARE(json(map.out)["matched"].toInt(), 60);
+        const QByteArray told =
+            both ? "scanner@127.0.0.1:7470/scan2d and scanner/scan2d are two scanners of one robot; "
+                   "left out: laser/scan2d"
+                 : "left out: laser/scan2d, scanner/scan2d";
+        QVERIFY2(map.err.contains(told), map.err);
+        QByteArray walls = contentOf(folder.filePath("map.csv"));
+        QCOMPARE(std::count_if(walls.begin(), walls.end(), [](char c) { return c == '\n'; }), both ? 5 : 4);
     }
 
     void settingsThatCannotBeReadAreTold() {

@@ -104,6 +104,8 @@ class Completion(ThermometerCase):
         self.assertEqual(candidates("conform motor motorc"), ["motorcontrol"])
         self.assertEqual(candidates("conform scanner scanner --base motorc"), ["motorcontrol"])
         self.assertEqual(candidates("conform scanner scanner --b"), ["--base"])
+        self.assertEqual(candidates("simulate --base vesc --kinematics a"), ["ackermann"])
+        self.assertEqual(candidates("simulate --kinematics a"), [])
         self.assertEqual(candidates("drive motorcontrol --f"), ["--force", "--for"])
         self.assertEqual(candidates("record start --daemons supervisor,scanm"), ["supervisor,scanmatcher"])
 

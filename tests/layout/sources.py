@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Fails when docs/sources.md names what is not there: a file, a header without its folder, an experiment or an option that it does not
-take, another command of hermes-vector or an option that no source declares (of `report`: that its own source does not), a test, a
-picture, a place of a page, or an erratum that its table does not have; or when a table that docs/results/make fills is empty or
-has an exponent. Which figures stand there tests/docs/figures.py checks. The commands of docs/pictures/make-sources are checked alike."""
+"""Fails when docs/sources.md or docs/sources-papers.md names what is not there: a file, a header without its folder, an experiment or
+an option that it does not take, another command of hermes-vector or an option that no source declares (of `report`: that its own
+source does not), a test, a picture, a place of a page, or an erratum that the table does not have; or when a table that
+docs/results/make fills is empty or has an exponent. Which figures stand there tests/docs/figures.py checks. The commands of
+docs/pictures/make-sources are checked alike."""
 import os
 import re
 import sys
@@ -31,7 +32,7 @@ def experiments_of(source):
     constants = {name: set(re.findall(OPTION, text)) for name, text in re.findall(r'const char \*(\w+) = "([^"]*)"', source)}
     table = re.search(r"^constexpr Experiment experiments\[\] = \{(.*?)\};", source, re.M | re.S)[1]
     found = {}
-    for name, takes in re.findall(r'\{"([\w-]+)",.*?&ExperimentCommand::\w+,\s*("[^"]*"|\w+)', table, re.S):
+    for name, takes in re.findall(r'\{"([\w-]+)",.*?&ExperimentCommand::[\w<>:]+,\s*("[^"]*"|\w+)', table, re.S):
         found[name] = constants.get(takes, set(re.findall(OPTION, takes)))
     return found
 
@@ -44,7 +45,7 @@ class Known:
         self.reports = set(re.findall(r'"(--[\w-]+)"', read("vectorlib/experiments/report/ReportCommand.cpp")))
         sources = "".join(read(path) for folder in ("gui/vector", "vectorlib/experiments") for path in files_below(folder, ".cpp"))
         self.options = set(re.findall(OPTION, sources))
-        self.commands = set(re.findall(r'add_subcommand\(\s*"([\w-]+)"', sources))
+        self.commands = set(re.findall(r'(?:add_subcommand\(|addCommand<\w+>\(\s*app,)\s*"([\w-]+)"', sources))
         self.headers = {os.path.basename(path) for path in files_below(HEADERS, ".h")}
         self.tests = set()
         for path in files_below("tests", ".cpp"):
@@ -87,7 +88,7 @@ def of_table(page):
             wrong.append(f"the table {name} is empty: docs/results/make LOGS")
         if re.search(r"\d[eE][+-]?\d", table):
             wrong.append(f"the table {name} has a number with an exponent")
-    errata = page.partition("\n## Errata\n")[2].partition("\n## ")[0]
+    errata = read("docs/sources.md").partition("\n## Errata\n")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| (\d+) \|", errata, re.M)
     if rows != [str(i + 1) for i in range(len(rows))]:
         wrong.append("the errata are not numbered from 1 on")
@@ -96,8 +97,8 @@ def of_table(page):
     return wrong
 
 
-def complaints(page, known):
-    """What is wrong with the page."""
+def complaints(page, known, name="sources.md"):
+    """What is wrong with the text of the page of this name."""
     wrong = of_table(page)
     for code in re.findall(r"`([^`\n]+)`", page):
         for path in re.findall(r"[\w./-]+/[\w.-]+\.(?:h|cpp|py|json)\b|^[\w./-]+/$", code):
@@ -109,7 +110,7 @@ def complaints(page, known):
             wrong.append(f"no test {code}")
         wrong += of_command(code, known)
     for link, place in re.findall(r"\]\(([^)#]*)#?([^)]*)\)", page):
-        path = "docs/" + (link or "sources.md")
+        path = "docs/" + (link or name)
         if not known.exists(path):
             wrong.append(f"no file {path}")
         elif place and place not in known.anchors(path):
@@ -125,10 +126,10 @@ def main():
     found = complaints(broken, known)
     if len(found) != 13:
         sys.exit(f"the check itself finds {len(found)} of 13 faults: {found}")
-    wrong = [f"docs/sources.md: {w}" for w in complaints(read("docs/sources.md"), known)]
+    wrong = [f"docs/{name}: {w}" for name in ("sources.md", "sources-papers.md") for w in complaints(read("docs/" + name), known, name)]
     for code in re.findall(r'"((?:experiment|report) [^"]*)"', read("docs/pictures/make-sources")):
         wrong += [f"docs/pictures/make-sources: {w}" for w in of_command(code, known)]
-    print("\n".join(wrong) or f"{len(known.experiments)} experiments, all that docs/sources.md names is there")
+    print("\n".join(wrong) or f"{len(known.experiments)} experiments, all that docs/sources.md and docs/sources-papers.md name is there")
     sys.exit(bool(wrong))
 
 

@@ -132,6 +132,19 @@ private Q_SLOTS:
         QCOMPARE(reader.scanner->problem(), std::string());
     }
 
+    /// Where the host did not ask for long, it has not read for long: that is no silence of the scanner.
+    void hostThatWasHeldUp() {
+        ScannerReader reader("ld06");
+        double t_s = 1;
+        reader.scanner->opened(ScannerReader::ns(t_s));
+        reader.nextAction(t_s, t_s + 0.01);
+        reader.feed(bytesOf(ld06Packet), t_s);
+        t_s += 1.5;
+        QVERIFY(!reader.nextAction(t_s, t_s + 0.5).reopen);
+        QVERIFY(reader.scanner->isScanning());
+        QVERIFY(reader.nextAction(t_s, t_s + 0.6).reopen);
+    }
+
     void namedModels_data() {
         QTest::addColumn<QByteArray>("alike");
         QTest::addColumn<QByteArray>("device");
@@ -160,6 +173,18 @@ private Q_SLOTS:
         const ScannerModel *const model =
             namedModel(*findScannerModel(alike.toStdString()), device.toStdString());
         QCOMPARE(QByteArray(model ? model->name : ""), named);
+    }
+
+    /// A head that does not turn, or says so, fills no memory.
+    void headThatDoesNotTurn() {
+        std::vector<std::size_t> beams;
+        RevolutionAssembler assembler([&](const Revolution &revolution) {
+            QVERIFY(revolution.partial);
+            beams.push_back(revolution.beams.size());
+        });
+        for (int i = 0; i < 250000; ++i)
+            assembler.addClockwise(10, 10, 1, 0, i * std::int64_t(200000));
+        QCOMPARE(beams, (std::vector<std::size_t>{100000, 100000}));
     }
 
     /// What no scanner sends is taken for nothing, and kills nobody.

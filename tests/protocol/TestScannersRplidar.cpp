@@ -250,6 +250,30 @@ private Q_SLOTS:
         }
     }
 
+    void wholeRevolutionsVanish_data() {
+        const Rows<int> row("count");
+        for (const int count : {1, 3, 12})
+            row(QByteArray::number(count), count);
+    }
+
+    /// No packet, nor the angle of one, tells that they are missing: it is seen by all that comes later.
+    void wholeRevolutionsVanish() {
+        QFETCH(int, count);
+        ScannerReader reader("rplidar-a3");
+        const RplidarSender sender;
+        reader.feed(bytesOf("A5 5A 04 00 00 00 15 F4 01 7D 00"), 0);
+        reader.feed(bytesOf(expressAnswer), 0);
+        const int before = 20 * sender.packets() + 6, after = before + count * sender.packets();
+        for (int n = 0; n < after + 40 * sender.packets(); ++n)
+            if (n < before || n >= after)
+                reader.feed(sender.packet(n), sender.arrival_s(n));
+        const RevolutionAssembler::Counts counts = reader.assembler.counts();
+        QCOMPARE(counts.missed, std::uint64_t(count));
+        QCOMPARE(counts.revolutions + counts.partial, std::uint64_t(60));
+        const double begin_s = double(reader.revolutions.back().begin_ns - ScannerReader::epoch_ns) * 1e-9;
+        QVERIFY(std::abs(begin_s - sender.begin_s(after + 38 * sender.packets())) < 0.2);
+    }
+
     /// Whoever replays a recording only feeds it.
     /// One capsule of 256 has a checksum with which it begins as an answer does.
     void capsuleThatBeginsAsAnAnswer() {

@@ -4,6 +4,7 @@
 
 #include <QtTest>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace hermes::scan;
@@ -232,6 +233,26 @@ private Q_SLOTS:
             latest_ns = std::max(latest_ns, beam.stamp_ns);
         const double error_s = double(latest_ns - ScannerReader::epoch_ns) * 1e-9 - t_s;
         QVERIFY2(std::abs(error_s) < 0.003, qPrintable(QString::number(error_s)));
+    }
+
+    /// A line that is so slow, or gives all at once, tells nothing of the time between two beams.
+    void impossibleRates() {
+        for (const double samples_hz : {900.0, 90000.0}) {
+            ScannerReader reader("ydlidar-g4");
+            Sender sender(*findScannerModel("ydlidar-g4"));
+            for (double t_s = 0; t_s < 25;) {
+                const std::string packet = sender.next();
+                t_s += double(packet[3]) / samples_hz;
+                reader.feed(packet, t_s);
+            }
+            const std::vector<Beam> beams = reader.beams();
+            std::vector<std::int64_t> steps_ns;
+            for (std::size_t i = beams.size() - 200; i < beams.size(); ++i)
+                steps_ns.push_back(std::abs(beams[i].stamp_ns - beams[i - 1].stamp_ns));
+            std::sort(steps_ns.begin(), steps_ns.end());
+            QVERIFY2(std::abs(double(steps_ns[100]) - 1e9 / 9000) < 2000,
+                     qPrintable(QString::number(steps_ns[100])));
+        }
     }
 
     /// Answers and times may come amid the packets.

@@ -4,7 +4,7 @@
 
 /// How many times slower this program is than those for which limits of time are written: 5 under sanitizers,
 /// which look for errors, not for delays; $HERMES_SLOWNESS, which the build sets where an emulator runs the
-/// tests; otherwise 1.
+/// tests, and system/timing.py on a slow machine; otherwise 1.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline const int slowness = 5;
 #else

@@ -11,6 +11,8 @@ class SessionFolder {
 public:
     static constexpr double start = 1.7e9; // s since the epoch
 
+    std::map<QString, std::string> addresses; ///< of daemons, by the names that the recorder gave them
+
     QString path() const { return folder_.path(); }
     QString filePath(const QString &name) const { return folder_.filePath(name); }
 
@@ -21,9 +23,11 @@ public:
     void add(double t_s, const QString &topic, const QByteArray &json, const QByteArray &schema = "{}") {
         const auto key = std::pair(topic, schema);
         if (channels_.count(key) == 0)
-            channels_[key] = writer_.addChannel(
-                writer_.addSchema(topic.toStdString(), "jsonschema", schema.toStdString()),
-                topic.toStdString(), "json", {{"daemon", topic.section('/', 0, 0).toStdString()}});
+            channels_[key] =
+                writer_.addChannel(writer_.addSchema(topic.toStdString(), "jsonschema", schema.toStdString()),
+                                   topic.toStdString(), "json",
+                                   {{"daemon", topic.section('/', 0, 0).toStdString()},
+                                    {"address", addresses[topic.section('/', 0, 0)]}});
         const auto time_ns = std::uint64_t(start * 1e9) + std::uint64_t(std::llround(t_s * 1e9));
         QVERIFY(writer_.write(
             {channels_[key], ++sequence_, time_ns, time_ns, {json.constData(), std::size_t(json.size())}}));

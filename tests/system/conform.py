@@ -89,7 +89,7 @@ class Conform(unittest.TestCase):
             status, failed, text = conform("motor" if tester == "motor" else "scanner", port, *options)
             good = status == 0 and not failed if line is None else status == 1 and line in failed and len(failed) <= 6
             return "" if good else f"{fault}: status {status}, expected \"{line}\", found {failed}\n{text}"
-        with concurrent.futures.ThreadPoolExecutor(6) as pool:
+        with concurrent.futures.ThreadPoolExecutor(12) as pool:
             wrong = [text for text in pool.map(found, ["", *FAULTS]) if text]
         self.assertFalse(wrong, "\n".join(wrong))
 

@@ -168,6 +168,7 @@ class Drive(unittest.TestCase):
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1)
         self.assertIn("stops a robot whose driver has gone", said)
+        self.assertIn("the controllers stop by their own time-out", said)  # where it is the motor control that has ended
         wait_for("standing", self.stands, 10)
         self.tearDownClass()
         self.setUpClass()

@@ -49,6 +49,11 @@ class FollowerTest(unittest.TestCase):
         for x, y in self.follow(square, (0, 0, 0)):
             self.assertLess(min(abs(y) if x <= 3 else 9, abs(x - 3) if y >= 0 else 9), 0.2, (x, y))
 
+    def test_tightest_bend(self):
+        drive.PathFollower([(0, 0), (1, 0)], least_radius=1).command(1, 0.15, 0)
+        with self.assertRaisesRegex(drive.DriveError, "0.25 m beside its last point: no tighter bend than of 1.00 m"):
+            drive.PathFollower([(0, 0), (1, 0)], least_radius=1).command(1, 0.25, 0)
+
     def test_bad_points(self):
         for points in ([], [(1, 1)], [(0, 0), (math.nan, 0)], [(0, 0), (math.inf, 0)]):
             with self.assertRaises(ValueError):

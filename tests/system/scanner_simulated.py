@@ -31,6 +31,7 @@ def shows_the_hall(points, pose):
 
 def check_faults(simulator, scans, link):
     assert "none, silence" in str(refusal(simulator, "sim.fault", device="scanner", kind="no_fix"))
+    refusal(simulator, "sim.fault", "ld06 has no fault health", device="scanner", kind="health")  # it sends and hears nothing
     for kind in "silence", "stalled":
         simulator.call("sim.fault", device="scanner", kind=kind)
         before = wait_for("end of what was on its way", lambda: same_after_a_while(simulator))

@@ -48,6 +48,12 @@ def main():
         process, motor = started(folder, port, link)
         assert "nothing is known" in motor.call("motor.state")["latched"]["estop"], motor.call("motor.state")["latched"]
         process.stop()
+        os.environ["XDG_STATE_HOME"] = os.path.join(link, "no folder")
+        process, motor = started(folder, port, link)
+        told = wait_for("the health of the stop",
+                        lambda: next((item for item in motor.call("daemon.status")["health"] if item["name"] == "stop"), None))
+        assert told["level"] == "warn" and "does not outlive this program" in told["message"], told
+        process.stop()
         simulator.stop()
     print("an emergency stop is kept until it is released")
 

@@ -72,6 +72,7 @@ def unread(address):
     while True:
         try:
             with socket.create_connection(address, 3) as connection:
+                connection.settimeout(None)  # it waits until the daemon closes it
                 while True:
                     connection.sendall(b'{"jsonrpc":"2.0","id":1,"method":"rpc.discover"}\n' * 20)
         except OSError:

@@ -16,8 +16,9 @@ WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 EXPERIMENTS = os.path.exists(os.path.join(BINARIES, "hermes-experiments"))  # ./check builds it with --all
-# How many times slower and larger this build is than those for which limits are written: as tests/support/Patience.h.
-SLOWNESS = 5 if {"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys() else 1
+# How many times slower and larger programs are than those for which limits are written: as tests/support/Patience.h.
+IS_SANITIZED = bool({"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys())
+SLOWNESS = 5 if IS_SANITIZED else int(os.environ.get("HERMES_SLOWNESS", 1))
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
 from processes import Daemon, DaemonError, free_port  # noqa: E402, F401
 import processes  # noqa: E402

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """1,000 hostile connections at once, drawn with a printed seed, to a daemon (HERMES_DAEMON) with the usual number of places and with
-1,000: who was there before is answered in 10 ms in 99 of 100 calls (95 in a short run) where places are as usual, memory is bounded, and comes back with the
-descriptors when they have gone. HERMES_SECONDS (3) of each, HERMES_SEED."""
+1,000. Who was there before is answered in 10 ms in 99 of 100 calls where places are as usual; in a short run in 15 ms in 95. Memory is
+bounded, and comes back with the descriptors when they have gone. HERMES_SECONDS (3) of each, HERMES_SEED."""
 import collections
 import contextlib
 import json
@@ -20,7 +20,7 @@ import time
 
 from lateness import Lateness
 from stop_traffic import batch, has_room, line, request, set_niceness
-from support import BINARIES, SLOWNESS, Process, free_port, wait_for
+from support import BINARIES, IS_SANITIZED, SLOWNESS, Process, free_port, wait_for
 from tls import context_of, issued, keys
 
 SECONDS = float(os.environ.get("HERMES_SECONDS", "3"))
@@ -28,7 +28,8 @@ SEED = int(os.environ.get("HERMES_SEED", random.randrange(1 << 30)))
 CROWD, PROCESSES = 1000, 2
 DESCRIPTORS = 8192
 RATE_HZ, LONGEST_ARRIVAL_S = 50, 5
-LIMIT_S = 0.010  # with the usual number of places; turns are shared by all who have one, so that 1,000 make each other wait
+# With the usual number of places; turns are shared by all who have one, so that 1,000 make each other wait.
+LIMIT_S = 0.010 if SECONDS >= 30 else 0.015
 LIMIT_OF_MANY_S = 2
 SHARE = 0.99 if SECONDS >= 30 else 0.95  # a few calls say little about the last percent
 CARRIERS = ("TCP", "Unix socket", "TLS port", "TLS with a certificate")
@@ -36,7 +37,7 @@ TOPICS = ("log", "status", "settings", "odometry", "wheels", "power", "pose", "m
 USUAL_PLACES, KEPT_PLACES = 16, 16
 MB = 1 << 20
 # What one client may hold at the limits: a request that grows, one that is read, replies, topics, and the replies to two batches.
-PLACE_BYTES = (1 + 1 + 2 + 0.25 + 2 * 8) * MB * SLOWNESS
+PLACE_BYTES = (1 + 1 + 2 + 0.25 + 2 * 8) * MB * (5 if IS_SANITIZED else 1)
 GIVEN_BACK_BYTES = 24 * MB  # above this it would have grown for good
 
 
@@ -268,13 +269,13 @@ def attack(name, folder, places):
         if "HERMES_DETAILS" in os.environ:
             for kind, (number, opened, sent, closed) in told.items():
                 print(f"        {kind}: {number}, opened {opened} times, {sent / MB:.1f} MB sent, closed {closed} times")
-        is_plain = SLOWNESS == 1  # a sanitizer keeps memory for itself, and takes its time
-        if is_plain and percent(took, SHARE) >= (LIMIT_S if places == USUAL_PLACES else LIMIT_OF_MANY_S):
+        limit_s = SLOWNESS * (LIMIT_S if places == USUAL_PLACES else LIMIT_OF_MANY_S)
+        if not IS_SANITIZED and percent(took, SHARE) >= limit_s:
             wrong.append("others are answered late")
         if most > before + (places + (KEPT_PLACES if name == "motorcontrol" else 0)) * PLACE_BYTES:
             wrong.append("memory is not bounded")
-        if is_plain and after > before + GIVEN_BACK_BYTES:
-            wrong.append("memory is not given back")
+        if not IS_SANITIZED and after > before + GIVEN_BACK_BYTES:
+            wrong.append("memory is not given back")  # a sanitizer keeps it for itself
         assert set(told) == set(KINDS), f"not all kinds were drawn: {told}"
         assert all(sent > 0 for kind, (_, _, sent, _) in told.items() if kind != "silent"), told
         if places == CROWD:

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A robot base with a laser scanner in a room, made of docs/examples, that does one thing wrong: the setting `fault`, one of FAULTS."""
+"""A robot base with a laser scanner in a room, made of docs/examples, that does one thing wrong, or is a car: the setting `fault`, one
+of FAULTS."""
 import json
 import math
 import os
@@ -39,6 +40,7 @@ FAULTS = {
     "millimetres": ("scanner", "metres"),
     "one turn": ("scanner", "turn"),
     "late beams": ("scanner", "t"),
+    "a car, which is right": ("base", None),
 }
 FUTURE_S = 5
 WALLS = ((4, 0), (-2, 0), (0, 3), (0, -1.5))  # at these places, square to the way there
@@ -57,6 +59,8 @@ class WrongRobot(Base):
     def drive(self, vx, vy, omega, stamp):
         if self.has("emergency stop not kept"):
             self.latched = None
+        if self.has("a car, which is right") and omega and not vx:
+            raise hermes_daemon.Refusal(-32007, "it does not turn on the spot")
         if self.has("no limits") and max(abs(vx), abs(omega)) > 0.3:
             return
         super().drive(vx if math.isfinite(vx) else 0, vy, omega, 0 if self.has("old commands") else stamp)

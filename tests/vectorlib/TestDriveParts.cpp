@@ -90,7 +90,7 @@ class TestDriveParts : public QObject {
         for (unsigned i = 0; i < 4; ++i)
             add(drawn + i, false);
     }
-    // One or two drawn drives of a hundred do (docs/algorithms.md), and of those that nobody carried one of
+    // One or two drawn drives of a hundred do (docs/mapping.md), and of those that nobody carried one of
     // some hundreds (seed 570343371): one of those here.
     bool mayFail(bool isNoticed) { return !isNoticed && ++failed_ <= 1; }
     int failed_ = 0;

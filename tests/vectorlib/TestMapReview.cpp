@@ -125,6 +125,20 @@ private Q_SLOTS:
         });
     }
 
+    // Scans look through the place of a wall; or a second scanner does, from a place of its own.
+    void onlyOwnSightContradicts_data() { falseAndTrue("isOwn", "of the second scanner", "its own"); }
+    void onlyOwnSightContradicts() {
+        QFETCH(bool, isOwn);
+        const Wall pillar({3, 1}, {2, 1});
+        VectorMap map = mapOf(corridor({upperWall, pillar}));
+        Drive drive;
+        drive.pass(corridor({upperWall, pillar}), 4);
+        drive.pass({{{-3, -2}, {7, -2}}, upperWall}, 30);
+        std::vector<std::uint32_t> own(drive.edges.size(), isOwn ? 2 : 1);
+        std::fill_n(own.begin(), 4, 3);
+        MapReview()(map, {drive.edges, drive.poses, &own});
+        QCOMPARE(hasWallAt(map, {2.5, 1}), !isOwn);
+    }
     // Each scan sees one of them: the same wall from two poses that do not agree.
     void wallsThatAreThereTwiceBecomeOne() {
         const Wall twin({5, 2.09}, {1, 2.09});

@@ -65,6 +65,24 @@ private Q_SLOTS:
             QVERIFY2(steps <= 14 && check.contradiction()->odometry.x > 0.59, saying(steps));
     }
 
+    void wheelsThatTurnFasterThanTheyTellAreSeenAtOnce() {
+        OdometryCheck check;
+        Pose2D byWheels, byScans;
+        int steps = 0;
+        for (; steps < 40 && !check.add(0.1 * steps, byWheels, byScans); ++steps) {
+            byWheels = byWheels * Pose2D{0.02, 0, 0.02};
+            byScans = byScans * Pose2D{0.18, 0, 0.18};
+        }
+        QVERIFY2(steps <= 12, saying(steps)); // 0.24 m by the wheels
+    }
+
+    // It stands, and is pushed.
+    void standingWheelsContradictNothing() {
+        OdometryCheck check;
+        for (int i = 0; i < 40; ++i)
+            QVERIFY(!check.add(0.1 * i, {0, 0, 0}, {0.05 * i, 0, 0}));
+    }
+
     void clocksThatStepContradictNothing() {
         const double nan = std::nan("");
         for (const double step_s : {-1.0, -1e9, 1e9, nan}) {
@@ -72,6 +90,16 @@ private Q_SLOTS:
             for (int i = 0; i < 40; ++i)
                 QVERIFY(!check.add((i < 20 ? 0 : step_s) + 0.1 * i, {0.05 * i, 0, 0}, {0.05 * i, 0, 0}));
             QVERIFY(!check.add(1e10, {nan, 0, 0}, {0, 0, 0}));
+        }
+    }
+
+    void posesThatLeapForAMomentContradictNothing() {
+        for (int wrong = 0; wrong < 20; ++wrong) {
+            OdometryCheck check;
+            for (int i = 0; i < 40; ++i) {
+                const double leap = i == wrong ? 5 : i == wrong + 1 ? -5 : 0;
+                QVERIFY(!check.add(0.1 * i, {0.05 * i, 0, 0}, {0.05 * i + leap, 0, 0}));
+            }
         }
     }
 

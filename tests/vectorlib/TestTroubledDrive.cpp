@@ -109,7 +109,6 @@ struct Trouble {
 };
 
 struct Event {
-    double time;
     std::optional<OdometrySample> sample;
     TimedScan scan;
 };
@@ -129,10 +128,8 @@ public:
         if (trouble.odometry)
             addOdometry(worldTime);
         addScans(worldTime);
-        std::stable_sort(events.begin(), events.end(),
-                         [](const Event &a, const Event &b) { return a.time < b.time; });
     }
-    std::vector<Event> events;
+    std::multimap<double, Event> events; // by time
 
 private:
     // 50 times a second; the wheels slip by 3 %, of which it does not know.
@@ -154,7 +151,7 @@ private:
                                   told.pose(),
                                   {motion.vx / gap, motion.vy / gap, motion.omega / gap},
                                   Eigen::Matrix3d(Eigen::Vector3d(xy, xy, alpha).asDiagonal())};
-            events.push_back({endOf(trouble_.late, time).value_or(time) + 0.004, sample, {}});
+            events.emplace(endOf(trouble_.late, time).value_or(time) + 0.004, Event{sample, {}});
             last = now;
             lastTime = time;
         }
@@ -163,8 +160,8 @@ private:
         for (double begin = 0; begin + turn < wayEnd; begin += turn) {
             const auto end = std::lower_bound(worldTime.begin(), worldTime.end(), begin + turn);
             if (!endOf(trouble_.blind, begin) && !endOf(trouble_.blind, begin + turn))
-                events.push_back({double(end - worldTime.begin()) / 1000 + 0.002, std::nullopt,
-                                  takeScan(room, begin, poseAt, random_)});
+                events.emplace(double(end - worldTime.begin()) / 1000 + 0.002,
+                               Event{std::nullopt, takeScan(room, begin, poseAt, random_)});
         }
     }
     const Trouble &trouble_;
@@ -234,7 +231,7 @@ private Q_SLOTS:
             tracker.place(poseAt(0));
             OdometryBuffer odometry;
             double farthest = 0;
-            for (Event &event : Drive(trouble, seed).events) {
+            for (auto &[time, event] : Drive(trouble, seed).events) {
                 if (event.sample) {
                     odometry.add(*event.sample);
                     continue;

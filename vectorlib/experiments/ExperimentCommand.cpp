@@ -5,7 +5,6 @@
 #include "vectorlib/experiments/Commands.h"
 
 #include <algorithm>
-#include <map>
 
 namespace hermes::experiments {
 
@@ -30,10 +29,10 @@ constexpr const char *ofWorlds = "--worlds --runs --max-points --seed --known-ed
 constexpr int published = 100; // runs of the registration paper
 
 constexpr Experiment experiments[] = {
-    {"segmentation-room", "figure 5.6: a room, by noise and outliers", &ExperimentCommand::segmentationRoom,
-     "--seed"},
+    {"segmentation-room", "figure 5.6: a room, by noise and outliers",
+     &ExperimentCommand::segmentation<furnishedRoom>, "--seed"},
     {"segmentation-objects", "figure 5.7: the same with small objects",
-     &ExperimentCommand::segmentationObjects, "--seed"},
+     &ExperimentCommand::segmentation<roomWithSmallObjects>, "--seed"},
     {"adaptive-threshold", "figures 5.3, 5.4: the threshold without and with its bounds",
      &ExperimentCommand::adaptiveThreshold, "--seed"},
     {"real-segmentation", "figure 5.5: three scans of --log, clusters in colours",
@@ -41,15 +40,16 @@ constexpr Experiment experiments[] = {
     {"threshold", "figures 6.1 to 6.3: error by points, of a precise corner and of one with noise",
      &ExperimentCommand::threshold, "--seed"},
     {"semicircle", "figure 6.7: time by the number of lines", &ExperimentCommand::semicircle, "--max-points"},
-    {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::edges, ofScenes},
-    {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::corners, ofScenes},
-    {"room", "figure 6.10: a furnished room", &ExperimentCommand::room, ofScenes},
-    {"empty-room", "figure 6.11: the scan of --log with long lines all around", &ExperimentCommand::emptyRoom,
-     ofScans},
+    {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::vectorization<solitaryEdges>, ofScenes},
+    {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::vectorization<sharpCorners>,
+     ofScenes},
+    {"room", "figure 6.10: a furnished room", &ExperimentCommand::vectorization<furnishedRoom>, ofScenes},
+    {"empty-room", "figure 6.11: the scan of --log with long lines all around",
+     &ExperimentCommand::realScan<RealScanKind::EmptyRoom>, ofScans},
     {"corridor", "figure 6.12: the scan of --log with long lines in one direction",
-     &ExperimentCommand::corridor, ofScans},
-    {"laboratory", "figure 6.13: the scan of --log with the most lines", &ExperimentCommand::laboratory,
-     ofScans},
+     &ExperimentCommand::realScan<RealScanKind::Corridor>, ofScans},
+    {"laboratory", "figure 6.13: the scan of --log with the most lines",
+     &ExperimentCommand::realScan<RealScanKind::Laboratory>, ofScans},
     {"polygons", "closed polygons: error by the number of vertices", &ExperimentCommand::polygons,
      "--runs --seed"},
     {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog, "--log --runs"},

@@ -51,18 +51,22 @@ struct ExperimentCommand {
     /// not possible, or there are none.
     void drawFigures() const;
 
-    void segmentationRoom(OutputSet &files, std::ostream &csv) const;
-    void segmentationObjects(OutputSet &files, std::ostream &csv) const;
+    template <Scene (*scene)()>
+    void segmentation(OutputSet &files, std::ostream &csv) const {
+        segment(files, csv, scene());
+    }
     void adaptiveThreshold(OutputSet &files, std::ostream &csv) const;
     void realSegmentation(OutputSet &files, std::ostream &csv) const;
     void threshold(OutputSet &files, std::ostream &csv) const;
     void semicircle(OutputSet &files, std::ostream &csv) const;
-    void edges(OutputSet &files, std::ostream &csv) const;
-    void corners(OutputSet &files, std::ostream &csv) const;
-    void room(OutputSet &files, std::ostream &csv) const;
-    void emptyRoom(OutputSet &files, std::ostream &csv) const;
-    void corridor(OutputSet &files, std::ostream &csv) const;
-    void laboratory(OutputSet &files, std::ostream &csv) const;
+    template <Scene (*scene)()>
+    void vectorization(OutputSet &files, std::ostream &csv) const {
+        vectorize(files, csv, scene());
+    }
+    template <RealScanKind kind>
+    void realScan(OutputSet &files, std::ostream &csv) const {
+        realScan(files, csv, kind);
+    }
     void polygons(OutputSet &files, std::ostream &csv) const;
     void ofLog(OutputSet &files, std::ostream &csv) const;
     void criterion(OutputSet &files, std::ostream &csv) const;
@@ -106,7 +110,7 @@ private:
                  const std::vector<QualityRow> &rows) const;
     RealScanChoice chooseScans(const std::vector<RealScanKind> &kinds) const;
     void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const;
-    void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const;
+    void vectorize(OutputSet &files, std::ostream &csv, const Scene &scene) const;
     RegistrationCase scansOf(std::vector<int> points, std::vector<double> noises, double minLength = 0) const;
     static std::vector<RegistrationRow> select(const std::vector<RegistrationRow> &rows, int points,
                                                double sigma, bool weighted);

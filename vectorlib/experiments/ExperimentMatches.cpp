@@ -7,7 +7,6 @@
 #include "vectorlib/experiments/PlacesExperiment.h"
 #include "vectorlib/experiments/PoseTrustTrials.h"
 
-#include <filesystem>
 #include <iostream>
 #include <optional>
 

@@ -19,14 +19,6 @@ using vector::MapSourceOptions;
 using vector::MapSourceReport;
 using vector::readMapScans;
 
-void ExperimentCommand::segmentationRoom(OutputSet &files, std::ostream &csv) const {
-    segment(files, csv, furnishedRoom());
-}
-
-void ExperimentCommand::segmentationObjects(OutputSet &files, std::ostream &csv) const {
-    segment(files, csv, roomWithSmallObjects());
-}
-
 void ExperimentCommand::adaptiveThreshold(OutputSet &files, std::ostream &csv) const {
     const std::vector<AdaptiveThresholdPanel> panels = adaptiveThresholdExperiment(options.seed);
     writeCsv(csv, panels);
@@ -75,30 +67,6 @@ void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
         }
     }
     draw(files, figures, {{"cloud", pictureOfSemicircle()}});
-}
-
-void ExperimentCommand::edges(OutputSet &files, std::ostream &csv) const {
-    scene(files, csv, solitaryEdges());
-}
-
-void ExperimentCommand::corners(OutputSet &files, std::ostream &csv) const {
-    scene(files, csv, sharpCorners());
-}
-
-void ExperimentCommand::room(OutputSet &files, std::ostream &csv) const {
-    scene(files, csv, furnishedRoom());
-}
-
-void ExperimentCommand::emptyRoom(OutputSet &files, std::ostream &csv) const {
-    realScan(files, csv, RealScanKind::EmptyRoom);
-}
-
-void ExperimentCommand::corridor(OutputSet &files, std::ostream &csv) const {
-    realScan(files, csv, RealScanKind::Corridor);
-}
-
-void ExperimentCommand::laboratory(OutputSet &files, std::ostream &csv) const {
-    realScan(files, csv, RealScanKind::Laboratory);
 }
 
 void ExperimentCommand::polygons(OutputSet &files, std::ostream &csv) const {
@@ -180,7 +148,7 @@ void ExperimentCommand::realScan(OutputSet &files, std::ostream &csv, RealScanKi
     draw(files, {{}, {}, {tableOf(name, result)}}, {{"", pictureOf(name, result)}});
 }
 
-void ExperimentCommand::scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
+void ExperimentCommand::vectorize(OutputSet &files, std::ostream &csv, const Scene &scene) const {
     const std::vector<ResultRow> rows = sceneExperiment(scene, options);
     writeCsv(csv, rows);
     draw(files, {plotsOf(scene.title, rows), {}, {lineTable(scene.title, rows)}},

@@ -4,7 +4,6 @@
 #include "vectorlib/tls/TlsFit.h"
 #include "vectorlib/vectorization/PrefixSums.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace hermes::experiments {

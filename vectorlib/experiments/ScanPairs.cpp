@@ -3,7 +3,6 @@
 #include "vectorlib/experiments/RangeFit.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hermes::experiments {
 

@@ -3,7 +3,7 @@
 
 using namespace hermes;
 
-/// hermes-experiments: what the documents behind Hermes publish, made anew. See docs/hermes-vector.md.
+/// hermes-experiments: what the documents behind Hermes publish, made anew. See docs/experiments.md.
 int main(int argc, char **argv) {
     const vector::CommandLine line{"hermes-experiments",
                                    HERMES_VERSION,

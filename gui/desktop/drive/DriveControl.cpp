@@ -168,7 +168,9 @@ void DriveControl::putLimit(const Twist2D &limit) {
 
 Twist2D DriveControl::request() const {
     const Twist2D share = inputs_.request();
-    return {share.vx * limit_.vx, share.vy * limit_.vy, share.omega * limit_.omega};
+    const double vx = share.vx * limit_.vx, omega = share.omega * limit_.omega;
+    const double turn = leastRadius_ > 0 ? std::abs(vx) / leastRadius_ : limit_.omega;
+    return {vx, movesSideways_ ? share.vy * limit_.vy : 0, qBound(-turn, omega, turn)};
 }
 
 void DriveControl::driveBlindly() {

@@ -142,8 +142,10 @@ private:
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;
-    Twist2D target_; ///< of the motor control
-    int losses_ = 0; ///< of the control
+    bool movesSideways_ = true;
+    double leastRadius_ = 0; // of its bends, m; 0: it turns on the spot
+    Twist2D target_;         ///< of the motor control
+    int losses_ = 0;         ///< of the control
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     Twist2D limit_ = scaled(usualMost, usualShare);

@@ -66,6 +66,8 @@ void DriveControl::onState(const QJsonValue &state) {
     if (!isHolding_ && hold_.control.holder == ownName() && lost_.isValid() &&
         !lost_.hasExpired(qint64(1000 * lease_s)))
         hold_.control.held = false; // the state is older than the release
+    movesSideways_ = state["moves_sideways"].toBool(true);
+    leastRadius_ = state["least_radius_m"].toDouble();
     target_ = readMessage<Twist2D>(WireValue(state["target"]), report).value_or(Twist2D());
     if (!isDriving_ && hold_.control.holder != ownName())
         isHolding_ = false; // it ran out

@@ -60,6 +60,11 @@ void StopLine::readWatchdogs() {
     };
     read("safety.command_timeout_s", commandTimeout_s_);
     read("controllers.timeout_s", controllerTimeout_s_);
+    daemon_->call("settings.get", {{"path", "safety.no_device_timeout"}}, this,
+                  [this](const Result<QJsonValue> &value) {
+                      if (value && value->toBool()) // they may have none
+                          controllerTimeout_s_ = 0;
+                  });
 }
 
 std::vector<Client *> StopLine::openClients() {

@@ -1,7 +1,5 @@
 #include "gui/desktop/model/NetworkSearch.h"
 
-#include "gui/desktop/widgets/ForeignText.h"
-
 #include <QCoreApplication>
 #include <QFile>
 #include <QJsonArray>

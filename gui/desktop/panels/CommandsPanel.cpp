@@ -6,10 +6,10 @@
 #include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QElapsedTimer>
 #include <QJsonArray>
-#include <QJsonDocument>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
@@ -25,10 +25,8 @@ namespace {
 constexpr int longestMethod = 80, longestLine = 500, longestAnswer = 100000, maxMethods = 1000;
 
 QString text(const QJsonValue &value) {
-    if (value.isObject())
-        return QString::fromUtf8(QJsonDocument(value.toObject()).toJson());
-    if (value.isArray())
-        return QString::fromUtf8(QJsonDocument(value.toArray()).toJson());
+    if (value.isObject() || value.isArray())
+        return indentedJson(value);
     return value.isString() ? value.toString() : value.isNull() ? "null" : value.toVariant().toString();
 }
 

@@ -45,11 +45,12 @@ QTreeWidgetItem *rowOf(const QStringList &texts) {
 /// What a search has found, in words.
 QString spokenKind(const QString &kind) {
     static const QHash<QString, QString> words{
-        {"roboclaw", SetupPanel::tr("motors")},        {"nmea", SetupPanel::tr("GPS receiver")},
-        {"arduino", SetupPanel::tr("motors")},         {"scanner", SetupPanel::tr("scanner")},
+        {"nmea", SetupPanel::tr("GPS receiver")},      {"scanner", SetupPanel::tr("scanner")},
         {"talker", SetupPanel::tr("unknown, talks")},  {"other", SetupPanel::tr("unknown, answers")},
         {"not_asked", SetupPanel::tr("not asked")},    {"in_use", SetupPanel::tr("in use")},
         {"failed", SetupPanel::tr("cannot be opened")}};
+    if (FoundSerial::controllerKinds().contains(kind))
+        return SetupPanel::tr("motors");
     return words.value(kind, kind);
 }
 

@@ -9,6 +9,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHostInfo>
+#include <QPointer>
 #include <QPushButton>
 
 namespace hermes::desktop {
@@ -67,10 +68,7 @@ void WheelsTest::updateButtons() {
     test_->setEnabled((why.isEmpty() && lifted_->isChecked()) || isUnderWay());
     test_->setText(isUnderWay() ? tr("Give up") : tr("Test the wheels"));
     test_->setIcon(theme::icon(isUnderWay() ? "stop" : "start"));
-    test_->setToolTip(
-        !why.isEmpty()
-            ? why
-            : tr("Each wheel turns with %1 rad/s for %2 s").arg(WheelTurn::speed).arg(WheelTurn::turn_s));
+    test_->setToolTip(!why.isEmpty() ? why : tr("Each wheel turns slowly for %1 s").arg(WheelTurn::turn_s));
     const bool isAsked = isUnderWay() && !turn_.isBusy();
     seenChoice_->setEnabled(isAsked);
     next_->setEnabled(isAsked);
@@ -81,22 +79,32 @@ void WheelsTest::begin() {
     if (!motors || turn_.isBusy())
         return;
     const QString address = asOwner(motors->address());
-    motors->call("settings.get", {{"path", "wheels"}}, this, [this, address](const Result<QJsonValue> &now) {
-        if (isUnderWay() || !lifted_->isChecked())
+    motors->call("settings.get", {}, this, [=, link = QPointer(motors)](const Result<QJsonValue> &settings) {
+        if (!settings)
+            return message_->tell(settings.error().message, true);
+        if (!link)
             return;
-        if (!now)
-            return message_->tell(now.error().message, true);
-        now_ = now->toObject();
-        seen_.clear();
-        client_.connectTo(address);
-        wheel_ = wheelNames().front();
-        turnNext();
+        link->call("motor.state", {}, this, [=](const Result<QJsonValue> &state) {
+            if (isUnderWay() || !lifted_->isChecked())
+                return;
+            if (!state)
+                return message_->tell(state.error().message, true);
+            const auto plan = WheelPlan::from(settings->toObject(), state->toObject());
+            if (!plan)
+                return message_->tell(plan.error().message, true);
+            plan_ = *plan;
+            seen_.clear();
+            client_.connectTo(address);
+            wheel_ = plan_.wheels.first();
+            turnNext();
+        });
     });
 }
 
 void WheelsTest::turnNext() {
-    message_->tell(tr("%1 is told to turn forward").arg(spokenWheel(wheel_)));
-    turn_.begin(wheel_, [this](const Result<double> &measured) { onTurned(measured); });
+    message_->tell(
+        tr("%1 is told to turn forward, at %2 rad/s").arg(spokenWheel(wheel_), shortNumber(plan_.speed, 2)));
+    turn_.begin(wheel_, plan_.speed, [this](const Result<double> &measured) { onTurned(measured); });
     updateButtons();
 }
 
@@ -117,15 +125,12 @@ void WheelsTest::onSeen() {
         return;
     const QStringList choice = seenChoice_->currentData().toStringList();
     seen_[wheel_] = {choice[0], choice[1] == "b"};
-    const int next = wheelNames().indexOf(wheel_) + 1;
-    if (next < wheelNames().size()) {
-        wheel_ = wheelNames()[next];
+    wheel_ = plan_.wheels.value(plan_.wheels.indexOf(wheel_) + 1);
+    if (!wheel_.isEmpty())
         return turnNext();
-    }
-    wheel_.clear();
     client_.close();
     lifted_->setChecked(false);
-    const auto changes = wheelSettings(now_, seen_);
+    const auto changes = wheelSettings(plan_.settings, seen_);
     if (!changes)
         return message_->tell(changes.error().message, true);
     message_->tell(changes->isEmpty() ? tr("All wheels turn as they are told; nothing needs a change.")

@@ -49,7 +49,7 @@ private:
     QComboBox *seenChoice_;
     MessageLabel *message_;
     QString wheel_; ///< that turns, or was told to turn; empty: no test
-    QJsonObject now_;
+    WheelPlan plan_;
     std::map<QString, SeenWheel> seen_;
 };
 

@@ -4,6 +4,7 @@
 #include "gui/desktop/widgets/Arrangement.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QJsonArray>
 #include <QJsonDocument>
@@ -16,14 +17,6 @@ namespace hermes::desktop {
 namespace {
 
 constexpr int longestJson = 100000, longestJsonLine = 2000, shownLines = 6;
-
-QString indented(const QJsonValue &value) {
-    if (value.isObject())
-        return QString::fromUtf8(QJsonDocument(value.toObject()).toJson()).trimmed();
-    if (value.isArray())
-        return QString::fromUtf8(QJsonDocument(value.toArray()).toJson()).trimmed();
-    return jsonText(value);
-}
 
 /// Qt takes long for a line that has no end.
 bool isShowable(const QString &text) {
@@ -51,7 +44,7 @@ void JsonEditor::show(QWidget *shown) {
 void JsonEditor::setValue(const QJsonValue &value) {
     if (countValues(value, maxValues) > maxValues)
         return setTooLong(value);
-    const QString text = indented(value);
+    const QString text = value.isUndefined() ? QString() : indentedJson(value);
     if (!isShowable(text))
         return setTooLong(value);
     given_ = value;

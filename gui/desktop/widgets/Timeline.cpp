@@ -1,6 +1,5 @@
 #include "gui/desktop/widgets/Timeline.h"
 
-#include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/Quantities.h"
 

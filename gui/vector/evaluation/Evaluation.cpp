@@ -166,7 +166,7 @@ std::optional<double> Evaluation::turnsMissed() const {
 
 void Evaluation::expectSameDrive(const std::string &log, const std::string &trajectory,
                                  std::ostream &warnings) const {
-    constexpr double most = 0.7; // docs/hermes-vector.md has what right and wrong logs have
+    constexpr double most = 0.7; // docs/hermes-vector-map.md has what right and wrong logs have
     const std::optional<double> missed = turnsMissed();
     const std::string found = std::to_string(pairs_.size()) + " of " + std::to_string(poses_) +
                               " poses at the time of one of the " + std::to_string(reference_.size()) +

@@ -8,3 +8,4 @@ hermes-scanmatcher --set map.journal=drive.journal >killed.log 2>&1 &
 killed=$!
 for _ in $(seq 200); do [ -s drive.journal ] && break; sleep 0.1; done
 kill -KILL $killed
+wait $killed || true

@@ -202,12 +202,12 @@ private:
                ",\"dropped\":0,\"stamp\":" + (stamp.isEmpty() ? mischief_.stamp : stamp) +
                ",\"data\":" + data + "}}\n";
     }
-    /// As much as the client takes.
+    /// As much as the client takes, now and then: what else is sent without end has its turn, too.
     template <typename Write>
     void keepBusy(QTcpSocket &client, Write write) {
         auto *const timer = new QTimer(&client);
-        connect(timer, &QTimer::timeout, &client, [&client, write]() mutable {
-            for (int i = 0; i < 200 && client.bytesToWrite() < maxWaiting; ++i)
+        connect(timer, &QTimer::timeout, &client, [this, &client, write]() mutable {
+            for (int i = int(200 * (turn_() % 2)); i < 200 && client.bytesToWrite() < maxWaiting; ++i)
                 write();
         });
         timer->start(1);
@@ -265,6 +265,7 @@ private:
     quint16 port_ = 0;
     int lastSubscription_ = 0;
     QVector<Subscriber> subscribers_;
+    std::minstd_rand turn_;
     QString heldMethod_;
     std::vector<std::pair<QPointer<QTcpSocket>, QByteArray>> held_;
     QHash<QTcpSocket *, std::shared_ptr<Codec>> cbor_; // of those who speak it

@@ -196,7 +196,7 @@ private Q_SLOTS:
         QVERIFY(!pane_->grab().isNull());
     }
 
-    // Ten minutes of twelve curves, 20 times a second.
+    // Ten minutes of twelve curves, 20 times a second: at most half of the time.
     void redrawOfTwelveCurves() {
         std::vector<Samples> all;
         for (int i = 0; i < 12; ++i)
@@ -216,7 +216,7 @@ private Q_SLOTS:
             best_ms = std::min(best_ms, threadTime_ms() - before_ms);
         }
         qInfo("%.2f ms", best_ms);
-        QVERIFY2(best_ms < 10 * slowness, qPrintable(QString::number(best_ms)));
+        QVERIFY2(best_ms < 25 * slowness, qPrintable(QString::number(best_ms)));
     }
 
 private:

@@ -248,7 +248,7 @@ private Q_SLOTS:
         OpenWindow::click(panel_, "apply");
         OpenWindow::type(field("pid.i"), "0.7");
         OpenWindow::type(field("pid.p"), "3"); // once more
-        QCOMPARE(setting("motion.vx"), QJsonValue(0.31));
+        QTRY_COMPARE(setting("motion.vx"), QJsonValue(0.31));
         QTRY_VERIFY(note("motion.vx") != "changed");
         QCOMPARE(field("pid.i")->text(), QString("0.7"));
         QCOMPARE(note("pid.i"), QString("changed"));

@@ -46,9 +46,10 @@ private Q_SLOTS:
         QVERIFY(all.size() > 8);
         std::vector<double> times_ms;
         QString slowestWith;
-        const int trials = qMax(int(all.size()), qEnvironmentVariableIntValue("HERMES_TRIALS"));
+        const int trials = qMax(10, qEnvironmentVariableIntValue("HERMES_TRIALS"));
+        const std::size_t each = std::max<std::size_t>(1, all.size() / std::size_t(trials)); // of all kinds
         for (int trial = 0; trial < trials; ++trial) {
-            const auto &[what, begin] = all[std::size_t(trial) % all.size()];
+            const auto &[what, begin] = all[std::size_t(trial) * each % all.size()];
             QVERIFY(other.callAndWait("control.acquire", QJsonObject{{"timeout_s", 2}}).ok());
             driving.start(50);
             QTRY_VERIFY_WITH_TIMEOUT(rig.rimSpeed() > 0.15, 10000);
@@ -77,8 +78,8 @@ private Q_SLOTS:
         for (const QString &name : frozen)
             robot.signal(name, SIGCONT);
         QVERIFY(times_ms.front() > 0);
-        QVERIFY(times_ms[times_ms.size() / 2] < 50);
-        QVERIFY(times_ms.back() < 500);
+        QVERIFY(times_ms[times_ms.size() / 2] < 15 * slowness);
+        QVERIFY(times_ms.back() < 100 * slowness);
     }
 
 private:

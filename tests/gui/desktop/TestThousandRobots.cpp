@@ -45,7 +45,7 @@ private Q_SLOTS:
         qInfo("figure they are there, event loop busy at most: %.1f ms of the processor",
               watch.longestCpu_ms());
         // 20 to 35 on a quiet machine.
-        QVERIFY2(watch.longestCpu_ms() < 100 * slowness, saying(watch.longestCpu_ms()));
+        QVERIFY2(watch.longestCpu_ms() < 150 * slowness, saying(watch.longestCpu_ms()));
         watch.restart();
         auto *const robots = open.window.findChild<QComboBox *>("robots");
         QCOMPARE(robots->count(), count);

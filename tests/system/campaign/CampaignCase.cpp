@@ -1,5 +1,7 @@
 #include "CampaignCase.h"
 
+#include "daemons/simulator/MotorKinds.h"
+
 #include <QJsonDocument>
 
 #include <algorithm>
@@ -11,7 +13,9 @@ namespace campaign {
 
 namespace {
 
-const std::vector<std::string> controllerKinds{
+using namespace hermes::simulator;
+
+const std::vector<std::string> roboClawKinds{
     "mute",           "deaf",   "latched",          "loss",        "corrupt",
     "slow",           "echo",   "stuck_timeout",    "brownout",    "silence",
     "emergency_stop", "driver", "over_temperature", "over_current"};
@@ -28,6 +32,15 @@ const std::vector<std::string> actions{"falls silent",
                                        "the process stands still",
                                        "is fought by a rival",
                                        "the motor control is killed"};
+
+bool isSingle(const std::string &kind) {
+    return motorKind(kind).controllers == 1;
+}
+
+std::vector<std::string> controllerKinds(const std::string &kind) {
+    const auto &faults = motorKind(kind).faults;
+    return kind == "roboclaw" ? roboClawKinds : std::vector<std::string>(faults.begin(), faults.end());
+}
 
 /// Numbers that are the same on every machine.
 class Dice {
@@ -60,6 +73,8 @@ double amountOf(const std::string &kind, Dice &dice) {
         return dice.between(0.002, 0.05, 0.002);
     if (kind == "brownout")
         return dice.between(0.02, 1, 0.02);
+    if (kind == "restart")
+        return ArduinoEmulator::restartTime;
     if (kind == "jump")
         return dice.between(-3e6, 3e6, 100000);
     return 0;
@@ -98,17 +113,49 @@ void drawSettings(Case &c, Dice &dice) {
     c.stamps = dice.chance(0.3);
     c.movesAtFirst = dice.chance(0.08);
     c.firmware = dice.of<std::string>({"4.1.28", "4.2.8", "4.2.8", "4.3.6"});
+    if (isSingle(c.kind)) {
+        controllers["kind"] = QString::fromStdString(c.kind);
+        if (c.kind == "arduino")
+            controllers["timeout_s"] = ArduinoEmulator::Options().timeout;
+        if (c.kind == "opencr") {
+            controllers["timeout_s"] = OpenCrEmulator::Options().timeout;
+            frame["counts_per_turn"] = OpenCrEmulator::countsPerTurn;
+            c.settings["pid"] = QJsonObject{{"qpps", 16000}}; // the same speed as with the usual counts
+        }
+        if (c.kind != "arduino")
+            controllers["count"] = 1;
+        frame["layout"] = "differential";
+        c.settings["controllers"] = controllers;
+        c.settings["frame"] = frame;
+        c.twoLines = c.movesAtFirst = false;
+        c.vy = 0;
+    }
 }
 
-Fault drawFault(Dice &dice, bool twoLines) {
+/// Nothing of a second controller, or of wheels that turn with those in front.
+void fitSingle(Fault &fault, const std::string &kind) {
+    const std::vector<std::string> kinds = controllerKinds(kind);
+    if (fault.device == "controllers")
+        fault = {"battery", "charge", fault.begin, fault.end, 0};
+    if (fault.device == "controller2" || fault.device == "line2")
+        fault.device.back() = '1';
+    if (fault.device.rfind("rear", 0) == 0)
+        fault.device.replace(0, 4, "front");
+    if (fault.kind == "backward" && kind == "opencr") // its encoders are within its servos
+        fault.kind = "blocked";
+    if (fault.device == "controller1" && std::find(kinds.begin(), kinds.end(), fault.kind) == kinds.end())
+        fault.kind = "deaf";
+}
+
+Fault drawFault(Dice &dice, const Case &c) {
+    const std::vector<std::string> kinds = controllerKinds(c.kind);
     Fault fault;
     const int sort = dice.below(20);
     if (sort < 13) {
         fault.device = dice.chance(0.5) ? "controller1" : "controller2";
-        fault.kind =
-            dice.chance(0.25) ? dice.of<std::string>({"deaf", "latched", "mute"}) : dice.of(controllerKinds);
+        fault.kind = dice.chance(0.25) ? dice.of<std::string>({"deaf", "latched", "mute"}) : dice.of(kinds);
     } else if (sort < 16) {
-        fault.device = twoLines && dice.chance(0.5) ? "line2" : "line1";
+        fault.device = c.twoLines && dice.chance(0.5) ? "line2" : "line1";
         fault.kind = dice.chance(0.5) ? "pulled" : "adapter";
     } else if (sort < 18) {
         fault.device = dice.of(wheels);
@@ -117,10 +164,14 @@ Fault drawFault(Dice &dice, bool twoLines) {
         fault.device = sort == 18 ? "controllers" : "battery";
         fault.kind = sort == 18 ? "swapped" : "charge";
     }
+    if (isSingle(c.kind))
+        fitSingle(fault, c.kind);
     fault.amount = amountOf(fault.kind, dice);
+    if (fault.kind == "corrupt" && !motorKind(c.kind).checksums && dice.chance(0.5))
+        fault.amount = dice.between(0.002, 0.02, 0.002); // of the bytes
     fault.begin = dice.chance(0.2) ? 0 : dice.chance(0.2) ? dice.between(0, 0.5) : dice.between(1, 4.5);
     fault.end = fault.begin + (dice.chance(0.3) ? dice.between(0.03, 0.5) : dice.between(0.5, 4));
-    if (fault.kind == "brownout")
+    if (fault.kind == "brownout" || fault.kind == "restart")
         fault.end = fault.begin + fault.amount;
     return fault;
 }
@@ -142,12 +193,15 @@ std::vector<Fault> possible(const std::vector<Fault> &drawn, double duration) {
 
 } // namespace
 
-QStringList everyFault() {
-    QStringList all{"line pulled", "line adapter", "controllers swapped", "battery charge"};
-    for (const std::string &kind : controllerKinds)
-        all.append(QString::fromStdString("controller " + kind));
-    for (const std::string &kind : wheelKinds)
-        all.append(QString::fromStdString("wheel " + kind));
+QStringList everyFault(const std::string &kind) {
+    QStringList all{"line pulled", "line adapter", "battery charge"};
+    if (!isSingle(kind))
+        all.append("controllers swapped");
+    for (const std::string &fault : controllerKinds(kind))
+        all.append(QString::fromStdString("controller " + fault));
+    for (const std::string &fault : wheelKinds)
+        if (fault != "backward" || kind != "opencr")
+            all.append(QString::fromStdString("wheel " + fault));
     return all;
 }
 
@@ -163,16 +217,18 @@ const std::vector<std::string> &everyAction() {
     return actions;
 }
 
-Case Case::draw(std::uint64_t seed) {
+Case Case::draw(std::uint64_t seed, const std::string &kind) {
     Dice dice(seed);
     Case c;
     c.seed = seed;
+    c.kind = kind;
     drawSettings(c, dice);
     const int faults = dice.chance(0.08) ? 0 : 1 + dice.below(3);
     for (int i = 0; i < faults; ++i) {
-        Fault fault = drawFault(dice, c.twoLines);
+        Fault fault = drawFault(dice, c);
         c.faults.push_back(fault);
-        if (fault.device.rfind("controller", 0) == 0 && fault.device != "controllers" && dice.chance(0.35)) {
+        if (fault.device.rfind("controller", 0) == 0 && fault.device != "controllers" && dice.chance(0.35) &&
+            !isSingle(kind)) {
             fault.device = fault.device == "controller1" ? "controller2" : "controller1"; // both
             c.faults.push_back(fault);
         }
@@ -217,20 +273,21 @@ std::string Case::script() const {
     for (const Fault &f : faults) {
         const std::string amount = f.amount != 0 ? " " + number(f.amount) : "";
         lines.emplace(f.begin, f.device + ": " + f.kind + amount);
-        if (f.kind != "jump" && f.kind != "brownout")
+        if (f.kind != "jump" && f.kind != "brownout" && f.kind != "restart")
             lines.emplace(f.end, f.device + ": " + f.kind + " ends");
     }
     for (const Step &s : steps)
         lines.emplace(
             s.time, (s.action.rfind("the ", 0) == 0 || s.action.rfind("emer", 0) == 0 ? "" : "the client ") +
                         s.action + " (" + number(s.amount) + " s)");
-    std::string text =
-        "  " + std::string(twoLines ? "two lines" : "one line") + ", firmware " + firmware + ", drives " +
-        number(vx) + " m/s, " + number(vy) + " m/s, " + number(omega) + " rad/s, " +
-        (steering.empty() ? "" : steering + " every " + number(steerPeriod) + " s, ") + "lease " +
-        number(lease_s) + " s" + (resets ? ", resets faults" : "") + (stamps ? ", stamps" : "") +
-        (movesAtFirst ? ", wheels turn already" : "") + "\n  settings " +
-        QJsonDocument(settings).toJson(QJsonDocument::Compact).toStdString() + "\n";
+    std::string text = "  " + std::string(twoLines ? "two lines" : "one line") + ", " +
+                       (kind == "roboclaw" ? "firmware " + firmware : kind) + ", drives " + number(vx) +
+                       " m/s, " + number(vy) + " m/s, " + number(omega) + " rad/s, " +
+                       (steering.empty() ? "" : steering + " every " + number(steerPeriod) + " s, ") +
+                       "lease " + number(lease_s) + " s" + (resets ? ", resets faults" : "") +
+                       (stamps ? ", stamps" : "") + (movesAtFirst ? ", wheels turn already" : "") +
+                       "\n  settings " +
+                       QJsonDocument(settings).toJson(QJsonDocument::Compact).toStdString() + "\n";
     for (const auto &[time, line] : lines) {
         char stamp[32];
         std::snprintf(stamp, sizeof stamp, "  %5.2f s  ", time);

@@ -29,6 +29,7 @@ struct Step {
 /// at 20 Hz.
 struct Case {
     std::uint64_t seed = 0;
+    std::string kind = "roboclaw"; ///< what drives the wheels, as the simulator names it
     bool twoLines = false;
     bool movesAtFirst = false; ///< somebody else has set the wheels going, without a time-out
     bool resets = false;       ///< the client releases emergency stop and faults whenever it is refused
@@ -44,7 +45,7 @@ struct Case {
     double duration = 6; ///< then everything is mended, and the robot shall drive again
 
     /// The same for the same seed.
-    static Case draw(std::uint64_t seed);
+    static Case draw(std::uint64_t seed, const std::string &kind);
     bool isUndisturbed() const { return faults.empty() && steps.empty() && steering.empty(); }
     /// Times the velocity, at that time of the case.
     double steered(double time) const;
@@ -53,7 +54,7 @@ struct Case {
 };
 
 /// Every "device kind" that a case may have, devices of a sort counted once: "controller mute".
-QStringList everyFault();
+QStringList everyFault(const std::string &kind);
 std::string sortOf(const Fault &fault);
 /// All actions of steps.
 const std::vector<std::string> &everyAction();

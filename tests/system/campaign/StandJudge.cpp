@@ -8,7 +8,8 @@ namespace campaign {
 
 namespace {
 
-constexpr double radius = 0.1; // of a wheel
+constexpr double radius = 0.1;              // of a wheel
+const char *const damage = "damaged bytes"; // on a wire without checksums
 const char *const wheelNames[] = {"front_left", "front_right", "rear_left", "rear_right"};
 
 std::string print(const char *format, ...) {
@@ -38,20 +39,27 @@ void StandJudge::begin(const Fault &fault) {
         exchanged_ = time();
     if (!some || fault.amount >= 1)
         active_[{fault.device, fault.kind}] = time();
+    if (fault.kind == "corrupt" && !robot_.kind.checksums)
+        active_[{fault.device, damage}] = time();
 }
 
 void StandJudge::end(const Fault &fault) {
-    active_.erase({fault.device, fault.kind});
+    const bool isDead =
+        fault.kind == "brownout" || fault.kind == "restart"; // beyond the end of the case, too
+    if (!isDead || time() >= fault.begin + fault.amount - 0.005)
+        active_.erase({fault.device, fault.kind});
+    if (fault.kind == "corrupt")
+        active_.erase({fault.device, damage});
     ranAway_ = {}; // it is seen to follow again
     if (fault.kind == "swapped")
         exchanged_ = time();
     if (justified_ || (fault.kind != "deaf" && fault.kind != "pulled"))
         return;
     // What it hears then, be it for another one, lets its time-out begin anew.
-    for (int controller = 0; controller < 2; ++controller) {
+    for (int controller = 0; controller < robot_.robot.controllers(); ++controller) {
         double &deadline = deadline_[std::size_t(controller)];
-        deadline = std::max(deadline, time() + robot_.robot.controller(controller).serialTimeout() + margin +
-                                          braking());
+        deadline =
+            std::max(deadline, time() + robot_.robot.controller(controller).timeout() + margin + braking());
     }
 }
 
@@ -118,7 +126,8 @@ std::optional<double> StandJudge::unreachableSince(int controller) const {
 
 std::optional<double> StandJudge::disobedientSince(int controller) const {
     std::optional<double> since = sinceOf(controllerName(controller), "latched");
-    for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
+    const bool controlsStand = robot_.kind.name != std::string("arduino"); // else it takes the power away
+    for (int wheel = 2 * controller; wheel < 2 * controller + 2 && controlsStand; ++wheel) {
         const auto backward = sinceOf(wheelNames[wheel], "backward");
         since = since ? since : backward;
     }
@@ -135,7 +144,7 @@ std::optional<double> StandJudge::unheardSince(int controller) const {
     };
     for (const char *kind : {"mute", "silence", "loss", "corrupt"})
         take(controller, kind);
-    for (int other = 0; other < 2; ++other) {
+    for (int other = 0; other < robot_.robot.controllers(); ++other) {
         if (robot_.lineOf(other) == robot_.lineOf(controller))
             take(other, "echo");
     }
@@ -143,7 +152,7 @@ std::optional<double> StandJudge::unheardSince(int controller) const {
 }
 
 bool StandJudge::isGuarded(int controller) const {
-    return robot_.robot.controller(controller).serialTimeout() > 0 &&
+    return robot_.robot.controller(controller).timeout() > 0 &&
            !sinceOf(controllerName(controller), "stuck_timeout");
 }
 
@@ -152,7 +161,7 @@ bool StandJudge::isGuarded(int controller) const {
 double StandJudge::seeing(int controller) const {
     const int line = robot_.lineOf(controller);
     bool slow = sinceOf("line" + std::to_string(line + 1), "adapter").has_value();
-    for (int other = 0; other < 2; ++other)
+    for (int other = 0; other < robot_.robot.controllers(); ++other)
         slow = slow || (robot_.lineOf(other) == line && sinceOf(controllerName(other), "slow"));
     return slow ? 1.0 : 0.6;
 }
@@ -160,16 +169,22 @@ double StandJudge::seeing(int controller) const {
 // How much longer the wheels of a controller may turn, as it is now.
 void StandJudge::extend(int controller) {
     double &deadline = deadline_[std::size_t(controller)];
-    const double now = time(), timeout = robot_.robot.controller(controller).serialTimeout();
+    const double now = time(), timeout = robot_.robot.controller(controller).timeout();
     const auto allow = [&](double until, const char *excuse) {
         if (until > deadline) {
             deadline = until;
             excuse_ = excuse;
         }
     };
-    for (const char *kind : {"silence", "brownout"}) {
+    for (const char *kind : {"silence", "brownout", "restart"}) {
         if (const auto since = sinceOf(controllerName(controller), kind); since && *since + rolling > ended_)
             allow(std::max(ended_, *since) + rolling, "rolls without power");
+    }
+    const double silence = std::max(longestSilence, timeout + margin);
+    if (sinceOf(controllerName(controller), damage)) { // any command may have become any other
+        if (now > ended_ + reaction + braking() && rim(2 * controller) + rim(2 * controller + 1) > standing)
+            beyond_.insert("hears damaged bytes without a checksum");
+        allow(now + silence + 2 * reaction + fastest() / deceleration_, "beyond");
     }
     const auto unreachable = unreachableSince(controller), disobedient = disobedientSince(controller);
     if (!unreachable && !disobedient)
@@ -185,7 +200,7 @@ void StandJudge::extend(int controller) {
         if (now > std::max(runs, seen) && now > deadline)
             beyond_.insert(unreachable ? "cannot be reached and has no time-out"
                                        : "disobeys and has no time-out");
-        allow(now + (robot_.lines() > 1 ? 1 : 2) * longestSilence + reaction + braking(), "beyond");
+        allow(now + (robot_.lines() > 1 ? 1 : 2) * silence + reaction + braking(), "beyond");
     } else {
         allow(std::max(runs, seen), "its own time-out");
     }
@@ -205,7 +220,7 @@ void StandJudge::watch() {
     last_ = now;
     if (justified_)
         return;
-    for (int controller = 0; controller < 2; ++controller) {
+    for (int controller = 0; controller < robot_.robot.controllers(); ++controller) {
         extend(controller);
         if (disobedientSince(controller))
             disobeyed_[std::size_t(controller)] = now;
@@ -228,7 +243,7 @@ void StandJudge::watch() {
 
 // Of a controller that is not heard nobody knows what it does: to drive on is not justified.
 std::optional<int> StandJudge::lostController() const {
-    for (int controller = 0; controller < 2; ++controller) {
+    for (int controller = 0; controller < robot_.robot.controllers(); ++controller) {
         const auto since = unheardSince(controller);
         if (since && !stalledSince_ && time() > std::max(*since, resumed_) + lost)
             return controller;
@@ -238,12 +253,13 @@ std::optional<int> StandJudge::lostController() const {
 
 void StandJudge::watchGuard() {
     hermes::motorcontrol::DriveEngine &engine = *robot_.engine;
-    const bool drivable = engine.controller(0).isReady() && engine.controller(1).isReady() && !stalledSince_;
-    for (int controller = 0; controller < 2; ++controller) {
+    bool drivable = !stalledSince_;
+    for (int controller = 0; controller < robot_.robot.controllers(); ++controller)
+        drivable = drivable && engine.controller(controller).isReady();
+    for (int controller = 0; controller < robot_.robot.controllers(); ++controller) {
         const bool swapped = sinceOf("controllers", "swapped").has_value();
-        const bool guarded =
-            robot_.robot.controller(swapped ? 1 - controller : controller).serialTimeout() > 0 ||
-            (swapped && robot_.lines() > 1);
+        const bool guarded = robot_.robot.controller(swapped ? 1 - controller : controller).timeout() > 0 ||
+                             (swapped && robot_.lines() > 1);
         double &seconds = unguardedFor_[std::size_t(controller)];
         seconds = guarded || !drivable ? 0 : seconds + time() - last_;
         if (seconds > unguarded)
@@ -255,7 +271,7 @@ void StandJudge::watchGuard() {
 void StandJudge::watchRunaways(double step) {
     if (std::exchange(resets_, robot_.engine->drive().resets()) != robot_.engine->drive().resets())
         ranAway_ = {};
-    for (int wheel = 0; wheel < 4 && justified_ && !stalledSince_; ++wheel) {
+    for (int wheel = 0; wheel < 2 * robot_.robot.controllers() && justified_ && !stalledSince_; ++wheel) {
         double &seconds = ranAway_[std::size_t(wheel)];
         seconds += rim(wheel) > runaway ? step : 0;
         if (seconds > hold_ + reaction + seeing(wheel / 2) / 2)

@@ -22,33 +22,47 @@ constexpr double readiness = 3; // undisturbed, it drives within
 constexpr double slow = 0.05;   // m/s: slower it does not drive
 constexpr quint64 bystander = 1077, rival = 1099;
 
-/// Settings with their defaults where the case says nothing.
-MotorSettings settingsOf(const Case &c, QJsonObject more = {}) {
+/// Settings with their defaults where the case says nothing, and more.
+MotorSettings settingsOf(const Case &c, const QJsonObject &more = {}) {
     Settings settings;
-    declareMotorSettings([&](const Field &field) { settings.declare(field); });
+    declareMotorSettings(settings);
     settings.addRule(checkMotorSettings);
     QJsonObject all = c.settings;
     QJsonObject controllers = all["controllers"].toObject();
     if (c.twoLines)
         controllers["2"] = QJsonObject{{"url", "serial:///dev/ttyACM1?baud=115200"}};
-    for (auto entry = more.begin(); entry != more.end(); ++entry)
-        controllers[entry.key()] = entry.value();
     all["controllers"] = controllers;
+    for (auto group = more.begin(); group != more.end(); ++group) {
+        QJsonObject values = all[group.key()].toObject();
+        const QJsonObject changed = group.value().toObject();
+        for (auto entry = changed.begin(); entry != changed.end(); ++entry)
+            values[entry.key()] = entry.value();
+        all[group.key()] = values;
+    }
     const auto set = settings.set(all);
     if (!set)
         throw std::runtime_error("seed " + std::to_string(c.seed) + ": " + set.error().message.toStdString());
     return MotorSettings::from(settings);
 }
 
-Drivetrain::Options drivetrainOf(const Case &c) {
+Drivetrain::Options drivetrainOf(const Case &c, const MotorSettings &settings) {
     Drivetrain::Options options;
     const bool mecanum = c.settings["frame"].toObject()["layout"].toString() != "differential";
     options.base.kind = mecanum ? WheelBase::Kind::Mecanum : WheelBase::Kind::Differential;
+    options.kind = c.kind;
     options.ownLines = c.twoLines;
     for (std::size_t i = 0; i < options.controller.size(); ++i) {
         options.controller[i].setFirmware(c.firmware);
         options.controller[i].seed = c.seed * 2 + i;
     }
+    options.arduino.seed = options.vesc.seed = options.openCr.seed = options.roboteq.seed = c.seed;
+    options.vesc.timeout = settings.serialTimeout_s; // as a person has set it
+    options.vesc.brakeCurrent = 20;
+    options.openCr.wheelRadius = options.base.radius;
+    options.openCr.halfTrack = options.base.halfTrack;
+    options.openCr.motor.fullSpeed *= settings.countsPerTurn / options.countsPerTurn;
+    options.roboteq.motor.fullSpeed = settings.pid.qpps; // its full scale is that of its owner
+    options.countsPerTurn = settings.countsPerTurn;
     return options;
 }
 
@@ -66,7 +80,7 @@ public:
     explicit Trial(const Case &c)
         : case_(c)
         , settings_(settingsOf(c))
-        , robot_(settings_, drivetrainOf(c))
+        , robot_(settings_, drivetrainOf(c, settings_))
         , judge_(robot_, start) {
         judge_.configure(settings_.emergencyDeceleration, settings_.drive.commandTimeout_s,
                          settings_.encoder.hold_s);
@@ -132,9 +146,10 @@ private:
             failure_ = "it does not drive though nothing is wrong: " + reason();
     }
     std::string reason() {
-        return (robot_.engine->drive().haltReason() + "; " + robot_.engine->controller(0).error() + "; " +
-                robot_.engine->controller(1).error())
-            .toStdString();
+        QString reason = robot_.engine->drive().haltReason();
+        for (int i = 0; i < robot_.robot.controllers(); ++i)
+            reason += "; " + robot_.engine->controller(i).error();
+        return reason.toStdString();
     }
 
     /// One command of the client, made then.
@@ -244,8 +259,10 @@ private:
     }
     void change(const Step &step) {
         const double timeout = std::ceil(step.amount * 2.5) / 10; // 0.1 to 0.5 s
-        const MotorSettings changed = settingsOf(case_, {{"timeout_s", timeout}});
-        robot_.engine->configure(changed);
+        const bool isFixed = case_.kind != "roboclaw" && case_.kind != "roboteq";
+        robot_.engine->configure(
+            settingsOf(case_, isFixed ? QJsonObject{{"pid", QJsonObject{{"p", 1 + timeout}}}}
+                                      : QJsonObject{{"controllers", QJsonObject{{"timeout_s", timeout}}}}));
         judge_.reconfigure();
     }
     /// Whether the client sends nothing then, for what it does while the process stands still.
@@ -293,7 +310,7 @@ private:
             return robot_.setPulled(second, on);
         if (fault.kind == "adapter")
             return robot_.robot.setLatency(second, on ? fault.amount : 0);
-        setController(robot_.robot.controller(second), fault, on);
+        robot_.robot.controller(second).setFault(fault.kind, fault.amount, on);
     }
     static void setWheel(MotorChannel &motor, const Fault &fault, bool on) {
         if (fault.kind == "blocked")
@@ -305,35 +322,6 @@ private:
         else if (on)
             motor.jump(std::int64_t(fault.amount));
     }
-    static void setController(RoboClawEmulator &controller, const Fault &fault, bool on) {
-        RoboClawEmulator::Faults &faults = controller.faults();
-        const std::map<std::string, std::uint32_t> bits{
-            {"emergency_stop", roboclaw::EmergencyStop},
-            {"driver", roboclaw::DriverFaultM1},
-            {"over_temperature", roboclaw::TemperatureError},
-            {"over_current", roboclaw::OverCurrentWarningM1 | roboclaw::OverCurrentWarningM2}};
-        if (const auto bit = bits.find(fault.kind); bit != bits.end())
-            faults.status = on ? faults.status | bit->second : faults.status & ~bit->second;
-        else if (fault.kind == "mute" || fault.kind == "loss")
-            faults.drop = !on ? 0 : fault.kind == "mute" ? 1 : fault.amount;
-        else if (fault.kind == "corrupt")
-            faults.corrupt = on ? fault.amount : 0;
-        else if (fault.kind == "slow")
-            faults.delay = on ? fault.amount : 0;
-        else if (fault.kind == "brownout" && on)
-            controller.restart(fault.amount);
-        else if (bool *flag = flagOf(faults, fault.kind))
-            *flag = on;
-    }
-    static bool *flagOf(RoboClawEmulator::Faults &faults, const std::string &kind) {
-        return kind == "deaf"            ? &faults.deaf
-               : kind == "latched"       ? &faults.latched
-               : kind == "echo"          ? &faults.echo
-               : kind == "stuck_timeout" ? &faults.stuckTimeout
-               : kind == "silence"       ? &faults.silent
-                                         : nullptr;
-    }
-
     // All is mended: the robot must not stay where it is for ever.
     void recover() {
         recovers_ = true;

@@ -9,11 +9,12 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace campaign {
 
-/// The motor control without its thread on a clock of its own, with one line of 115,200 baud or two to
-/// emulated controllers.
+/// The motor control without its thread on a clock of its own, with one line or two to emulated controllers,
+/// of 115,200 baud where they do not demand another speed.
 class VirtualRobot {
 public:
     /// Called after each step of at most a millisecond.
@@ -22,7 +23,9 @@ public:
     VirtualRobot(const hermes::motorcontrol::MotorSettings &settings,
                  const hermes::simulator::Drivetrain::Options &options)
         : robot(options)
-        , ownLines_(options.ownLines) {
+        , kind(hermes::simulator::motorKind(options.kind))
+        , ownLines_(options.ownLines)
+        , byteTime_(10.0 / (kind.baud > 0 ? kind.baud : 115200)) {
         restart(settings, std::nullopt);
     }
 
@@ -33,12 +36,14 @@ public:
             pulled.push_back(line.pulled);
         lines_.clear();
         engine.emplace(settings);
-        if (ownLines_) {
-            lines_.emplace_back(std::vector{&engine->controller(0)});
-            lines_.emplace_back(std::vector{&engine->controller(1)});
-        } else {
-            lines_.emplace_back(std::vector{&engine->controller(0), &engine->controller(1)});
+        std::vector<hermes::motorcontrol::MotorController *> all;
+        for (int i = 0; i < engine->controllers(); ++i) {
+            all.push_back(&engine->controller(i));
+            if (ownLines_)
+                lines_.emplace_back(std::vector{all.back()});
         }
+        if (!ownLines_)
+            lines_.emplace_back(all);
         for (std::size_t i = 0; i < lines_.size(); ++i)
             setPulled(int(i), i < pulled.size() && pulled[i]);
         if (stop)
@@ -86,9 +91,11 @@ public:
 
     std::optional<hermes::motorcontrol::DriveEngine> engine;
     hermes::simulator::Drivetrain robot;
+    vectorlib::Pose2D truth; ///< of the body, which nothing is in the way of
+    const hermes::simulator::MotorKind &kind;
 
 private:
-    static constexpr double period = 0.02, byteTime = 1 / 11520.0, longestStep = 0.001; // seconds
+    static constexpr double period = 0.02, longestStep = 0.001; // seconds
 
     struct Late {
         double due;
@@ -116,7 +123,7 @@ private:
     void pass(double until, const Watch &watch) {
         while (now_ < until) {
             const double step = std::min(longestStep, until - now_);
-            robot.advance(step);
+            truth = truth * robot.advance(step).motion(step);
             now_ = step < longestStep ? until : now_ + step;
             watch();
         }
@@ -143,15 +150,16 @@ private:
         }
     }
     void deliver(int number, const hermes::roboclaw::Bytes &packet) {
-        const double arrived = now_ + byteTime * double(packet.size());
+        const double arrived = now_ + byteTime_ * double(packet.size());
         double end = arrived;
         for (const auto &answer : robot.receive(number, packet.data(), packet.size(), arrived)) {
-            end = std::max(end, arrived + answer.delay) + byteTime * double(answer.bytes.size());
+            end = std::max(end, arrived + answer.delay) + byteTime_ * double(answer.bytes.size());
             lines_[std::size_t(number)].answers.push_back({end, answer.bytes});
         }
     }
 
     const bool ownLines_;
+    const double byteTime_; // seconds
     std::deque<Line> lines_;
     double now_ = 1, nextCycle_ = 1;
 };

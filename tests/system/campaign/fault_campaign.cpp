@@ -2,6 +2,8 @@
 // them on a clock of its own, and checks that the robot stands when it must (see StandJudge). See --help.
 #include "Trial.h"
 
+#include "daemons/simulator/MotorKinds.h"
+
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -10,10 +12,11 @@ using namespace campaign;
 
 namespace {
 
-constexpr const char *usage = R"(Usage: fault_campaign [--cases N] [--seed N] [--keep-going]
+constexpr const char *usage =
+    R"(Usage: fault_campaign [--cases N] [--seed N] [--kind KIND] [--keep-going]
 
 Drives N cases (150), each drawn from its number, from --seed on (1). A case that fails is made as short as it may be
-and still fails, and printed. --seed alone drives that one.
+and still fails, and printed. --seed alone drives that one. KIND is that of motors.kind and controllers.kind (roboclaw).
 )";
 
 /// The same case with something left out or as usual, all ways.
@@ -95,6 +98,7 @@ Case shrunk(Case c, const std::string &failure) {
 }
 
 struct Summary {
+    std::string kind;
     int cases = 0, failures = 0, stops = 0;
     std::set<std::string> faults, actions;
     std::map<std::string, int> beyond;
@@ -116,7 +120,7 @@ struct Summary {
         std::printf(
             "%d of %d cases as they should, %d times the robot had to stand; %zu of %d faults and %zu of %zu "
             "actions of clients, %.0f s\n",
-            cases - failures, cases, stops, faults.size(), everyFault().size(), actions.size(),
+            cases - failures, cases, stops, faults.size(), everyFault(kind).size(), actions.size(),
             everyAction().size(), seconds);
         for (const auto &[how, most] : slowest)
             std::printf("  until all stood, without braking, where a controller %s: %.2f s at most\n",
@@ -139,6 +143,7 @@ void tell(const Case &c, const std::string &failure) {
 int main(int argc, char **argv) {
     long cases = 0;
     std::uint64_t seed = 0;
+    std::string kind = "roboclaw";
     int most = 5; // failures that are told
     for (int i = 1; i < argc; ++i) {
         const bool value = i + 1 < argc;
@@ -146,6 +151,8 @@ int main(int argc, char **argv) {
             cases = std::atol(argv[++i]);
         else if (!std::strcmp(argv[i], "--seed") && value)
             seed = std::strtoull(argv[++i], nullptr, 10);
+        else if (!std::strcmp(argv[i], "--kind") && value)
+            kind = argv[++i];
         else if (!std::strcmp(argv[i], "--keep-going"))
             most = 1000;
         else {
@@ -153,13 +160,19 @@ int main(int argc, char **argv) {
             return 2;
         }
     }
+    if (hermes::simulator::motorKind(kind).name != kind) {
+        std::fprintf(stderr, "fault_campaign: --kind %s: no motor controllers are called so\n%s",
+                     kind.c_str(), usage);
+        return 2;
+    }
     if (cases == 0)
         cases = seed == 0 ? 150 : 1;
     seed = seed == 0 ? 1 : seed;
     const auto began = std::chrono::steady_clock::now();
     Summary summary;
+    summary.kind = kind;
     for (long i = 0; i < cases; ++i) {
-        const Case c = Case::draw(seed + std::uint64_t(i));
+        const Case c = Case::draw(seed + std::uint64_t(i), kind);
         if (cases == 1)
             std::printf("case %llu\n%s", static_cast<unsigned long long>(c.seed), c.script().c_str());
         const Outcome outcome = run(c);

@@ -5,17 +5,20 @@
 namespace vectorlib {
 
 VECTORLIB_BODY void MappedDrive::add(PointSpan<float> points, const std::vector<EdgeRaw2D> &edges,
-                                     const Transformation2D &tracked, TrackedBy by) {
+                                     const Transformation2D &tracked, TrackedBy by, std::uint32_t own) {
     loops.add(points, tracked, by);
     edges_.push_back(edges);
     edges_.back().shrink_to_fit();
+    own_.push_back(own);
     edgeBytes_ += bytesOf(edges_.back());
 }
 
-VECTORLIB_BODY void MappedDrive::restore(LoopCloser::Memory memory,
-                                         std::vector<std::vector<EdgeRaw2D>> edges) {
+VECTORLIB_BODY void MappedDrive::restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges,
+                                         std::vector<std::uint32_t> own) {
     loops.restore(std::move(memory));
     edges_ = std::move(edges);
+    own_ = std::move(own);
+    own_.resize(edges_.size(), all);
     edgeBytes_ = 0;
     for (const std::vector<EdgeRaw2D> &scan : edges_)
         edgeBytes_ += bytesOf(scan);

@@ -14,6 +14,12 @@ VECTORLIB_BODY const ScanReport &MapBuilder::find(PointSpan<float> given, const 
     const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);
     const auto t2 = Clock::now();
     edges_ = &edges;
+    own_ = edges.size();
+    if (!beside.empty()) {
+        joint_ = edges;
+        joint_.insert(joint_.end(), beside.begin(), beside.end());
+        edges_ = &joint_;
+    }
     byScan_ = false;
     const TrackingSettings usual = track.settings;
     expected_ = settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected);
@@ -80,7 +86,7 @@ VECTORLIB_BODY void MapBuilder::clear() {
 VECTORLIB_BODY Transformation2D MapBuilder::expectedByPrevious(PointSpan<float> scan, const Pose2D &given) {
     const Transformation2D expected(given);
     followed_ = true;
-    if (previousPoints_.empty())
+    if (previousPoints_.empty() || scan.empty())
         return expected;
     const ScanPairMatch &motion =
         matchPair(previousPoints_, previousEdges_, scan, *edges_, previousPose_.inverse() * expected);

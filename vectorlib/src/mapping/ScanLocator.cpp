@@ -11,6 +11,8 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
     middle_ = middleTime(scan.seconds);
     scan.stamp += double(middle_);
     raw_ = scan.points;
+    if (scan.second)
+        second.begin(*scan.second);
     const Guess byMotion{motion_.predict(scan.stamp),
                          motion_.twist(),
                          !lastStamp_ || isLastWithin(moment, scan.stamp),
@@ -106,6 +108,7 @@ VECTORLIB_BODY ScanLocator::Found ScanLocator::find(MapBuilder &builder, TimedSc
             scan.points = raw_;
             vectorlib::compensateMotion(scan.points, scan.seconds, middle_, twist);
         }
+        takeBeside(builder, scan, twist);
         const ScanReport &report = builder.find(scan.points, guess.pose);
         if (report.outcome != ScanReport::Outcome::Matched)
             return {tries == 1, tries > 1, report.outcome == ScanReport::Outcome::Lost ? -1.0 : 0.0};
@@ -121,6 +124,19 @@ VECTORLIB_BODY ScanLocator::Found ScanLocator::find(MapBuilder &builder, TimedSc
     const double apart = builder.match().rms / builder.track.settings.finalDistance;
     found.score = builder.match().matchedLength * (1 - apart * apart);
     return found;
+}
+
+VECTORLIB_BODY void ScanLocator::takeBeside(MapBuilder &builder, const TimedScan &scan,
+                                            const Twist2D &twist) {
+    builder.beside.clear();
+    if (!scan.second)
+        return;
+    const double begin = std::min(scan.second->begin(), scan.stamp),
+                 end = std::max(scan.second->end(), scan.stamp);
+    const Twist2D way = scan.odometry ? odometry_.twist(*scan.odometry, begin, end) : twist;
+    second.bring(*scan.second, scan.stamp, way, builder.extract);
+    if (second.isTaken() && !builder.map.isEmpty()) // it never defines the map
+        builder.beside = second.edges();
 }
 
 VECTORLIB_BODY TwistCorrection::Result ScanLocator::twistError(const MapBuilder &builder,

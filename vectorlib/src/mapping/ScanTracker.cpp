@@ -14,6 +14,7 @@ VECTORLIB_BODY void ScanTracker::apply(const ScanTrackerSettings &settings) {
     locate_.tracking = settings.tracking;
     locate_.moment = settings.moment;
     locate_.setMount(settings.sensorOnRobot);
+    locate_.second.setMounts(settings.sensorOnRobot, settings.secondOnRobot);
     check_.restart(); // with another mount the robot is elsewhere
     scanner_ = ScannerCheck();
     search_.maxSeconds = settings.relocalizeSeconds;
@@ -29,6 +30,8 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     const std::optional<double> lastStamp = locate_.lastStamp();
     located_ = locate_(builder, scan, open_);
     counts_.byOdometry += located_.byOdometry;
+    // Whether the second scanner shows the same map from its place.
+    checkSecond(scan);
     // Whether scans and odometry tell the same of the scanner.
     checkScanner(before, lastStamp, scan.stamp);
     // Whether the map speaks against the pose: the scan is lost then.
@@ -63,6 +66,31 @@ VECTORLIB_BODY void ScanTracker::checkScanner(const Transformation2D &before,
         scanner_.add(located_.way, before.inverse() * builder.expected(), stamp - *lastStamp);
 }
 
+VECTORLIB_BODY void ScanTracker::checkSecond(const TimedScan &scan) {
+    SecondScanner &second = locate_.second;
+    if (!scan.second || builder.map.isEmpty() || !place_.isKnown())
+        return;
+    const auto leaveOut = [this, &scan] {
+        builder.beside.clear();
+        builder.find(scan.points, located_.expected.pose());
+    };
+    if (!isMatched() && !builder.beside.empty()) // as it may be its fault
+        leaveOut();
+    const auto contradicted = [this, &scan, &second] { // which costs half a match
+        return second.isShown(builder) ? 0 : fitOf(scan, true, withoutPeopleAndBeyond_).contradicted();
+    };
+    if (isMatched() && !second.agrees(builder, contradicted()) && !builder.beside.empty())
+        leaveOut();
+}
+
+VECTORLIB_BODY PlaceFit ScanTracker::fitOf(const TimedScan &scan, bool bySecond, const PlaceFitter &by) {
+    const SecondScanner &second = locate_.second;
+    const Transformation2D pose(builder.report().pose);
+    const bool isSecond = bySecond && scan.second;
+    return search_.judge(builder.map.slots(), builder.edges(), isSecond ? second.points() : scan.points,
+                         isSecond ? pose * second.mount() : pose, by);
+}
+
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optional<double> &lastStamp) {
     if (maps())
         judgeBreak(scan);
@@ -95,8 +123,7 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     const bool isDue = break_.isSuspect() || counts_.scans % eachNth == 0; // else it would cost half a match
     if (report.outcome == ScanReport::Outcome::Skipped || !isDue)
         return;
-    const PlaceFit fit =
-        search_.judge(builder.map.slots(), builder.edges(), scan.points, pose, withoutPeople_);
+    const PlaceFit fit = fitOf(scan, scan.points.empty(), withoutPeople_);
     const bool isUnknown = !located_.byOdometry && fit.explainedShare() < fewKnown;
     if (!break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown))
         return;
@@ -113,8 +140,7 @@ VECTORLIB_BODY void ScanTracker::breakOff() {
 
 VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan, const std::optional<double> &lastStamp) {
     const Pose2D &pose = builder.report().pose;
-    const PlaceFit fit =
-        search_.judge(builder.map.slots(), builder.edges(), scan.points, Transformation2D(pose), search_.fit);
+    const PlaceFit fit = fitOf(scan, scan.points.empty(), search_.fit);
     evidence_.take(fit.against(), pose, lastStamp ? std::max(0.0, scan.stamp - *lastStamp) : 0);
 }
 

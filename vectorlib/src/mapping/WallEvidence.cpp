@@ -92,7 +92,7 @@ VECTORLIB_BODY void WallEvidence::operator()(const std::vector<LineSegment2D<dou
         if (drive.edges[i].empty() || (last && isSamePlace(*last, pose)))
             continue;
         last = &pose;
-        look(drive.edges[i]);
+        look(drive.edges[i], drive.own ? (*drive.own)[i] : drive.edges[i].size());
         ask(walls, Transformation2D(pose));
     }
 }
@@ -108,10 +108,10 @@ VECTORLIB_BODY void WallEvidence::divide(const std::vector<LineSegment2D<double>
     evidence_.assign(starts_.back(), {});
 }
 
-VECTORLIB_BODY void WallEvidence::look(const std::vector<EdgeRaw2D> &edges) {
+VECTORLIB_BODY void WallEvidence::look(const std::vector<EdgeRaw2D> &edges, std::size_t count) {
     range_.fill(0);
-    for (const EdgeRaw2D &e : edges) {
-        const Vector2D<double> begin = e.segment.begin(), end = e.segment.end();
+    for (std::size_t i = 0; i < count && i < edges.size(); ++i) {
+        const Vector2D<double> begin = edges[i].segment.begin(), end = edges[i].segment.end();
         if (!(begin.cross(end) > 0)) // nor what is not finite
             continue;
         const SightLine line(begin, end);

@@ -140,8 +140,13 @@ VECTORLIB_BODY bool OdometryCheck::add(double stamp, const Pose2D &odometry, con
         return false;
     }
     const Ways piece = begin_->to(end);
-    if (std::hypot(piece.odometry.x, piece.odometry.y) < piece_m &&
-        std::abs(piece.odometry.theta) < piece_rad)
+    constexpr double patience_s = 0.5; // poses that leap for a moment are no way
+    const auto went = [](const Pose2D &way, double part) {
+        return std::hypot(way.x, way.y) >= part * piece_m || std::abs(way.theta) >= part * piece_rad;
+    };
+    // Wheels may turn faster than they tell; but one that is pushed while it stands is not driven.
+    const bool byScans = went(piece.scans, 1) && went(piece.odometry, 0.1) && piece.seconds >= patience_s;
+    if (!went(piece.odometry, 1) && !byScans)
         return false;
     contradiction_.reset();
     if (piece.differ() && before_ && before_->to(end).differ()) // not a single pose that was wrong

@@ -67,6 +67,8 @@ VECTORLIB_BODY PlaceFit PlaceFitter::judge(const WallTiles &tiles, const std::ve
             fit.information += square(1, Eigen::Vector3d(n.x, n.y, turned.cross(n)));
         } else
             fit.blocked += behind > 0;
+        if (beyond > 0 && beside.wall < 0 && behind == 0)
+            fit.before += seenBehind(tiles, p, p + turned * (beyond / turned.norm()), true) > 0;
         if (behind > 0)
             fit.discrepancy += areaBehind(points[i], behind, wallOfPoint * double(sample));
     }
@@ -117,7 +119,8 @@ VECTORLIB_BODY Transformation2D PlaceFitter::improved(const WallTiles &tiles,
     return {pose.x() - (*back)(0), pose.y() - (*back)(1), pose.alpha() - (*back)(2)};
 }
 
-VECTORLIB_BODY double PlaceFitter::seenBehind(const WallTiles &tiles, Vector sensor, Vector p) const {
+VECTORLIB_BODY double PlaceFitter::seenBehind(const WallTiles &tiles, Vector sensor, Vector p,
+                                              bool fronts) const {
     const Vector way = p - sensor;
     const double length = std::min(way.norm(), farthestLook);
     double behind = 0;
@@ -125,7 +128,7 @@ VECTORLIB_BODY double PlaceFitter::seenBehind(const WallTiles &tiles, Vector sen
         tiles.forEachNear(sensor + way * (t / way.norm()), [&](int number) {
             const LineSegment2D<double> &wall = tiles.wall(number);
             const double a = wall.across(sensor), b = wall.across(p);
-            if (a * b >= 0 || std::min(std::abs(a), std::abs(b)) < clearly)
+            if (a * b >= 0 || (fronts && a < 0) || std::min(std::abs(a), std::abs(b)) < clearly)
                 return;
             const double at = a / (a - b), along = wall.along(sensor + way * at);
             if (wall.length() >= shortest && along > beyondEnd && along < wall.length() - beyondEnd)

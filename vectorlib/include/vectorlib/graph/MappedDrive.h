@@ -12,7 +12,9 @@
 #include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/VectorMap.h"
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace vectorlib {
@@ -25,12 +27,17 @@ public:
     /// Of a map that there was before the drive, in the frame of the first pose; it stays as it is.
     std::vector<MapEdge> known;
 
+    /// Of a scan: all its edges were seen from its pose.
+    static constexpr std::uint32_t all = std::numeric_limits<std::uint32_t>::max();
+
     /// The next scan: its points and edges in the sensor's frame (no edges of one that is in doubt), the
-    /// motion since the scan before (the pose, for the first) as it was tracked, and by what.
+    /// motion since the scan before (the pose, for the first) as it was tracked, and by what; own: how many
+    /// edges, the first ones, its sensor saw.
     void add(PointSpan<float> points, const std::vector<EdgeRaw2D> &edges, const Transformation2D &tracked,
-             TrackedBy by);
-    /// Goes on with a drive that was remembered; edges: one list a scan.
-    void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges);
+             TrackedBy by, std::uint32_t own = all);
+    /// Goes on with a drive that was remembered; edges and own: one a scan.
+    void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges,
+                 std::vector<std::uint32_t> own = {});
     /// Memory that it takes, about, but for what is in reserve.
     std::size_t bytes() const { return loops.bytes() + edgeBytes_ + known.size() * sizeof(MapEdge); }
     /// The builder's map becomes that of all scans so far, where they are now.
@@ -61,10 +68,12 @@ public:
     MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const {
         MapReview review;
         review.settings.known = static_cast<int>(known.size());
-        return review(map, {edges_, poses});
+        return review(map, {edges_, poses, &own_});
     }
     /// Of each scan, sensor frame.
     const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }
+    /// How many of them its own sensor saw; may be more than there are.
+    const std::vector<std::uint32_t> &own() const { return own_; }
 
 private:
     static std::size_t bytesOf(const std::vector<EdgeRaw2D> &edges) {
@@ -77,6 +86,7 @@ private:
     }
 
     std::vector<std::vector<EdgeRaw2D>> edges_;
+    std::vector<std::uint32_t> own_;
     std::size_t edgeBytes_ = 0;
 };
 

@@ -57,7 +57,7 @@ struct MatchProbability {
 
     /// Of the features. With the ceiling and the sharpness fitted to the first half of the
     /// pairs of five logs, neighbouring scans and ones farther apart, by hermes-vector experiment calibration
-    /// --half 1 --log intel... (docs/algorithms.md has all of it).
+    /// --half 1 --log intel... (docs/pairs.md has all of it).
     Features weights{-3.92, -10.99, 12.39, 2.44, -3.19};
     double ceiling = 0.986;  ///< however well two scans agree: corrected poses have errors, too
     double sharpness = 36.7; ///< how much a difference of fit tells

@@ -57,6 +57,9 @@ public:
     CorrespondenceTracker track;
     ScanPairMatcher matchPair; ///< of the scan before with this one
     VectorMap map;
+    /// Edges that another scanner saw at the moment of the next scan, in the frame of that scan's sensor:
+    /// they are matched and mapped with its own.
+    std::vector<EdgeRaw2D> beside;
 
     /// Takes a scan (sensor frame, in the order of ScanOrder) and where the sensor is expected to be (map
     /// frame), by odometry or by its motion so far.
@@ -103,6 +106,8 @@ public:
     const std::vector<LineSegment2D<double>> &known() const { return static_; }
     /// The edges of the last scan, sensor frame.
     const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
+    /// How many of them, the first ones, its own sensor saw; the others were beside.
+    std::size_t own() const { return own_; }
 
     /// The sensor was put elsewhere: the next scan is matched with the map alone.
     void forgetPrevious() {
@@ -143,6 +148,8 @@ private:
     }
 
     const std::vector<EdgeRaw2D> *edges_ = nullptr;
+    std::vector<EdgeRaw2D> joint_; // own edges and those beside
+    std::size_t own_ = 0;
     std::vector<LineSegment2D<double>> static_;
     std::vector<int> numbers_;
     std::vector<int> partner_;

@@ -18,6 +18,7 @@ ScanTrackerSettings namedTrackerSettings(const Number &number) {
     s.relocalizeAfter = std::int64_t(number("matcher.relocalize_after"));
     s.relocalizeSeconds = number("matcher.relocalize_s");
     s.sensorOnRobot = {number("sensor.x_m"), number("sensor.y_m"), number("sensor.theta_rad")};
+    s.secondOnRobot = {number("sensor2.x_m"), number("sensor2.y_m"), number("sensor2.theta_rad")};
     return s;
 }
 

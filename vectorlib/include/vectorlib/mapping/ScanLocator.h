@@ -7,6 +7,7 @@
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/mapping/SecondScanner.h"
 #include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/motion/MotionModel.h"
 #include "vectorlib/motion/Odometry.h"
@@ -37,6 +38,7 @@ public:
     TrackingSettings tracking;    ///< where the pose is well expected
     /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
     double moment = 0.5;
+    SecondScanner second; ///< its edges are taken beside those of a scan while it is believed
 
     /// The scan's points become those of one moment, the middle of its time, and its stamp this moment.
     LocatedScan operator()(MapBuilder &builder, TimedScan &scan, OpenDirection &open);
@@ -48,6 +50,7 @@ public:
     void move(const Transformation2D &moved) {
         motion_.move(moved);
         odometry_.move(moved);
+        second.move(moved);
     }
     /// The sensor's pose in the frame of the robot.
     void setMount(const Pose2D &sensor) { odometry_.setMount(sensor); }
@@ -97,6 +100,9 @@ private:
     static TrackingSettings poorly(const TrackingSettings &well);
     // The two guesses differ by more than the speed of a robot changes between two scans.
     static bool leaps(const Guess &a, const Guess &b, double seconds);
+    // Brings the second scanner's scan to the moment of the scan; where no odometry tells it, by this
+    // velocity.
+    void takeBeside(MapBuilder &builder, const TimedScan &scan, const Twist2D &twist);
     bool isStraightened(const TimedScan &scan) const { return compensateMotion && !scan.seconds.empty(); }
     bool isLastWithin(double seconds, double stamp) const {
         return lastStamp_ && stamp > *lastStamp_ && stamp - *lastStamp_ <= seconds;

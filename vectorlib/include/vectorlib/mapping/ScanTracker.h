@@ -20,6 +20,7 @@
 #include "vectorlib/motion/Odometry.h"
 #include "vectorlib/motion/OpenDirection.h"
 #include "vectorlib/motion/ScannerCheck.h"
+#include "vectorlib/places/PlaceFitter.h"
 #include "vectorlib/places/PlaceSearch.h"
 #include "vectorlib/places/Relocalized.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
@@ -39,6 +40,7 @@ struct ScanTrackerSettings {
     bool compensateMotion = true; ///< straighten scans that were taken while the sensor moved
     bool useOdometry = true;      ///< where a scan has any; else the motion is expected to go on as before
     Pose2D sensorOnRobot;         ///< pose of the sensor in the frame of the robot, whose odometry it is
+    Pose2D secondOnRobot;         ///< the same of the second scanner, where there is one
     TrackingSettings tracking;    ///< where the pose is well expected
     /// A pose is well expected by odometry, or when the last scan is not longer ago than this; seconds.
     double moment = 0.5;
@@ -77,7 +79,8 @@ public:
     std::function<EarSettings(const EarSettings &)> segmentation;
 
     ScanTracker() {
-        withoutPeople_.shortest = 0.5;
+        withoutPeople_.shortest = withoutPeopleAndBeyond_.shortest = 0.5;
+        withoutPeopleAndBeyond_.beyond = 5;
         apply(ScanTrackerSettings());
     }
 
@@ -152,6 +155,8 @@ public:
     const std::optional<OdometryCheck::Ways> &contradiction() const { return check_.contradiction(); }
     /// What the drive tells of the scanner.
     const ScannerCheck &scanner() const { return scanner_; }
+    /// What is known of the second scanner.
+    const SecondScanner &second() const { return locate_.second; }
     /// Whether the last scan is straight; else it is in doubt and stays out of the map.
     bool isStraight() const { return located_.isStraight; }
     const MotionModel &motion() const { return locate_.motion(); }
@@ -175,6 +180,10 @@ private:
     void setUp(TimedScan &scan);
     // The motion since a pose, where the odometry and the scan before tell it, each on its own.
     void checkScanner(const Transformation2D &before, const std::optional<double> &lastStamp, double stamp);
+    // A scan of the second scanner that contradicts is left out, and the pose found again without it.
+    void checkSecond(const TimedScan &scan);
+    // How the points of a scan lie in the map, or those of the second scanner, each seen from its place.
+    PlaceFit fitOf(const TimedScan &scan, bool bySecond, const PlaceFitter &by);
     // A scan that too much speaks against, or whose place is sought, is lost.
     void judge(const TimedScan &scan, const std::optional<double> &lastStamp);
     // In a growing map: a scan that the one before does not show, where the two were taken close together.
@@ -206,7 +215,8 @@ private:
     PlaceKnowledge place_;
     bool grows_ = true;
     DriveBreak break_;
-    PlaceFitter withoutPeople_; // they are drawn, too: short walls do not speak against a pose
+    PlaceFitter withoutPeople_;          // they are drawn, too: short walls do not speak against a pose
+    PlaceFitter withoutPeopleAndBeyond_; // for the second scanner: what lies before walls speaks, too
     OpenDirection open_;
     CounterEvidence evidence_;
     Clock::time_point nextSearch_;

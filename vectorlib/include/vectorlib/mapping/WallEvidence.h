@@ -9,6 +9,7 @@
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/VectorMap.h"
+#include "vectorlib/observation/Observer.h"
 
 #include <algorithm>
 #include <array>
@@ -120,8 +121,9 @@ private:
         return std::hypot(a.x - b.x, a.y - b.y) < settings.newPlace &&
                std::abs(wrapAngle(a.theta - b.theta)) < settings.newHeading;
     }
-    // How far the scan saw in each direction; 0 where it has no edge.
-    void look(const std::vector<EdgeRaw2D> &edges);
+    // How far the scan saw in each direction by its first edges; 0 where it has no edge. What another scanner
+    // saw beside them tells nothing of the sight from this one.
+    void look(const std::vector<EdgeRaw2D> &edges, std::size_t count);
     void ask(const std::vector<LineSegment2D<double>> &walls, const Transformation2D &pose);
     // A part at a place, of a wall whose front lies `across` towards the sensor.
     void judge(Vector2D<double> at, double across, PartEvidence &evidence) const;

@@ -7,6 +7,7 @@
 #include "vectorlib/places/WallTiles.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -18,12 +19,14 @@ namespace vectorlib {
 /// How a scan lies in a map at some pose.
 struct PlaceFit {
     static constexpr double maxHiddenLead = 0.0125; ///< of a lead, by what walls hide
+    static constexpr double leastKnown = 0.3;       ///< of the points, as if the map knew so many
     Transformation2D pose;                          ///< of the sensor in the map's frame
     double points = 0;                              ///< that were compared
     double explained = 0;   ///< of them, with a wall of the map beside them that faces alike
     double distances = 0;   ///< sum of their squared distances from it; m^2
     double hidden = 0;      ///< explained points that another wall of the map hides
     double blocked = 0;     ///< other points that a wall of the map hides
+    double before = 0;      ///< other points before a wall of the map; see PlaceFitter::beyond
     double discrepancy = 0; ///< area seen behind walls of the map; m^2
     /// What each object of the scan says for the place, and last what walls of the map hide; in points.
     std::array<double, ScanObjects::most + 1> said{};
@@ -35,6 +38,12 @@ struct PlaceFit {
     /// What speaks against the pose: the share of the points that are seen through walls, and half of that of
     /// those on no wall.
     double against() const { return points > 0 ? hiddenShare() + 0.5 * (1 - explainedShare()) : 0; }
+    /// The share that contradicts, of what the map knows there: points seen through walls, and half of those
+    /// before walls, as these may be people.
+    double contradicted() const {
+        const double against = hidden + blocked + 0.5 * before;
+        return against > 0 ? against / std::max(explained - hidden + against, leastKnown * points) : 0;
+    }
     /// Up to 1: the explained share, less what lies apart and what is seen through walls.
     double score() const { return points > 0 ? std::accumulate(said.begin(), said.end(), 0.0) / points : 0; }
     /// How much higher the score is than that of another place of the same scan, when the object that speaks
@@ -61,6 +70,7 @@ public:
     double scale = 0.5;      ///< a residual of this share of the gate weighs a quarter
     double shortest = 0;     ///< of the walls that hide; metres
     double clearly = 0.2;    ///< a wall hides a point when it and the sensor are farther from it; metres
+    double beyond = 0;       ///< a point is before a wall that shows its front so far behind; metres
 
     /// Gauss-Newton steps on the points' distances from their walls, while the gate narrows; every
     /// `sample`-th point takes part.
@@ -85,8 +95,9 @@ private:
     Beside wallBeside(const WallTiles &tiles, Vector p, Vector direction, double width) const;
     Transformation2D improved(const WallTiles &tiles, const std::vector<WallPoint> &points,
                               const Transformation2D &pose, double width, std::size_t sample) const;
-    // How much of the way to a point lies behind a wall, as a share; 0 where none stands clearly between.
-    double seenBehind(const WallTiles &tiles, Vector sensor, Vector p) const;
+    // How much of the way to a point lies behind a wall, as a share; 0 where none stands clearly between. Of
+    // all walls, or of those that show their front.
+    double seenBehind(const WallTiles &tiles, Vector sensor, Vector p, bool fronts = false) const;
     static double areaBehind(const WallPoint &point, double behind, double wallOfPoint) {
         const Vector p(point.position);
         const double turn = std::abs(p.cross(Vector(point.direction))) * wallOfPoint; // angle times r^2
