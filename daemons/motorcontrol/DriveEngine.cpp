@@ -144,8 +144,16 @@ void DriveEngine::trackWheels(double now) {
         ++telemetry_.counterJumps;
         odometry_.doubt(0.1, 0.1);
     }
+    WheelValues duties{};
+    for (int i = 0; i < wheelCount; ++i) {
+        const WheelMount &wheel = settings_.wheels[i];
+        if (wheel.sign == 0)
+            continue;
+        if (const auto duty = controllers_[wheel.controller]->freshDuty())
+            duties[i] = (*duty)[wheel.motor];
+    }
     // Neither the control of the velocity nor a standstill is to be trusted where an encoder is not.
-    const auto disobey = faults_.judgeWheels(sent_, motion->speeds, drive_, now);
+    const auto disobey = faults_.judgeWheels(sent_, motion->speeds, duties, drive_, now);
     for (int i = 0; i < wheelCount; ++i) {
         if (!disobey[i].isEmpty())
             controllers_[settings_.wheels[i].controller]->bar("is barred: " + disobey[i]);

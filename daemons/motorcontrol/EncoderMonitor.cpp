@@ -8,15 +8,18 @@ namespace hermes::motorcontrol {
 namespace {
 
 constexpr double longestPause_s = 0.25; // between two readings; after more the controller is lost
+constexpr double pushing = 0.5;         // duty: so much turns a free wheel, however slow its command is
 constexpr double forgetting = 0.02;     // of the time in which nothing shows how the wheel follows
 
 } // namespace
 
-EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measured) const {
+EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measured, double duty) const {
+    const bool moves = !(std::abs(measured) < settings_.moving); // also when it is no number
+    if (commanded != 0 && !moves && std::abs(duty) >= pushing && std::abs(measured) < std::abs(commanded) / 2)
+        return Mismatch::StandsStill;
     if (measured >= slowest_ - settings_.moving && measured <= fastest_ + settings_.moving)
         return Mismatch::None;
     const bool told = std::abs(commanded) >= settings_.commanded;
-    const bool moves = !(std::abs(measured) < settings_.moving); // also when it is no number
     if (told && !moves)
         return Mismatch::StandsStill;
     if (told && commanded * measured < 0)
@@ -28,7 +31,7 @@ EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measur
     return commanded == 0 && moves ? Mismatch::MovesUncommanded : Mismatch::None;
 }
 
-EncoderMonitor::Mismatch EncoderMonitor::judge(double commanded, double measured, double now) {
+EncoderMonitor::Mismatch EncoderMonitor::judge(double commanded, double measured, double now, double duty) {
     const double step = last_ > 0 ? std::clamp(now - last_, 0.0, longestPause_s) : 0;
     const double braked = last_ > 0 ? settings_.deceleration * step : HUGE_VAL;
     if (last_ <= 0)
@@ -37,7 +40,7 @@ EncoderMonitor::Mismatch EncoderMonitor::judge(double commanded, double measured
     slowest_ = std::min({commanded, told_[0], told_[1], slowest_ + braked});
     fastest_ = std::max({commanded, told_[0], told_[1], fastest_ - braked});
     told_ = {commanded, told_[0]};
-    const Mismatch found = compare(commanded, measured);
+    const Mismatch found = compare(commanded, measured, duty);
     const bool follows = std::abs(commanded) >= settings_.commanded && std::abs(measured) >= settings_.moving;
     const double share = found != Mismatch::None ? 1 : follows ? -1 : -forgetting;
     unexplained_s_ = std::max(0.0, unexplained_s_ + share * step);

@@ -23,8 +23,9 @@ public:
 
     void set(const Settings &settings) { settings_ = settings; }
 
-    /// Once a cycle. Gives what is wrong when it has been wrong for hold_s in all.
-    Mismatch judge(double commanded, double measured, double now);
+    /// Once a cycle. Gives what is wrong when it has been wrong for hold_s in all. duty is that of its motor
+    /// (-1 to 1), 0 where the controller does not tell it.
+    Mismatch judge(double commanded, double measured, double now, double duty = 0);
     /// The wheel was not watched for a while: what it was told before explains nothing. What has added up
     /// stays.
     void skip() { last_ = 0; }
@@ -32,7 +33,7 @@ public:
     void forget() { last_ = unexplained_s_ = 0; }
 
 private:
-    Mismatch compare(double commanded, double measured) const;
+    Mismatch compare(double commanded, double measured, double duty) const;
 
     Settings settings_;
     double unexplained_s_ = 0;

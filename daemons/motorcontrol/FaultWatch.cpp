@@ -75,10 +75,11 @@ void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now
 }
 
 std::array<QString, wheelCount> FaultWatch::judgeWheels(const WheelValues &setPoint,
-                                                        const WheelValues &speeds, Drive &drive, double now) {
+                                                        const WheelValues &speeds, const WheelValues &duties,
+                                                        Drive &drive, double now) {
     std::array<QString, wheelCount> texts;
     for (int i = 0; i < wheelCount; ++i) {
-        const auto mismatch = encoders_[i].judge(setPoint[i], speeds[i], now);
+        const auto mismatch = encoders_[i].judge(setPoint[i], speeds[i], now, duties[i]);
         if (mismatch == EncoderMonitor::Mismatch::None)
             continue;
         texts[i] = QString("wheel %1 %2 (%3 rad/s told, %4 rad/s measured)")

@@ -14,10 +14,10 @@ public:
     /// Battery, currents, temperature and status bits of the controllers that have told all of them. Once a
     /// cycle; levels are for people.
     void judgeControllers(Telemetry &telemetry, Drive &drive, double now);
-    /// setPoint: what the wheels were told when these speeds were measured.
-    /// Gives what each wheel does that does not obey; empty for those that do.
+    /// setPoint: what the wheels were told when these speeds were measured; duties: of their motors, 0 where
+    /// they are not known. Gives what each wheel does that does not obey; empty for those that do.
     std::array<QString, wheelCount> judgeWheels(const WheelValues &setPoint, const WheelValues &speeds,
-                                                Drive &drive, double now);
+                                                const WheelValues &duties, Drive &drive, double now);
     /// The wheels were not watched for a while.
     void skipWheels();
     /// Somebody has released the faults.

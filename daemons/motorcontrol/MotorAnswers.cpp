@@ -215,9 +215,12 @@ void MotorController::readyAnswered(const Command &command, const Bus::Outcome &
     }
     if (command.kind == Kind::ReadEncoders)
         return takeCounts(outcome);
+    const auto dutyBefore = std::exchange(readings_.duty, std::nullopt);
     const std::string fault = device_->take(command, readings_);
-    if (!device_->isVital(command))
+    if (readings_.duty)
         lastDuty_ = clock_;
+    else
+        readings_.duty = dutyBefore;
     nextSlow();
     if (slow_ == 0)
         lastSlow_ = clock_;

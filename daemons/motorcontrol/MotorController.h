@@ -6,6 +6,7 @@
 #include "daemons/motorcontrol/StandstillWatch.h"
 #include "protocol/drive/Bus.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,8 +29,9 @@ public:
     static constexpr int taskCount = 3;
     static constexpr double lostAfter_s = 0.25;  ///< without answers
     static constexpr double slowLostAfter_s = 3; ///< without one of the slow readings
-    static constexpr double leastRate_Hz = 10;   ///< of set-points and readings: slower nothing is driven
-    static constexpr double overspeed = 1.5;     ///< times full duty: faster no motor turns
+    static constexpr double freshDuty_s = 0.3;
+    static constexpr double leastRate_Hz = 10; ///< of set-points and readings: slower nothing is driven
+    static constexpr double overspeed = 1.5;   ///< times full duty: faster no motor turns
 
     /// A request, and how long its answer is waited for (seconds). For one that is patient nothing else is
     /// driven.
@@ -93,6 +95,11 @@ public:
     const QString &error() const { return error_; }
     const QString &version() const { return version_; }
     const drive::Readings &readings() const { return readings_; }
+    /// The duties of its motors (-1 to 1), unless they were read more than freshDuty_s ago: older ones may be
+    /// of another set-point.
+    std::optional<std::array<double, 2>> freshDuty() const {
+        return clock_ - lastDuty_ <= freshDuty_s ? readings_.duty : std::nullopt;
+    }
     /// After which it stops by itself when it is told nothing, once it is set up.
     drive::DeviceTimeout timeout() const { return device_->timeout(); }
     /// Cycles whose encoders were not read in time.

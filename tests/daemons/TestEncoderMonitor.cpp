@@ -27,26 +27,30 @@ class TestEncoderMonitor : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void whatIsAMismatch_data() {
-        const Rows<double, double, int> row("commanded", "measured", "expected");
-        row("follows", 5.0, 4.5, int(Mismatch::None));
-        row("both stand", 0.0, 0.0, int(Mismatch::None));
-        row("commanded but not moving", 5.0, 0.1, int(Mismatch::StandsStill));
-        row("commanded backwards but not moving", -5.0, 0.0, int(Mismatch::StandsStill));
-        row("moving but not commanded", 0.0, -0.3, int(Mismatch::MovesUncommanded));
-        row("runs away", 2.0, -6.0, int(Mismatch::MovesBackwards));
-        row("too slow to judge", 0.4, 0.0, int(Mismatch::None));
-        row("against a slow command", 0.3, -9.9, int(Mismatch::MovesBackwards));
-        row("far faster than a slow command", 0.3, 9.9, int(Mismatch::MovesTooFast));
-        row("brakes", 5.0, 10.0, int(Mismatch::None));
-        row("no number", 0.0, notANumber, int(Mismatch::MovesUncommanded));
+        const Rows<double, double, int, double> row("commanded", "measured", "expected", "duty");
+        row("follows", 5.0, 4.5, int(Mismatch::None), 0.0);
+        row("both stand", 0.0, 0.0, int(Mismatch::None), 0.0);
+        row("commanded but not moving", 5.0, 0.1, int(Mismatch::StandsStill), 0.0);
+        row("commanded backwards but not moving", -5.0, 0.0, int(Mismatch::StandsStill), 0.0);
+        row("moving but not commanded", 0.0, -0.3, int(Mismatch::MovesUncommanded), 0.0);
+        row("runs away", 2.0, -6.0, int(Mismatch::MovesBackwards), 0.0);
+        row("too slow to judge", 0.4, 0.0, int(Mismatch::None), 0.4);
+        row("slowly told, pushed and not moving", 0.1, 0.0, int(Mismatch::StandsStill), 0.6);
+        row("slowly told backwards, pushed and not moving", -0.1, 0.0, int(Mismatch::StandsStill), -0.6);
+        row("follows a hill slowly", 0.4, 0.4, int(Mismatch::None), 0.6);
+        row("told to stand, duty of before", 0.0, 0.0, int(Mismatch::None), 0.6);
+        row("against a slow command", 0.3, -9.9, int(Mismatch::MovesBackwards), 0.0);
+        row("far faster than a slow command", 0.3, 9.9, int(Mismatch::MovesTooFast), 0.0);
+        row("brakes", 5.0, 10.0, int(Mismatch::None), 0.0);
+        row("no number", 0.0, notANumber, int(Mismatch::MovesUncommanded), 0.0);
     }
 
     void whatIsAMismatch() {
-        FETCH(double, commanded, double, measured);
+        FETCH(double, commanded, double, measured, double, duty);
         EncoderMonitor monitor;
         Mismatch found = Mismatch::None;
         for (int i = 0; i <= 30; ++i)
-            found = monitor.judge(commanded, measured, 1 + 0.02 * i);
+            found = monitor.judge(commanded, measured, 1 + 0.02 * i, duty);
         QTEST(int(found), "expected");
     }
 

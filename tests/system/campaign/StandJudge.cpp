@@ -200,7 +200,9 @@ void StandJudge::extend(int controller) {
         if (now > std::max(runs, seen) && now > deadline)
             beyond_.insert(unreachable ? "cannot be reached and has no time-out"
                                        : "disobeys and has no time-out");
-        allow(now + (robot_.lines() > 1 ? 1 : 2) * silence + reaction + braking(), "beyond");
+        // An attempt must be seen to fail before the silence; then comes the next one.
+        allow(now + seeing(controller) + (robot_.lines() > 1 ? 1 : 2) * silence + reaction + braking(),
+              "beyond");
     } else {
         allow(std::max(runs, seen), "its own time-out");
     }

@@ -31,6 +31,8 @@ public:
     void setStalled(bool stalled);
     /// What is seen of slow motions begins anew.
     void reconfigure() { reconfigured_ = time(); }
+    /// Another process has begun: it knows nothing of what the wheels did before.
+    void restart() { ranAway_ = {}; }
 
     /// A command that was made then was accepted.
     void justify(double made);

@@ -202,6 +202,7 @@ private:
         robot_.restart(settings_, latch.has(Drive::emergencyCause)
                                       ? std::optional(latch.reason(Drive::emergencyCause))
                                       : std::nullopt);
+        judge_.restart();
         ++client_;
         nextCommand_ = time();
     }
@@ -232,14 +233,16 @@ private:
         } else if (a == "the motor control is killed") {
             return endProcess(step.amount);
         } else if (a == "loses its connection") {
+            if (drive.lease().isHeldBy(client_)) // else a rival drives on
+                ends();
             drive.clientGone(client_);
             ++client_;
             silentUntil_ = step.amount > 1 ? time() + step.amount : 0;
-            ends();
         } else if (a == "gives the control back") {
+            if (drive.lease().isHeldBy(client_))
+                ends();
             drive.release(client_);
             silentUntil_ = time() + step.amount;
-            ends();
         } else if (a == "is taken over") {
             takeOver(step);
         } else if (a == "changes settings") {
