@@ -171,7 +171,7 @@ Result<void> drive(Client &client, const Arguments &arguments) {
         return ready;
     const std::optional<Twist2D> velocity = *velocityOf(arguments);
     const double radius = leastRadiusOf(client, arguments);
-    DriveKeys keys;
+    DriveKeys keys(radius > 0);
     Driver driver(client, arguments, "motor.drive", [&] {
         Twist2D request = velocity ? *velocity : keys.request(monotonicNow());
         if (const double most = std::abs(request.vx) / radius; !velocity && radius > 0)

@@ -44,10 +44,10 @@ DriveKeys::Action DriveKeys::takeOne(char key, double now) {
         return press(way_, -1, now);
     case 'a':
     case 'A':
-        return press(turn_, 1, now);
+        return turn(1, now);
     case 'd':
     case 'D':
-        return press(turn_, -1, now);
+        return turn(-1, now);
     case '+':
         speed_ = std::min(speed_ * factor, fastest);
         return Action::None;
@@ -67,6 +67,12 @@ DriveKeys::Action DriveKeys::takeOne(char key, double now) {
 DriveKeys::Action DriveKeys::press(Axis &axis, double sign, double now) {
     axis = {sign, now + held_s};
     return Action::None;
+}
+
+DriveKeys::Action DriveKeys::turn(double sign, double now) {
+    if (isCar_)
+        press(way_, way_.sign < 0 ? -1 : 1, now);
+    return press(turn_, sign, now);
 }
 
 DriveKeys::Action DriveKeys::stop() {

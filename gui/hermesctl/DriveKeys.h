@@ -8,12 +8,16 @@ namespace hermes::ctl {
 
 /// What the keys pressed at a terminal ask of a robot. A terminal tells of no key that is let go, so what a
 /// key asks for holds for a moment only; the way and the turn apart, so that two keys in turn drive a bend.
+/// It repeats only the key that was pressed last: a car, which turns only on its way, drives with it, too.
 class DriveKeys {
 public:
     static constexpr double held_s = 0.3;
     static constexpr const char *help = "arrows or W A S D drive while they are pressed, + and - change the "
                                         "speed, Q ends; any other key stops";
     enum class Action { None, Stop, Quit };
+
+    explicit DriveKeys(bool isCar)
+        : isCar_(isCar) {}
 
     /// The bytes of a terminal; an escape sequence may come in pieces. now: seconds of a clock that never
     /// jumps. What is no key of ours stops.
@@ -29,8 +33,10 @@ private:
 
     Action takeOne(char key, double now);
     Action press(Axis &axis, double sign, double now);
+    Action turn(double sign, double now);
     Action stop();
 
+    bool isCar_;
     Axis way_, turn_;
     double speed_ = 0.2;  // m/s
     QByteArray sequence_; // an escape sequence so far

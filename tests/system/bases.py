@@ -6,6 +6,7 @@ import os
 import tempfile
 import time
 
+from drive_ctl import Keys
 from support import BINARIES, Process, free_port, simulated_hall, wait_for
 
 TWIST = {"vx": 0.2, "omega": 0.1}
@@ -39,6 +40,20 @@ def drive(motors, simulator, way):
     wait_for("the way", is_there)
 
 
+def bend(address, simulator):
+    """A car turns by the key that turns alone."""
+    keys = Keys(address)
+
+    def is_bend():
+        keys.press(b"d")
+        twist = simulator.call("sim.state")["twist"]
+        return twist["vx"] > 0.1 and twist["omega"] < -0.05
+
+    wait_for("a bend by one key", is_bend, 20)
+    keys.press(b"q")
+    assert keys.end()[0] == 0
+
+
 def check(name, folder):
     baud, timeout_s, both, simulated, driven = BASES[name]
     kind = name.split(",")[0]
@@ -57,6 +72,9 @@ def check(name, folder):
             pose, (x, y, theta) = motors.call("motor.state")["pose"], truth(simulator)
             off, turned = math.dist((pose["x"], pose["y"]), (x, y)), abs(math.remainder(pose["theta"] - theta, 2 * math.pi))
             assert off < 0.01 and turned < 0.02, (name, off, turned)
+            if name.endswith("a car"):
+                motors.call("control.release")
+                bend(f"127.0.0.1:{control.port}", simulator)
             motors.call("control.acquire", timeout_s=5)
             drive(motors, simulator, 0.1)
             longest_m = motors.call("motor.state")["longest_way_m"] * TWIST["vx"] / motors.call("settings.get", path="motion.vx")
