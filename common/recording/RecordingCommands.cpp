@@ -12,9 +12,11 @@ namespace hermes {
 
 namespace {
 
-/// The free space to warn at lies above that to stop at.
+/// There is a folder, and the free space to warn at lies above that to stop at.
 std::vector<SchemaViolation> checkRoom(const QJsonObject &settings) {
     const QJsonObject record = settings.value("record").toObject();
+    if (const QJsonValue folder = record.value("folder"); folder.toString().isEmpty())
+        return {{"record.folder", folder, "the name of a folder"}};
     const QJsonValue warn = record.value("free_warn_bytes");
     if (warn.toDouble() >= record.value("free_floor_bytes").toDouble())
         return {};

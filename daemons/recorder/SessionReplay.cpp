@@ -24,9 +24,10 @@ void SessionControl::replay(const QString &name, const SessionPlayer::Options &o
         if (isReplaying())
             return replay(name, options, done);
         if (options.from_s > session->duration_s)
-            return done(
-                invalidParams({{"from_s", options.from_s, "a time of the session"}},
-                              QString("from_s: the session has %1 s").arg(session->duration_s, 0, 'f', 1)));
+            return done(invalidParams({{"from_s", options.from_s, "a time of the session"}},
+                                      QString("from_s is %1 s, expected at most the %2 s of the session")
+                                          .arg(options.from_s)
+                                          .arg(session->duration_s, 0, 'f', 1)));
         forget(session->name);
         now_.session = session->id;
         now_.start = session->start;

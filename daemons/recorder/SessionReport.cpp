@@ -259,7 +259,9 @@ Result<QString> explainSession(SessionReader &session, std::optional<double> at_
     const double end_s = lengthOf(session, history);
     if (at_s && *at_s > end_s)
         return invalidParams({{"at_s", *at_s, "a time of the session"}},
-                             QString("at_s: the session has %1 s").arg(end_s, 0, 'f', 1));
+                             QString("at_s is %1 s, expected at most the %2 s of the session")
+                                 .arg(*at_s)
+                                 .arg(end_s, 0, 'f', 1));
     return Page(session, history).about(at_s);
 }
 

@@ -347,4 +347,8 @@ MatcherState ScanMatcher::matcherState() const {
     return state;
 }
 
+int run(int argc, char **argv) {
+    return runDaemon<ScanMatcher>(argc, argv);
+}
+
 } // namespace hermes::scanmatcher

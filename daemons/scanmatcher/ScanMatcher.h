@@ -136,4 +136,7 @@ private:
     PastFaults pastDrops_;
 };
 
+/// main() of the daemon.
+int run(int argc, char **argv);
+
 } // namespace hermes::scanmatcher

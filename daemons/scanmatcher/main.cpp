@@ -1,5 +1,7 @@
-#include "daemons/scanmatcher/ScanMatcher.h"
+namespace hermes::scanmatcher {
+int run(int argc, char **argv); // without its header, which reads much of vectorlib
+}
 
 int main(int argc, char **argv) {
-    return hermes::runDaemon<hermes::scanmatcher::ScanMatcher>(argc, argv);
+    return hermes::scanmatcher::run(argc, argv);
 }

@@ -96,7 +96,8 @@ Result<void> Conformance::result() const {
     if (isEnded_)
         return Error(ErrorCode::NotReady,
                      "ended before all was tried, by a signal or because nobody reads this");
-    const QString counts = QString("%1 hold, %2 warnings").arg(told_.value("ok")).arg(told_.value("warn"));
+    const QString counts =
+        QString("%1 hold, %2 with a warning").arg(told_.value("ok")).arg(told_.value("warn"));
     if (const int failures = told_.value("fail"); failures > 0)
         return Error(ErrorCode::DeviceFault, QString("%1 do not hold; %2").arg(failures).arg(counts));
     if (!arguments_.json)

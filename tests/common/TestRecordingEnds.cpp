@@ -58,6 +58,7 @@ private Q_SLOTS:
         Logger logger(root.path());
         QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
         QVERIFY(!logger.set("free_floor_bytes", 1)); // above free_warn_bytes
+        QVERIFY(!logger.set("folder", ""));
         QVERIFY(logger.set("free_warn_bytes", 1e15));
         QTRY_COMPARE(logger.level("disk"), "error");
         QVERIFY(logger.recording.isActive());

@@ -108,7 +108,7 @@ private Q_SLOTS:
         QVERIFY2(text.contains("did not stop by a fault") && text.contains("the control was released"),
                  qPrintable(text));
         QVERIFY(explain(folder, 4).contains("Cause: the client that drove gave the control back"));
-        QVERIFY(explain(folder, 60).startsWith("at_s: the session has "));
+        QVERIFY(explain(folder, 60).startsWith("at_s is 60 s, expected at most the "));
     }
 
     // Who looks for the cause wants the first of what followed one another, of the last drive.
@@ -219,7 +219,7 @@ private Q_SLOTS:
         folder.finish();
         QVERIFY2(explain(folder).contains("Cause: STOP"), qPrintable(explain(folder)));
         QVERIFY(explain(folder, -1e300).contains("did not stop"));
-        QVERIFY(explain(folder, 1e300).startsWith("at_s: the session has "));
+        QVERIFY(explain(folder, 1e300).startsWith("at_s is 1e+300 s, expected "));
         QCOMPARE(explain(SessionFolder()).section(": ", -1),
                  QString("found no sidecar of a recording, expected some"));
     }
