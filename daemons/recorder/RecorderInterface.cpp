@@ -2,6 +2,7 @@
 #include "common/client/DaemonAddress.h"
 #include "common/recording/DiskError.h"
 #include "common/settings/SettingsTable.h"
+#include "daemons/recorder/CaptureExport.h"
 #include "daemons/recorder/Recorder.h"
 #include "daemons/recorder/SessionExport.h"
 #include "daemons/recorder/SessionFiles.h"
@@ -190,8 +191,9 @@ void Recorder::declareStudies() {
             .needs(Role::Engineer)
             .param(nameField("Its name"))
             .param(Field::text("format", "csv: a table of each topic; tum: poses; carmen: a log of lidar and "
-                                         "odometry; mcap: all in one file")
-                       .choices({"csv", "tum", "carmen", "mcap"}))
+                                         "odometry; mcap: all in one file; pcap: the packets of each lidar "
+                                         "in one")
+                       .choices({"csv", "tum", "carmen", "mcap", "pcap"}))
             .param(Field::array("topics",
                                 "Which, as DAEMON/TOPIC; * stands for any text. Without it all, or "
                                 "those of the format",
@@ -204,7 +206,9 @@ void Recorder::declareStudies() {
                        floor = settings().number("record.free_floor_bytes")](
                           SessionReader &session) -> Result<QJsonValue> {
                           const Result<double> room = freeBytes(session.folder());
-                          const double needed = floor + 10 * session.bytes();
+                          const double needed =
+                              floor + (format == "pcap" ? CaptureExport(session.folder()).bytes()
+                                                        : 10 * session.bytes());
                           if (room && *room < needed)
                               return diskError(QString("%1: %2 MB are free, %3 MB may be needed")
                                                    .arg(session.folder())

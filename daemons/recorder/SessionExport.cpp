@@ -4,6 +4,7 @@
 #include "common/files/NamedFile.h"
 #include "common/platform/PrivateFiles.h"
 #include "common/recording/DiskError.h"
+#include "daemons/recorder/CaptureExport.h"
 #include "daemons/recorder/CarmenText.h"
 #include "protocol/mcap/Writer.h"
 #include "protocol/wire/JsonText.h"
@@ -266,6 +267,8 @@ Result<QStringList> exportSession(SessionReader &session, const QString &format,
     ExportFiles files(into);
     if (const auto begun = files.begin(); !begun)
         return begun.error();
+    if (format == "pcap")
+        return CaptureExport(session.folder()).writeInto(into);
     quint64 messages = 0;
     const auto readAll = [&](const QStringList &usual, const auto &take) {
         session.read(wantedOf(topics.isEmpty() ? usual : topics), [&](const SessionMessage &message) {
@@ -311,7 +314,7 @@ Result<QStringList> exportSession(SessionReader &session, const QString &format,
                                                    " bytes, expected fewer in one file: export fewer topics");
     } else {
         return Error(ErrorCode::InvalidParams,
-                     "format: found " + format + ", expected csv, tum, carmen or mcap");
+                     "format: found " + format + ", expected csv, tum, carmen, mcap or pcap");
     }
     if (messages == 0)
         return Error(ErrorCode::NotReady,

@@ -10,7 +10,9 @@ namespace hermes::recorder {
 ///  csv:    a file a topic; its columns are the fields of the schema, lists are JSON
 ///  tum:    a file a topic that tells poses: stamp x y z qx qy qz qw; else scanmatcher/pose
 ///  carmen: ODOM lines and a ROBOTLASER1 line a scan, of motorcontrol/odometry and the scan2d of lidar or
-///  scanner mcap:   everything in one file
+///          scanner
+///  mcap:   everything in one file
+///  pcap:   the packets of each lidar in one file; without topics
 /// Errors: InvalidParams (format), NotReady (no such messages), InputOutput.
 Result<QStringList> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
                                   const QString &into);

@@ -1,3 +1,5 @@
+#include "common/capture/PcapWriter.h"
+#include "daemons/recorder/CaptureExport.h"
 #include "daemons/recorder/SessionExport.h"
 #include "protocol/mcap/Reader.h"
 #include "protocol/messages/Motion.h"
@@ -154,7 +156,8 @@ private Q_SLOTS:
 
     void whatIsNotThereIsTold_data() {
         const Rows<QString, QStringList, QString> row("format", "topics", "told");
-        row("format", "xls", {}, "found xls, expected csv, tum, carmen or mcap");
+        row("format", "xls", {}, "found xls, expected csv, tum, carmen, mcap or pcap");
+        row("no lidar", "pcap", {}, "found no capture of a lidar");
         row("topic", "csv", {"a/b"}, "found no messages of these topics");
         row("no scan", "carmen", {"motorcontrol/odometry"}, "found no scan with odometry");
     }
@@ -163,6 +166,39 @@ private Q_SLOTS:
         const auto paths = exported(format, topics);
         QVERIFY(!paths);
         QVERIFY2(paths.error().message.contains(told), qPrintable(paths.error().message));
+    }
+
+    void capturesAreJoined() {
+        QTemporaryDir folder;
+        std::vector<std::string> written;
+        // 9999 comes before 10000; the tail of one is torn.
+        for (const char *name :
+             {"velodynelogger-0001", "velodynelogger-9999", "velodynelogger-10000", "other-0001"}) {
+            PcapWriter writer;
+            const QString path = folder.filePath(QString(name) + ".pcap");
+            QVERIFY(writer.open(path.toStdString()));
+            for (int i = 0; i < 3; ++i) {
+                const std::string payload = name + std::to_string(i);
+                const auto *bytes = reinterpret_cast<const std::uint8_t *>(payload.data());
+                QVERIFY(writer.write({1000 + i, 1, 2, 2368, 2368, bytes, payload.size()}));
+                if (payload[0] == 'v')
+                    written.push_back(payload);
+            }
+            QVERIFY(writer.close());
+        }
+        QFile torn(folder.filePath("velodynelogger-9999.pcap"));
+        QVERIFY(torn.resize(torn.size() - 5));
+        written.erase(written.begin() + 5);
+        QVERIFY(QFile::link("/etc/passwd", folder.filePath(".velodynelogger.pcap.new")));
+        const auto paths = CaptureExport(folder.path()).writeInto(folder.path());
+        QVERIFY2(paths, paths ? "" : qPrintable(paths.error().message));
+        QCOMPARE(*paths,
+                 QStringList({folder.filePath("other.pcap"), folder.filePath("velodynelogger.pcap")}));
+        std::vector<std::string> read;
+        QVERIFY(readPcapTail(paths->last().toStdString(), 0, [&](const Datagram &datagram) {
+            read.emplace_back(reinterpret_cast<const char *>(datagram.payload), datagram.size);
+        }));
+        QVERIFY(read == written);
     }
 
     void aFolderThatIsALinkIsRefused() {
