@@ -160,9 +160,10 @@ class Setup(SetupCase):
         for _ in range(3):  # on a busy machine the simulated controllers may answer too late
             findings, serial = self.found("--yes")
             proposal = supervisor.call("setup.propose")
-            if "motorcontrol" in proposal["settings"]:
+            kinds = [serial[line]["kind"] for line in (simulated, self.motors)]
+            if kinds == ["roboclaw", "roboclaw"]:
                 break
-        self.assertEqual((serial[simulated]["kind"], serial[self.motors]["kind"]), ("roboclaw", "roboclaw"))
+        self.assertEqual(kinds, ["roboclaw", "roboclaw"], serial)
         for controller in proposal["settings"]["motorcontrol"]["controllers"].values():
             self.assertEqual(controller["url"], f"serial://{self.motors}?baud=115200")
         self.assertNotIn("velodynelogger", proposal["settings"])
