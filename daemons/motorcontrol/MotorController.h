@@ -20,6 +20,12 @@ namespace hermes::motorcontrol {
 /// though it was told to, is sent nothing but set-points of zero until it has acknowledged one and its
 /// encoders show that it stands. Where it does not, its line is silent after each attempt for longer than the
 /// controller's own time-out. Only then it is set up, and only then it gets other set-points.
+///
+/// A stop is sent again (stopAnswered() decides, next() gives it to the line):
+///  the first one was not acknowledged                     at once, 0.03 s after it was sent
+///  a later one was not, or the wheels turn all the same   after silence_s(): its own time-out and 0.1 s
+///  it is barred                                           every 5 s
+///
 /// One that turned though it was told to stand, or whose encoders cannot be trusted, is barred: it is told to
 /// stand every five seconds, and left in silence, until somebody releases it.
 class MotorController {

@@ -59,7 +59,9 @@ private:
 
 /// Settings of CorrespondenceTracker: which pairs it takes, and how far it trusts the expected pose.
 struct TrackingSettings {
-    PermittedError permitted = {0.5, 0.5, 0.4}; ///< of the expected pose
+    /// Of the expected pose (matcher.permitted_m of the daemon): the first gate, which narrows to
+    /// finalDistance and finalAngle.
+    PermittedError permitted = {0.5, 0.5, 0.4};
     double finalDistance =
         0.10;                 ///< root mean square distance from the line beyond which a pair is none; metres
     double finalAngle = 0.17; ///< the same for the angle between the segments; radians
