@@ -365,10 +365,10 @@ private:
 class TestDoubt : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    // About one drive in fifty fails, and one right pose in twelve is doubted, more in crowds: so much is not
-    // reached yet.
+    // About one drive in fifty fails, and one right pose in twenty is doubted, more in crowds and without
+    // odometry: so much is not reached yet.
     void aWrongPoseIsDoubted() {
-        constexpr int maxFailed = 33, maxDoubted = 9, few = 2;
+        constexpr int maxFailed = 33, maxDoubted = 11, few = 2;
         const int asked = qEnvironmentVariableIntValue("HERMES_CASES"), cases = asked > 0 ? asked : 50;
         const unsigned first = asked > 0 ? newSeed() : 1;
         std::vector<Figures> kinds(troubles.size());

@@ -354,12 +354,12 @@ private Q_SLOTS:
         const auto matched = ScanReport::Outcome::Matched;
         DriveBreak drive;
         QVERIFY(!drive.isContradicted(matched, 0.3, false)); // the map is bent
-        drive.take(matched, true, false, 0);
+        drive.take(matched, true, false, false, 0);
         QVERIFY(drive.isSuspect());
         QVERIFY(!drive.isContradicted(matched, 0.4, false));
         QVERIFY(!drive.isSuspect());
         drive.correct(); // it is not bent any more
-        drive.take(matched, true, false, 0);
+        drive.take(matched, true, false, false, 0);
         QVERIFY(drive.isContradicted(matched, 0.3, false));
     }
 
@@ -367,19 +367,95 @@ private Q_SLOTS:
     void aDriveTearsBetweenTwoScans() {
         const auto matched = ScanReport::Outcome::Matched;
         DriveBreak carried, walked;
-        carried.take(matched, true, true, 0.2);
+        carried.take(matched, true, true, false, 0.2);
         QVERIFY(carried.mayBeTorn() && !carried.isTorn());
-        carried.take(matched, true, true, 0.01);
+        carried.take(matched, true, true, false, 0.01);
         QVERIFY(carried.isTorn());
         for (int i = 0; i < 5; ++i) {
-            walked.take(matched, true, true, 0.2);
+            walked.take(matched, true, true, false, 0.2);
             QVERIFY(!walked.isTorn());
         }
         QVERIFY(!walked.mayBeTorn());
         DriveBreak bent;
-        bent.take(matched, true, true, 0.2);
-        bent.take(matched, true, true, std::nullopt); // there was nothing to compare
+        bent.take(matched, true, true, false, 0.2);
+        bent.take(matched, true, true, false, std::nullopt); // there was nothing to compare
         QVERIFY(!bent.isTorn());
+    }
+
+    void whatTheMapShowsTearsNoDrive() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        drive.take(matched, true, false, true, 0.2);
+        QVERIFY(drive.isSuspect() && !drive.mayBeTorn());
+        QVERIFY(!drive.isContradicted(matched, 0.5, false));
+        drive.take(matched, true, true, true, 0.01);
+        QVERIFY(!drive.isTorn());
+    }
+
+    // As the lost scan between the two is passed over.
+    void twoScansThatTheSameOneContradictTearADrive() {
+        const auto lost = ScanReport::Outcome::Lost;
+        DriveBreak drive;
+        drive.take(ScanReport::Outcome::Matched, true, true, false, 0);
+        drive.take(lost, true, false, false, 0.4);
+        QVERIFY(drive.mayBeTorn() && !drive.isTorn());
+        drive.take(lost, true, false, false, 0.4, true);
+        QVERIFY(drive.isTorn());
+    }
+
+    // A corridor with doors whose ends are out of reach, in a finished map: only the ends of walls tell how
+    // far along it the sensor is.
+    void endsOfWallsTellThePlaceAlongACorridor_data() {
+        QTest::addColumn<double>("wrong"); // metres
+        for (const double wrong : {-0.7, -0.4, 0.0, 0.7, 1.5})
+            QTest::addRow("%g m off", wrong) << wrong;
+    }
+    void endsOfWallsTellThePlaceAlongACorridor() {
+        QFETCH(double, wrong);
+        const std::vector<LineSegment2D<float>> corridor{
+            {{-40, -1}, {-3.1f, -1}}, {{-2.2f, -1}, {0.4f, -1}}, {{2, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 5;
+        tracker = std::make_unique<ScanTracker>();
+        for (const LineSegment2D<float> &wall : corridor)
+            tracker->builder.map.add(EdgeRaw2D({}, LineSegment2D<double>(wall), 0.01));
+        tracker->grow(false);
+        tracker->place({wrong, 0, 0});
+        see(corridor, {0, 0, 0}, 10);
+        const Pose2D &pose = tracker->builder.report().pose;
+        QVERIFY2(std::abs(pose.x) < 0.2, saying(pose.x));
+        see(corridor, {0.1, 0, 0}, 10.1); // what was mended is no motion
+        QVERIFY2(std::abs(pose.x - 0.1) < 0.2, saying(pose.x));
+        QVERIFY2(tracker->trust() > 0.5, saying(tracker->trust()));
+    }
+
+    // Nothing there tells where.
+    void aBareCorridorIsNotSlidAlong() {
+        const std::vector<LineSegment2D<float>> corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 5;
+        tracker = std::make_unique<ScanTracker>();
+        for (const LineSegment2D<float> &wall : corridor)
+            tracker->builder.map.add(EdgeRaw2D({}, LineSegment2D<double>(wall), 0.01));
+        tracker->grow(false);
+        tracker->place({1, 0, 0});
+        for (int i = 0; i < 20; ++i)
+            QVERIFY(isNear(see(corridor, {0, 0, 0}, 10 + 0.1 * i).pose, {1, 0, 0}));
+    }
+
+    // Wheels slip by no more than they turn; and a map that grows is drawn as the pose errs.
+    void aDirectionIsOpenByTheWay() {
+        OpenDirection stands, drives, mapped;
+        for (int i = 0; i <= 40; ++i) {
+            const Transformation2D pose(0.5 * i, 0, 0);
+            stands.dispute({0.5, 0}, 0);
+            mapped.follow(pose, true, true, true, std::nullopt, i, {});
+            drives.follow(pose, true, true, false, std::nullopt, i, {});
+        }
+        QCOMPARE(stands.belief(), 1.0);
+        QVERIFY2(mapped.belief() > 0.95, saying(mapped.belief()));
+        QVERIFY2(drives.belief() < 0.5, saying(drives.belief()));
+        for (int i = 0; i < 5; ++i)
+            mapped.dispute({0.5, 0}, 0.1);
+        QVERIFY2(mapped.belief() < 0.5, saying(mapped.belief()));
     }
 
     // The odometry knows nothing of it, and the map does not have the place.

@@ -35,7 +35,7 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
                          ? disputed(builder, guess, located.way.translation().norm(), open.slip())
                          : std::nullopt;
     if (off) {
-        open.dispute(*off);
+        open.dispute(*off, located.way.translation().norm());
         located.isDisputed = true;
         found = findByOdometry(builder, scan, guess);
     } else if (scan.odometry && (found.score < 0 || (isStraightened(scan) &&
@@ -163,7 +163,6 @@ VECTORLIB_BODY void ScanLocator::tellHowSure(MapBuilder &builder, const Guess &g
     track = guess.well ? tracking : poorly(tracking);
     ScanPairSettings &pair = builder.matchPair.settings;
     pair = guess.well ? ScanPairSettings() : ScanPairSettings::forPoorExpectation();
-    pair.leavesOpen = guess.byOdometry;
     if (!guess.deviations)
         return;
     track.expectedDeviationXY = guess.deviations->xy;

@@ -112,10 +112,14 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     const bool isShown =
         builder.isFollowed() &&
         (!builder.isExpectedByScan() || builder.matchPair.match().agreement.explained() >= fewExplained);
+    const Match &m = builder.match();
+    const bool isMapped = isMatched() && located_.byOdometry && !isSurprising &&
+                          m.reliability >= openReliability && m.matchedLength >= mostMapped * m.visibleLength;
     const bool isPaired = builder.isExpectedByScan() || !builder.isFollowed();
     break_.take(report.outcome, located_.isWellExpected && !located_.way.exceeds(near_m, near_rad),
-                isShown && !isSurprising,
-                isPaired ? std::optional(builder.matchPair.match().agreement.contradicted()) : std::nullopt);
+                isShown && !isSurprising, isMapped,
+                isPaired ? std::optional(builder.matchPair.match().agreement.contradicted()) : std::nullopt,
+                builder.isPassedOver());
     if (break_.isTorn())
         return breakOff();
     if (break_.mayBeTorn())
@@ -139,9 +143,32 @@ VECTORLIB_BODY void ScanTracker::breakOff() {
 }
 
 VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan, const std::optional<double> &lastStamp) {
+    if (!grows_ && builder.match().reliability < openReliability)
+        slide(scan);
     const Pose2D &pose = builder.report().pose;
     const PlaceFit fit = fitOf(scan, scan.points.empty(), search_.fit);
     evidence_.take(fit.against(), pose, lastStamp ? std::max(0.0, scan.stamp - *lastStamp) : 0);
+}
+
+VECTORLIB_BODY void ScanTracker::slide(const TimedScan &scan) {
+    const Transformation2D pose(builder.report().pose);
+    WallDirections walls;
+    for (const EdgeRaw2D &edge : builder.edges())
+        walls.add(pose.rotate(edge.segment.normal()), edge.segment.length());
+    if (walls.isEmpty())
+        return;
+    const Vector2D<double> along = walls.weakest();
+    const std::optional<double> off =
+        search_.slide(builder.map.slots(), builder.edges(), scan.points, pose, along);
+    if (!off)
+        return;
+    open_.place(); // nothing is open there
+    if (*off == 0)
+        return;
+    const Transformation2D moved(*off * along.x, *off * along.y, 0);
+    builder.move(moved);
+    locate_.move(moved);
+    check_.restart();
 }
 
 VECTORLIB_BODY void ScanTracker::checkOdometry(const TimedScan &scan) {
@@ -156,7 +183,7 @@ VECTORLIB_BODY void ScanTracker::checkOdometry(const TimedScan &scan) {
 
 VECTORLIB_BODY void ScanTracker::followOpen(const TimedScan &scan) {
     const bool isOpen = !isMatched() || builder.match().reliability < openReliability;
-    open_.follow(Transformation2D(builder.report().pose), isOpen, located_.byOdometry, scan.odometry,
+    open_.follow(Transformation2D(builder.report().pose), isOpen, located_.byOdometry, maps(), scan.odometry,
                  scan.stamp, Transformation2D(settings_.sensorOnRobot));
 }
 
@@ -265,7 +292,7 @@ VECTORLIB_BODY std::optional<PoseTrust::Features> ScanTracker::trustFeatures() c
         return std::nullopt;
     PoseTrust::Features f = PoseTrust::features(m, builder.expected(), builder.track.settings.finalDistance);
     const double covered = std::clamp((f[5] - fewMatched) / (1 - fewMatched), 0.0, 1.0);
-    if (located_.byOdometry && f[1] < openReliability)
+    if ((located_.byOdometry || !grows_) && f[1] < openReliability)
         f[1] = std::max(f[1], coveredReliability * covered * open_.belief());
     return f;
 }

@@ -5,12 +5,14 @@
 namespace vectorlib {
 
 VECTORLIB_BODY void OpenDirection::follow(const Transformation2D &pose, bool isOpen, bool isByOdometry,
-                                          const std::optional<OdometryTrack> &odometry, double stamp,
-                                          const Transformation2D &mount) {
+                                          bool grows, const std::optional<OdometryTrack> &odometry,
+                                          double stamp, const Transformation2D &mount) {
     const double way = last_ ? (pose.translation() - last_->translation()).norm() : 0;
     last_ = pose;
     if (!isOpen)
         disputed_ = {};
+    if (grows)
+        deviation_ *= std::max(0.0, 1 - way / beside_m);
     deviation_ = isOpen ? deviation_ + (isByOdometry ? slip_ : unguided) * way : 0;
     if (odometry && !isOpen)
         learn(pose, odometry->epoch(), odometry->at(stamp) * mount);

@@ -136,6 +136,34 @@ VECTORLIB_BODY PlaceFit PlaceSearch::judge(const std::vector<MapEdge> &slots,
     return by.judge(index_.tiles(), scan.points(), pose, 1, true, scan.wallOfPoint());
 }
 
+VECTORLIB_BODY std::optional<double> PlaceSearch::slide(const std::vector<MapEdge> &slots,
+                                                        const std::vector<EdgeRaw2D> &edges,
+                                                        PointSpan<float> points, const Transformation2D &pose,
+                                                        Vector2D<double> along) {
+    constexpr int most = int(farthestSlide / slideStep + 0.5), same = 3; // steps
+    scan.take(edges, points);
+    index_.follow(slots);
+    const auto fitAt = [&](int k, bool looksThrough) {
+        const Vector2D<double> at = pose.translation() + along * (slideStep * k);
+        return fit.judge(index_.tiles(), scan.points(), {at.x, at.y, pose.alpha()}, 1, looksThrough,
+                         scan.wallOfPoint());
+    };
+    std::array<double, 2 * most + 1> scores{};
+    for (int k = -most; k <= most; ++k)
+        scores[std::size_t(k + most)] = fitAt(k, false).score();
+    const int best = int(std::max_element(scores.begin(), scores.end()) - scores.begin()) - most;
+    const double rival = scores[std::size_t(best + most)] - clearLead;
+    for (int k = -most; k <= most; ++k)
+        if (std::abs(k - best) > same && scores[std::size_t(k + most)] > rival)
+            return std::nullopt;
+    if (most - std::abs(best) < same) // a better one may be farther away
+        return std::nullopt;
+    if (scores[most] > rival)
+        return 0;
+    const bool isBetter = fitAt(best, true).against() + clearLead < fitAt(0, true).against();
+    return isBetter ? std::optional(slideStep * best) : std::nullopt;
+}
+
 template <typename IsLate>
 void PlaceSearch::search(IsLate isLate) {
     refine(propose(index_, scan, isLate));

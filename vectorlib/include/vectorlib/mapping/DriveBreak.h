@@ -28,10 +28,14 @@ public:
     /// The map was made anew: what it hid does not count.
     void correct() { hidden_ = knownHidden_ = 0; }
     /// Takes the outcome of a scan, whether it was expected near the one before, and whether that shows it;
-    /// the share of it that the one before contradicts, where the two were compared.
-    void take(ScanReport::Outcome outcome, bool isNear, bool isFollowed, std::optional<double> contradicted) {
+    /// whether the map shows it where the odometry tells: then the drive did not break, and people go by;
+    /// the share of it that the one before contradicts, where the two were compared, and whether that is
+    /// still the one with which the last scan was compared.
+    void take(ScanReport::Outcome outcome, bool isNear, bool isFollowed, bool isMapped,
+              std::optional<double> contradicted, bool isByTheSame = false) {
         const bool isLost = outcome == ScanReport::Outcome::Lost;
-        follow(isNear && contradicted, contradicted.value_or(0));
+        isMapped_ = isMapped;
+        follow(isNear && contradicted, contradicted.value_or(0), isByTheSame && isLost);
         if (!isSuspect_ && !isInsisted_ && isNear && (isLost || !isFollowed)) {
             isSuspect_ = true;
             knownHidden_ = hidden_;
@@ -40,7 +44,8 @@ public:
     }
     /// Whether the drive broke, and no scan has agreed with the map since.
     bool isSuspect() const { return isSuspect_; }
-    /// Whether the two show different places, whatever the map tells; the next scan decides, as people go on.
+    /// Whether the two show different places; the next scan decides, as people go on: compared with this one
+    /// it is of the same place, compared with the one before of another one again.
     bool mayBeTorn() const { return torn_ > 0; }
     bool isTorn() const { return isTorn_; }
     /// Takes the share of the scan's points that lie behind walls. True where the scan contradicts the map
@@ -48,7 +53,8 @@ public:
     /// pose.
     bool isContradicted(ScanReport::Outcome outcome, double hidden, bool isUnknown) {
         hidden_ = hidden;
-        const bool isContradicted = isSuspect_ && (hidden - knownHidden_ > maxHidden || isUnknown);
+        const bool isContradicted =
+            isSuspect_ && !isMapped_ && (hidden - knownHidden_ > maxHidden || isUnknown);
         isSuspect_ = isSuspect_ && (isContradicted || outcome == ScanReport::Outcome::Lost);
         return isContradicted;
     }
@@ -57,16 +63,17 @@ private:
     static constexpr double usualShare = 0.2; // by which the usual follows a scan
     static constexpr double quiet = 0.3;      // of what tore the drive, in the scan after
 
-    void follow(bool isCompared, double contradicted) {
-        isTorn_ = isCompared && torn_ > 0 && contradicted < quiet * torn_;
+    void follow(bool isCompared, double contradicted, bool isByTheSame) {
+        const bool isConfirmed = isByTheSame ? contradicted > maxTorn : contradicted < quiet * torn_;
+        isTorn_ = isCompared && torn_ > 0 && isConfirmed;
         const bool mayBeTorn =
-            isCompared && !isInsisted_ && contradicted > maxTorn + usualTorn * contradicted_;
+            isCompared && !isInsisted_ && !isMapped_ && contradicted > maxTorn + usualTorn * contradicted_;
         torn_ = mayBeTorn ? contradicted : 0;
         contradicted_ += usualShare * (contradicted - contradicted_);
     }
     double hidden_ = 0, knownHidden_ = 0; // of one of the last scans, and before the break
     double contradicted_ = 0, torn_ = 0;  // usually, and where the drive may be torn
-    bool isSuspect_ = false, isInsisted_ = false, isTorn_ = false;
+    bool isSuspect_ = false, isInsisted_ = false, isMapped_ = false, isTorn_ = false;
 };
 
 } // namespace vectorlib

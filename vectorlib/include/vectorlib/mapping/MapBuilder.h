@@ -79,6 +79,13 @@ public:
             report_.outcome = ScanReport::Outcome::Lost;
     }
 
+    /// Between the two: the scan lies elsewhere after all, by this motion of the map.
+    void move(const Transformation2D &moved) {
+        pose_ = moved * pose_;
+        match_.pose = pose_;
+        report_.pose = pose_.pose();
+    }
+
     /// The map takes edges (sensor frame) that were seen from a pose that is known otherwise; it stays as it
     /// is told, and so does what is known of the last scan but for match() and its candidates.
     void place(const std::vector<EdgeRaw2D> &edges, const Pose2D &pose);

@@ -2,8 +2,10 @@
 
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/motion/Odometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -18,14 +20,18 @@ public:
 
     /// A scan was taken at a pose (map frame). `isOpen`: the walls left a direction open, or showed nothing.
     /// The odometry is that of the robot during the scan, where there was any; `mount` the sensor's pose on
-    /// it.
-    void follow(const Transformation2D &pose, bool isOpen, bool isByOdometry,
+    /// it. A map that grows errs as the pose does by which it is drawn: there only the way along the walls
+    /// beside the sensor counts.
+    void follow(const Transformation2D &pose, bool isOpen, bool isByOdometry, bool grows,
                 const std::optional<OdometryTrack> &odometry, double stamp, const Transformation2D &mount);
     /// The share of the way by which the odometry errs, as far as the drive tells.
     double slip() const { return slip_; }
-    /// The scans told a pose so far from that of the odometry, which was taken (metres, map frame). What
-    /// moves about the sensor goes to and fro; slip adds up.
-    void dispute(const Vector2D<double> &off) { disputed_ = disputed_ + off; }
+    /// The scans told a pose so far from that of the odometry, which was taken (metres, map frame), after so
+    /// much way by it. Wheels slip by no more than they turn: what is beyond moves about the sensor. That
+    /// goes to and fro; slip adds up.
+    void dispute(const Vector2D<double> &off, double way) {
+        disputed_ = disputed_ + off * std::min(1.0, way / off.norm());
+    }
     /// The sensor was put somewhere, or the map was made anew: nothing is open there.
     void place() {
         deviation_ = 0;
@@ -43,6 +49,7 @@ private:
     static constexpr double right_m = 0.3;
     /// The share of the way by which the motion so far errs, the odometry at the least, and at first.
     static constexpr double unguided = 0.6, leastSlip = 0.02, firstSlip = 0.03;
+    static constexpr double beside_m = 3; // of a growing map: drawn on so much of the way
     static constexpr double piece_m = 1,
                             kept = 0.7; // of the way that is compared; of what was learned before
 

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace vectorlib {
@@ -126,10 +127,18 @@ public:
     /// How the scan lies in the map at a pose, whatever other places there are, by the measure `by`.
     PlaceFit judge(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
                    PointSpan<float> points, const Transformation2D &pose, const PlaceFitter &by);
+    /// How far along a direction (of unit length) from a pose the scan lies clearly better than anywhere else
+    /// within `farthestSlide`; metres. Nothing where no place there is clearly the best: lines alone look
+    /// the same all along a corridor, their ends do not.
+    std::optional<double> slide(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
+                                PointSpan<float> points, const Transformation2D &pose,
+                                Vector2D<double> along);
     PlaceIndex &index() { return index_; }
 
 private:
     using Clock = std::chrono::steady_clock;
+    static constexpr double farthestSlide = 3, slideStep = 0.1; // metres
+    static constexpr double clearLead = 0.015; // of the best place along a direction, in PlaceFit::score
     static constexpr double samePlace = 0.5, sameHeading = 0.17; // metres, radians: found from two proposals
 
     template <typename IsLate>
