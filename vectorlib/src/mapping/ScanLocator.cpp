@@ -35,7 +35,7 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
                          ? disputed(builder, guess, located.way.translation().norm(), open.slip())
                          : std::nullopt;
     if (off) {
-        open.dispute(*off, located.way.translation().norm());
+        open.dispute(*off);
         located.isDisputed = true;
         found = findByOdometry(builder, scan, guess);
     } else if (scan.odometry && (found.score < 0 || (isStraightened(scan) &&

@@ -100,7 +100,7 @@ VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optiona
         builder.refuse();
 }
 
-// The sensor may have been carried.
+// While the map grows: the sensor may have been carried.
 VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     evidence_.forget();
     const ScanReport &report = builder.report();
@@ -114,7 +114,7 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
         (!builder.isExpectedByScan() || builder.matchPair.match().agreement.explained() >= fewExplained);
     const Match &m = builder.match();
     const bool isMapped = isMatched() && located_.byOdometry && !isSurprising &&
-                          m.reliability >= openReliability && m.matchedLength >= mostMapped * m.visibleLength;
+                          m.reliability >= openReliability && m.matchedLength >= minMapped * m.visibleLength;
     const bool isPaired = builder.isExpectedByScan() || !builder.isFollowed();
     break_.take(report.outcome, located_.isWellExpected && !located_.way.exceeds(near_m, near_rad),
                 isShown && !isSurprising, isMapped,
@@ -142,6 +142,7 @@ VECTORLIB_BODY void ScanTracker::breakOff() {
     place_.breakOff();
 }
 
+// In a finished map: the sensor may have been carried, or told a wrong place.
 VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan, const std::optional<double> &lastStamp) {
     if (!grows_ && builder.match().reliability < openReliability)
         slide(scan);

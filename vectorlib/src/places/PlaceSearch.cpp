@@ -1,5 +1,8 @@
 #include "vectorlib/places/PlaceSearch.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 

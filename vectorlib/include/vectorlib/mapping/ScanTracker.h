@@ -172,8 +172,8 @@ private:
     static constexpr double near_m = 0.4, near_rad = 0.35, fewExplained = 0.8;
     static constexpr std::uint64_t eachNth = 5;                        // scan of a growing map is judged
     static constexpr double surprising_m = 0.25, surprising_rad = 0.2; // from where it was guessed
-    static constexpr double mostMapped = 0.85; // of the seen length: the map shows the scan
-    static constexpr double fewKnown = 0.6;    // of the points, where no odometry tells the pose
+    static constexpr double minMapped = 0.85; // of the seen length: the map shows the scan
+    static constexpr double fewKnown = 0.6;   // of the points, where no odometry tells the pose
 
     // Whether the next scan enters the map.
     bool maps() const { return grows_ && place_.isKnown(); }

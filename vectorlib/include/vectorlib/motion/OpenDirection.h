@@ -5,7 +5,6 @@
 #include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/motion/Odometry.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -26,12 +25,9 @@ public:
                 const std::optional<OdometryTrack> &odometry, double stamp, const Transformation2D &mount);
     /// The share of the way by which the odometry errs, as far as the drive tells.
     double slip() const { return slip_; }
-    /// The scans told a pose so far from that of the odometry, which was taken (metres, map frame), after so
-    /// much way by it. Wheels slip by no more than they turn: what is beyond moves about the sensor. That
-    /// goes to and fro; slip adds up.
-    void dispute(const Vector2D<double> &off, double way) {
-        disputed_ = disputed_ + off * std::min(1.0, way / off.norm());
-    }
+    /// The scans told a pose so far from that of the odometry, which was taken (metres, map frame). What
+    /// moves about the sensor goes to and fro; slip adds up, and so does the way of who is pushed.
+    void dispute(const Vector2D<double> &off) { disputed_ = disputed_ + off; }
     /// The sensor was put somewhere, or the map was made anew: nothing is open there.
     void place() {
         deviation_ = 0;
