@@ -41,7 +41,10 @@ EncoderMonitor::Mismatch EncoderMonitor::judge(double commanded, double measured
     fastest_ = std::max({commanded, told_[0], told_[1], fastest_ - braked});
     told_ = {commanded, told_[0]};
     const Mismatch found = compare(commanded, measured, duty);
-    const bool follows = std::abs(commanded) >= settings_.commanded && std::abs(measured) >= settings_.moving;
+    const bool followsPush = std::abs(duty) >= pushing && commanded * measured > 0 &&
+                             std::abs(measured) >= std::abs(commanded) / 2;
+    const bool follows =
+        followsPush || (std::abs(commanded) >= settings_.commanded && std::abs(measured) >= settings_.moving);
     const double share = found != Mismatch::None ? 1 : follows ? -1 : -forgetting;
     unexplained_s_ = std::max(0.0, unexplained_s_ + share * step);
     return unexplained_s_ >= settings_.hold_s ? found : Mismatch::None;

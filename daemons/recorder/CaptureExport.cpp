@@ -1,10 +1,12 @@
 #include "daemons/recorder/CaptureExport.h"
 
 #include "common/capture/PcapWriter.h"
+#include "common/platform/PrivateFiles.h"
 #include "common/recording/DiskError.h"
 
 #include <QDir>
 #include <QRegularExpression>
+#include <algorithm>
 #include <cstdio>
 
 namespace hermes::recorder {
@@ -15,6 +17,8 @@ Outcome<void> join(const QString &folder, const QStringList &files, const std::s
     std::remove(draft.c_str()); // of an export that was cut off, or a link
     Outcome<void> done = writer.open(draft);
     for (const QString &file : files) {
+        if (!done)
+            break;
         const auto tail = readPcapTail(QFile::encodeName(folder + '/' + file).toStdString(), 0,
                                        [&](const Datagram &datagram) {
                                            if (done)
@@ -23,7 +27,11 @@ Outcome<void> join(const QString &folder, const QStringList &files, const std::s
         if (done && !tail)
             done = tail.error();
     }
-    return done ? writer.close() : done;
+    done = done ? writer.close() : done;
+    QFile file(QString::fromLocal8Bit(draft.c_str()));
+    if (done && !(file.open(QIODevice::ReadOnly) && syncToDisk(file.handle())))
+        done = file.errorString().toStdString();
+    return done;
 }
 
 } // namespace

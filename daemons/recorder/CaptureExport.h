@@ -3,6 +3,7 @@
 #include "common/Result.h"
 
 #include <QStringList>
+#include <map>
 
 namespace hermes::recorder {
 

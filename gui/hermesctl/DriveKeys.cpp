@@ -7,6 +7,7 @@ namespace hermes::ctl {
 namespace {
 
 constexpr double slowest = 0.05, fastest = 1, factor = 1.25; // m/s
+constexpr double remembered_s = 1;                           // that a car went back
 constexpr double turnOfSpeed = 2.5;                          // rad/s for each m/s
 constexpr char escape = 0x1b, endOfInput = 0x04;
 
@@ -71,7 +72,7 @@ DriveKeys::Action DriveKeys::press(Axis &axis, double sign, double now) {
 
 DriveKeys::Action DriveKeys::turn(double sign, double now) {
     if (isCar_)
-        press(way_, way_.sign < 0 ? -1 : 1, now);
+        press(way_, way_.sign < 0 && now < way_.until + remembered_s ? -1 : 1, now);
     return press(turn_, sign, now);
 }
 

@@ -54,6 +54,13 @@ private Q_SLOTS:
         QTEST(int(found), "expected");
     }
 
+    // A heavy robot creeps: each start needs a push.
+    void aPushThatMovesTheWheelIsNoFault() {
+        EncoderMonitor monitor;
+        for (int i = 0; i < 1000; ++i)
+            QVERIFY(monitor.judge(0.3, i % 40 < 8 ? 0 : 0.3, 1 + 0.02 * i, 0.6) == Mismatch::None);
+    }
+
     void aMismatchNeedsTime() {
         EncoderMonitor monitor;
         QVERIFY(!faultAfter(monitor, [](double) { return std::pair(10.0, 10.0); }));
