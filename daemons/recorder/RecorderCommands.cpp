@@ -2,7 +2,6 @@
 #include "common/client/DaemonAddress.h"
 #include "common/recording/DiskError.h"
 #include "common/settings/SettingsTable.h"
-#include "daemons/recorder/CaptureExport.h"
 #include "daemons/recorder/Recorder.h"
 #include "daemons/recorder/SessionExport.h"
 #include "daemons/recorder/SessionFiles.h"
@@ -206,9 +205,8 @@ void Recorder::declareStudies() {
                        floor = settings().number("record.free_floor_bytes")](
                           SessionReader &session) -> Result<QJsonValue> {
                           const Result<double> room = freeBytes(session.folder());
-                          const double needed =
-                              floor + (format == "pcap" ? CaptureExport(session.folder()).bytes()
-                                                        : 10 * session.bytes());
+                          const double needed = floor + (format == "pcap" ? captureBytes(session.folder())
+                                                                          : 10 * session.bytes());
                           if (room && *room < needed)
                               return diskError(QString("%1: %2 MB are free, %3 MB may be needed")
                                                    .arg(session.folder())

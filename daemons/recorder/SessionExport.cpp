@@ -1,10 +1,10 @@
 #include "daemons/recorder/SessionExport.h"
 
 #include "common/Project.h"
+#include "common/capture/PcapWriter.h"
 #include "common/files/NamedFile.h"
 #include "common/platform/PrivateFiles.h"
 #include "common/recording/DiskError.h"
-#include "daemons/recorder/CaptureExport.h"
 #include "daemons/recorder/CarmenText.h"
 #include "protocol/mcap/Writer.h"
 #include "protocol/wire/JsonText.h"
@@ -13,6 +13,7 @@
 #include <QJsonObject>
 #include <QRegularExpression>
 #include <QSet>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -38,6 +39,9 @@ public:
         if (waiting_.size() >= pieceBytes)
             flush(false);
     }
+    /// For who writes it otherwise: the file that gets the name at the end.
+    std::string draft() const { return QFile::encodeName(draft_).toStdString(); }
+    void fail(const std::string &why) { done_ = failure(QString::fromStdString(why)); }
     Result<QString> commit() {
         flush(true);
         if (done_ &&
@@ -250,6 +254,39 @@ private:
         channels_;
 };
 
+/// The capture files in a folder, LOGGER-0001.pcap and on: of each logger, in order.
+std::map<QString, QStringList> capturesIn(const QString &folder) {
+    static const QRegularExpression numbered("^(.+)-[0-9]{4,}\\.pcap$");
+    QStringList names = QDir(folder).entryList({"*.pcap"}, QDir::Files);
+    std::sort(names.begin(), names.end(), [](const QString &a, const QString &b) {
+        return std::pair(a.size(), a) < std::pair(b.size(), b); // 9999 comes before 10000
+    });
+    std::map<QString, QStringList> captures;
+    for (const QString &name : names)
+        if (const auto match = numbered.match(name); match.hasMatch())
+            captures[match.captured(1)].append(folder + '/' + name);
+    return captures;
+}
+
+/// Files as one. What is torn at the end of one is left out.
+void join(const QStringList &captures, ExportFile &file) {
+    PcapWriter writer;
+    Outcome<void> done = writer.open(file.draft());
+    for (auto path = captures.begin(); done && path != captures.end(); ++path) {
+        const auto read =
+            readPcapTail(QFile::encodeName(*path).toStdString(), 0, [&](const Datagram &datagram) {
+                if (done)
+                    done = writer.write(datagram);
+            });
+        if (done && !read)
+            done = read.error();
+    }
+    if (done)
+        done = writer.close();
+    if (!done)
+        file.fail(done.error());
+}
+
 SessionReader::Wanted wantedOf(const QStringList &topics) {
     if (topics.isEmpty())
         return {};
@@ -262,13 +299,31 @@ SessionReader::Wanted wantedOf(const QStringList &topics) {
 
 } // namespace
 
+double captureBytes(const QString &folder) {
+    double sum = 0;
+    for (const auto &[logger, names] : capturesIn(folder))
+        for (const QString &name : names)
+            sum += double(QFileInfo(name).size());
+    return sum;
+}
+
 Result<QStringList> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
                                   const QString &into) {
     ExportFiles files(into);
     if (const auto begun = files.begin(); !begun)
         return begun.error();
-    if (format == "pcap")
-        return CaptureExport(session.folder()).writeInto(into);
+    if (format == "pcap") {
+        const auto captures = capturesIn(session.folder());
+        if (captures.empty() || !topics.isEmpty())
+            return captures.empty()
+                       ? Error(ErrorCode::NotReady,
+                               session.folder() + ": found no capture of a lidar, expected LOGGER-0001.pcap")
+                       : Error(ErrorCode::InvalidParams,
+                               "topics: found " + topics.join(", ") + ", expected none with pcap");
+        for (const auto &[logger, names] : captures)
+            join(names, files.open(logger, ".pcap"));
+        return files.commit();
+    }
     quint64 messages = 0;
     const auto readAll = [&](const QStringList &usual, const auto &take) {
         session.read(wantedOf(topics.isEmpty() ? usual : topics), [&](const SessionMessage &message) {

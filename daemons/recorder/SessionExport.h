@@ -16,5 +16,7 @@ namespace hermes::recorder {
 /// Errors: InvalidParams (format), NotReady (no such messages), InputOutput.
 Result<QStringList> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
                                   const QString &into);
+/// Of the captures in the folder of a session.
+double captureBytes(const QString &folder);
 
 } // namespace hermes::recorder

@@ -1,5 +1,4 @@
 #include "common/capture/PcapWriter.h"
-#include "daemons/recorder/CaptureExport.h"
 #include "daemons/recorder/SessionExport.h"
 #include "protocol/mcap/Reader.h"
 #include "protocol/messages/Motion.h"
@@ -169,7 +168,9 @@ private Q_SLOTS:
     }
 
     void capturesAreJoined() {
-        QTemporaryDir folder;
+        SessionFolder folder;
+        folder.add(0, "a/b", QByteArray("1"));
+        folder.finish();
         std::vector<std::string> written;
         // 9999 comes before 10000; the tail of one is torn.
         for (const char *name :
@@ -189,16 +190,25 @@ private Q_SLOTS:
         QFile torn(folder.filePath("velodynelogger-9999.pcap"));
         QVERIFY(torn.resize(torn.size() - 5));
         written.erase(written.begin() + 5);
-        QVERIFY(QFile::link("/etc/passwd", folder.filePath(".velodynelogger.pcap.new")));
-        const auto paths = CaptureExport(folder.path()).writeInto(folder.path());
+        auto session = SessionReader::open(folder.path());
+        const QString into = folder.filePath("export");
+        QVERIFY(!exportSession(*session, "pcap", {"a/b"}, into)); // there are no topics in it
+        QVERIFY(QFile::link("/etc/passwd", into + "/.velodynelogger.pcap.new"));
+        const auto paths = exportSession(*session, "pcap", {}, into);
         QVERIFY2(paths, paths ? "" : qPrintable(paths.error().message));
-        QCOMPARE(*paths,
-                 QStringList({folder.filePath("other.pcap"), folder.filePath("velodynelogger.pcap")}));
+        QCOMPARE(*paths, QStringList({into + "/other.pcap", into + "/velodynelogger.pcap"}));
         std::vector<std::string> read;
         QVERIFY(readPcapTail(paths->last().toStdString(), 0, [&](const Datagram &datagram) {
             read.emplace_back(reinterpret_cast<const char *>(datagram.payload), datagram.size);
         }));
         QVERIFY(read == written);
+        QFile foreign(folder.filePath("other-0002.pcap")); // nothing is replaced then
+        QVERIFY(foreign.open(QIODevice::WriteOnly) && foreign.write(QByteArray(100, 'x')) == 100);
+        foreign.close();
+        const auto refused = exportSession(*session, "pcap", {}, into);
+        QVERIFY(!refused && refused.error().message.contains("other-0002.pcap: it does not begin"));
+        QCOMPARE(QDir(into).entryList(QDir::Files | QDir::Hidden),
+                 QStringList({"other.pcap", "velodynelogger.pcap"}));
     }
 
     void aFolderThatIsALinkIsRefused() {
