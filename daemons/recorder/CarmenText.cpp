@@ -36,7 +36,7 @@ std::vector<double> rangesOf(const ScanMessage &scan, double start, std::size_t 
 } // namespace
 
 QStringList CarmenText::topics() {
-    return {"motorcontrol/odometry", "velodynelogger/scan2d", "scanner/scan2d", "scanmatcher/settings"};
+    return {"motorcontrol/odometry", "velodynelogger/scan2d", "scanner*/scan2d", "scanmatcher/settings"};
 }
 
 QByteArray CarmenText::take(const SessionMessage &message) {
@@ -49,7 +49,18 @@ QByteArray CarmenText::take(const SessionMessage &message) {
     const Pose2D mount{sensor["x_m"].number(), sensor["y_m"].number(), sensor["theta_rad"].number()};
     if (std::isfinite(mount.x + mount.y + mount.theta))
         mount_ = mount;
+    isUpsideDown_ = sensor["upside_down"].boolean();
+    source_ = data["source"]["address"].text().section("//", -1);
     return {};
+}
+
+bool CarmenText::isMapped(const SessionMessage &message) {
+    const auto address = message.channel.metadata.find("address");
+    const bool isSource = address != message.channel.metadata.end() &&
+                          QString::fromStdString(address->second).section("//", -1) == source_;
+    if (isSource || topic_.isEmpty())
+        topic_ = message.topic;
+    return message.topic == topic_;
 }
 
 QByteArray CarmenText::takeOdometry(const SessionMessage &message) {
@@ -75,9 +86,12 @@ std::optional<Pose2D> CarmenText::robotAt(double stamp) const {
 
 QByteArray CarmenText::takeScan(const SessionMessage &message) {
     ReadReport report;
-    const auto scan = readMessage<ScanMessage>(message.data(), report);
-    if (!scan || scan->header.partial || scan->x.empty() || scan->y.size() != scan->x.size())
+    auto scan = readMessage<ScanMessage>(message.data(), report);
+    if (!isMapped(message) || !scan || scan->header.partial || scan->x.empty() ||
+        scan->y.size() != scan->x.size())
         return {};
+    for (float &y : scan->y)
+        y = isUpsideDown_ ? -y : y;
     const double middle =
         scan->header.stamp + scan->header.duration_s / 2; // to which the ray in the middle belongs
     const auto robot = robotAt(middle);

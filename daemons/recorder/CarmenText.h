@@ -7,7 +7,8 @@
 
 namespace hermes::recorder {
 
-/// Makes lines of a CARMEN log of odometry and scans: metres, radians, seconds.
+/// Makes lines of a CARMEN log of odometry and the scans of the scanner that the matcher took, or else of the
+/// first one: metres, radians, seconds.
 class CarmenText {
 public:
     static QStringList topics();
@@ -19,6 +20,8 @@ public:
 private:
     QByteArray takeOdometry(const SessionMessage &message);
     QByteArray takeScan(const SessionMessage &message);
+    /// Whether the scans of this topic are those.
+    bool isMapped(const SessionMessage &message);
     std::optional<Pose2D> robotAt(double stamp) const;
 
     struct Sample {
@@ -28,6 +31,8 @@ private:
     };
     std::deque<Sample> samples_; ///< the last ones
     Pose2D mount_;               ///< of the sensor on the robot
+    bool isUpsideDown_ = false;
+    QString source_, topic_; ///< its address, as the matcher had it; its topic
     quint64 scans_ = 0;
 };
 

@@ -139,6 +139,37 @@ private Q_SLOTS:
         QVERIFY(std::abs(points[0].y + 5 * std::sin(170 * vectorlib::pi / 180)) < 1e-3);
     }
 
+    // Of two scanners that which the matcher took, as it hung.
+    void carmenLogIsOfTheMatchersScanner() {
+        SessionFolder folder;
+        folder.addresses = {{"scanner@a", "tcp://127.0.0.1:7470"}, {"scanner", "tcp://127.0.0.1:7471"}};
+        folder.add(0, "scanmatcher/settings",
+                   QByteArray(R"({"sensor":{"x_m":0,"y_m":0,"theta_rad":0,"upside_down":true},)"
+                              R"("source":{"address":"127.0.0.1:7470"}})"));
+        folder.add(0.01, "motorcontrol/odometry", OdometryMessage{{}, {}, {}, 7});
+        for (const char *name : {"scanner@a", "scanner"}) {
+            ScanMessage scan;
+            scan.header.stamp = SessionFolder::start + 0.02;
+            scan.header.rays = 4;
+            scan.x = {1, 0};
+            scan.y = {0, name == QString("scanner") ? 3.0f : 2.0f}; // ahead and to the left, as it takes it
+            folder.add(0.03, name + QString("/scan2d"), scan);
+        }
+        folder.finish();
+        auto session = SessionReader::open(folder.path());
+        const auto paths = exportSession(*session, "carmen", {}, folder.filePath("export"));
+        QVERIFY2(paths, paths ? "" : qPrintable(paths.error().message));
+        std::istringstream in(contentOf(paths->first()).toStdString());
+        const auto log = vectorlib::readCarmenLog(in, "log");
+        QVERIFY2(log.ok(), log ? "" : log.error().message().c_str());
+        QCOMPARE(log->scans.size(), std::size_t(1));
+        std::vector<vectorlib::Vector2D<double>> points;
+        log->scans[0].appendPoints(points);
+        QCOMPARE(points.size(), std::size_t(2));
+        for (const auto &point : points) // to the right
+            QVERIFY(std::abs(point.norm() - 1) < 1e-3 || std::abs(point.y + 2) < 1e-3);
+    }
+
     void allPartsBecomeOneFile() {
         const auto paths = exported("mcap");
         QVERIFY2(paths.ok(), paths ? "" : qPrintable(paths.error().message));
