@@ -71,6 +71,7 @@ DeviceSearch::Options Setup::searchOptions(bool ask) const {
             kind == "roboclaw" ? &options.controllers : nullptr); // others are asked as such, if at all
     for (const QJsonValue &port : valueAt(current, "seriallogger.ports").toArray())
         add(port["url"], nullptr);
+    add(valueAt(current, "scanner.scanner.url"), nullptr);
     return options;
 }
 

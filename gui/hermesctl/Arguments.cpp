@@ -130,7 +130,9 @@ const std::vector<Option> &options() {
          take<&Arguments::scanner>},
         {"--world FILE", "simulate: in this world (a room with pillars)", take<&Arguments::world>},
         {"--kinematics KIND",
-         "simulate: mecanum, differential, two_wheels, omni3 or omni4; with --base vesc ackermann, too",
+         "simulate: mecanum, differential, two_wheels, omni3 or omni4; with another --base than roboclaw "
+         "differential or "
+         "two_wheels, with vesc ackermann, too",
          take<&Arguments::kinematics>},
         {"--follow", "log: go on with new records", take<&Arguments::follow>},
         {"--all", "doc: all daemons on one page", take<&Arguments::all>},

@@ -151,7 +151,9 @@ Result<void> write(const QString &programs, const QString &folder,
 } // namespace
 
 QStringList kinematicsOf(const QString &base) {
-    QStringList kinds{"mecanum", "differential", "two_wheels", "omni3", "omni4"};
+    if (!findBase(base)) // two RoboClaws
+        return {"mecanum", "differential", "two_wheels", "omni3", "omni4"};
+    QStringList kinds{"differential", "two_wheels"}; // of two motors
     if (base == "vesc")
         kinds.append("ackermann"); // it has an output for the servo
     return kinds;
@@ -164,7 +166,7 @@ Result<void> checkSimulate(const Arguments &arguments) {
             ErrorCode::InvalidParams,
             QString("--base: found \"%1\", expected one of %2").arg(arguments.base, bases.join(", ")));
     const QStringList kinds = kinematicsOf(arguments.base);
-    if (kinds.contains(arguments.kinematics))
+    if (kinds.contains(arguments.kinematics) || !arguments.given.contains("--kinematics"))
         return {};
     return Error(ErrorCode::InvalidParams, QString("--kinematics: found \"%1\", expected one of %2")
                                                .arg(arguments.kinematics, kinds.join(", ")));

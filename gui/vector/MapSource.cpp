@@ -154,6 +154,8 @@ void readCapture(Input &input, const MapSourceOptions &options, const MapScanSin
         if (turns++ % options.every != 0)
             return;
         takeTurn(turn, scan);
+        if (session && session->isUpsideDown())
+            scan.turnOver();
         if (session && !scan.points.empty())
             scan.odometry = session->over(scan.begin(), scan.end());
         sink(scan, (turns - 1) / options.every, 0);

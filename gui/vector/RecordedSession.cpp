@@ -245,7 +245,7 @@ void RecordedSession::readScans(
             refusedScans_ += !scan;
             if (!scan || (!isFirst && isPartial))
                 continue;
-            if (number(matcherTopic, isFirst ? "sensor.upside_down" : "sensor2.upside_down").value_or(0) != 0)
+            if (isUpsideDown(isFirst ? "sensor" : "sensor2"))
                 scan->turnOver();
             if (!isFirst) {
                 waiting = std::move(scan);

@@ -34,6 +34,10 @@ public:
     /// As the daemons had them when the recording began; where that is not known, as they are by default.
     vectorlib::ScanTrackerSettings tracker() const;
     velodyne::TurnAssembler::Options decoding() const;
+    /// Whether the sensor hung so, or the second one.
+    bool isUpsideDown(const char *sensor = "sensor") const {
+        return number(matcherTopic, std::string(sensor) + ".upside_down").value_or(0) != 0;
+    }
     /// Whose clock stamped the scans. The sensor's, where the recording is older than the choice.
     velodyne::ClockChoice clock() const;
     std::optional<double> sigma() const { return number(matcherTopic, "matcher.sigma_m"); }

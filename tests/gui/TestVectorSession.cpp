@@ -186,6 +186,28 @@ private Q_SLOTS:
         QCOMPARE(std::count_if(walls.begin(), walls.end(), [](char c) { return c == '\n'; }), both ? 5 : 4);
     }
 
+    // Without odometry, what hung upside down gives the way of the same capture, mirrored.
+    void aLidarThatHangsUpsideDownIsTurned() {
+        std::vector<vectorlib::Pose2D> ends;
+        for (const bool hangs : {false, true}) {
+            SessionFolder folder;
+            QByteArray settings = settings_;
+            settings.replace("\"x_m\":0.2", hangs ? "\"upside_down\":true,\"x_m\":0" : "\"x_m\":0");
+            folder.add(0, "scanmatcher/settings", settings);
+            folder.finish();
+            QVERIFY(QFile::copy(partPath(2), folder.filePath("velodynelogger-0001.pcap")));
+            const Result map = mapped({}, folder.path());
+            QVERIFY2(map.status == 0, map.err);
+            std::ifstream file(session_.filePath("t.tum").toStdString());
+            const auto poses = vectorlib::readTum(file, "t.tum");
+            QVERIFY(poses && poses->size() > 20);
+            ends.push_back(poses->back().pose);
+        }
+        QVERIFY(std::hypot(ends[0].x, ends[0].y) > 0.2 && std::abs(ends[0].theta) > 0.05);
+        QVERIFY(std::hypot(ends[0].x - ends[1].x, ends[0].y + ends[1].y) < 0.02);
+        QVERIFY(std::abs(ends[0].theta + ends[1].theta) < 0.02);
+    }
+
     void settingsThatCannotBeReadAreTold() {
         SessionFolder folder;
         folder.add(0, "scanmatcher/settings", QByteArray("[]"));

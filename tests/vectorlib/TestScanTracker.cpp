@@ -403,6 +403,16 @@ private Q_SLOTS:
         QVERIFY(drive.isTorn());
     }
 
+    void oneBadScanTearsNoDrive() {
+        const auto lost = ScanReport::Outcome::Lost, matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        drive.take(matched, true, true, false, 0);
+        drive.take(lost, true, false, false, 0.4);
+        QVERIFY(drive.mayBeTorn());
+        drive.take(matched, true, true, false, 0.01, true); // the scan before the bad one shows it
+        QVERIFY(!drive.isTorn() && !drive.mayBeTorn());
+    }
+
     // A corridor with doors whose ends are out of reach, in a finished map: only the ends of walls tell how
     // far along it the sensor is.
     void endsOfWallsTellThePlaceAlongACorridor_data() {

@@ -47,9 +47,9 @@ private Q_SLOTS:
         std::vector<double> times_ms;
         QString slowestWith;
         const int trials = qMax(10, qEnvironmentVariableIntValue("HERMES_TRIALS"));
-        const std::size_t each = std::max<std::size_t>(1, all.size() / std::size_t(trials)); // of all kinds
+        const std::size_t spread = std::max(all.size(), std::size_t(trials)); // over all kinds
         for (int trial = 0; trial < trials; ++trial) {
-            const auto &[what, begin] = all[std::size_t(trial) * each % all.size()];
+            const auto &[what, begin] = all[std::size_t(trial) * spread / std::size_t(trials) % all.size()];
             QVERIFY(other.callAndWait("control.acquire", QJsonObject{{"timeout_s", 2}}).ok());
             driving.start(50);
             QTRY_VERIFY_WITH_TIMEOUT(rig.rimSpeed() > 0.15, 10000);

@@ -35,7 +35,7 @@ public:
               std::optional<double> contradicted, bool isByTheSame = false) {
         const bool isLost = outcome == ScanReport::Outcome::Lost;
         isMapped_ = isMapped;
-        follow(isNear && contradicted, contradicted.value_or(0), isByTheSame && isLost);
+        follow(isNear && contradicted, contradicted.value_or(0), isByTheSame, isLost);
         if (!isSuspect_ && !isInsisted_ && isNear && (isLost || !isFollowed)) {
             isSuspect_ = true;
             knownHidden_ = hidden_;
@@ -63,8 +63,10 @@ private:
     static constexpr double usualShare = 0.2; // by which the usual follows a scan
     static constexpr double quiet = 0.3;      // of what tore the drive, in the scan after
 
-    void follow(bool isCompared, double contradicted, bool isByTheSame) {
-        const bool isConfirmed = isByTheSame ? contradicted > maxTorn : contradicted < quiet * torn_;
+    void follow(bool isCompared, double contradicted, bool isByTheSame, bool isLost) {
+        // One that agrees with the same scan shows that the one between was bad.
+        const bool isConfirmed =
+            isByTheSame ? isLost && contradicted > maxTorn : contradicted < quiet * torn_;
         isTorn_ = isCompared && torn_ > 0 && isConfirmed;
         const bool mayBeTorn =
             isCompared && !isInsisted_ && !isMapped_ && contradicted > maxTorn + usualTorn * contradicted_;
