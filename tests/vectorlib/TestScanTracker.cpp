@@ -1,38 +1,15 @@
 // The tracker of scans: what it expects, how sure it is, and what it forgets.
-#include <vectorlib/mapping/ScanTracker.h>
-#include <vectorlib/observation/SimulatedScanner.h>
+#include "tests/vectorlib/TrackedRoom.h"
 
 using namespace vectorlib;
 
 Q_DECLARE_METATYPE(vectorlib::Pose2D)
 Q_DECLARE_METATYPE(vectorlib::LineSegment2D<float>)
 
-class TestScanTracker : public QObject {
+class TestScanTracker : public QObject, TrackedRoom {
     Q_OBJECT
-
-    // A room of 8 m x 6 m with a niche.
-    static inline const std::vector<LineSegment2D<float>> room{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},
-                                                               {{4, 3}, {-1, 3}},   {{-1, 3}, {-1, 2}},
-                                                               {{-1, 2}, {-4, 2}},  {{-4, 2}, {-4, -3}}};
-
-    static bool isNear(const Pose2D &a, const Pose2D &b) {
-        return std::hypot(a.x - b.x, a.y - b.y) < 0.02 && std::abs(wrapAngle(a.theta - b.theta)) < 0.01;
-    }
-
-    static OdometryTrack track(const Pose2D &pose, double stamp, std::optional<double> variance = {}) {
-        OdometrySample sample{stamp, pose, {}, {}};
-        if (variance)
-            sample.covariance = Eigen::Matrix3d(Eigen::Matrix3d::Identity() * *variance);
-        return {1, {sample}};
-    }
-
 private Q_SLOTS:
-    void init() {
-        scanner = SimulatedScanner<float>(5);
-        tracker = std::make_unique<ScanTracker>();
-        tracker->place({-2, -1, 0});
-        QCOMPARE(see({-2, -1, 0}, 10, track({}, 10)).outcome, ScanReport::Outcome::Matched);
-    }
+    void init() { enter(); }
 
     void goesByTheOdometry() {
         // To the other end of the room and about, within a tenth of a second: only the odometry can know.
@@ -174,18 +151,6 @@ private Q_SLOTS:
         }
     }
 
-    // Its ends are out of reach: nothing tells how far the sensor went.
-    void trustIsLowAlongABareCorridor() {
-        const std::vector<LineSegment2D<float>> corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
-        scanner.maxRange = 6;
-        tracker = std::make_unique<ScanTracker>();
-        for (int i = 0; i <= 20; ++i) {
-            see(corridor, {0.1 * i, 0, 0}, 10 + 0.1 * i);
-            QVERIFY2(tracker->trust() < 0.5, saying(tracker->trust()));
-        }
-        QCOMPARE(tracker->counts().matched, std::uint64_t(21));
-    }
-
     // They stand close around and are elsewhere in each scan; some wall is seen between them.
     void trustIsLowAmongPeople() {
         std::mt19937 random(1);
@@ -270,16 +235,6 @@ private Q_SLOTS:
         QVERIFY(tracker->against() > 0.3 * known);
     }
 
-    void aCorridorIsLeftOpenToTheOdometry() {
-        const std::vector<LineSegment2D<float>> corridor{{{-99, -1}, {99, -1}}, {{99, 1}, {-99, 1}}};
-        tracker = std::make_unique<ScanTracker>();
-        scanner.maxRange = 8; // its ends are never seen
-        for (int i = 0; i < 120; ++i)
-            see(corridor, {0.05 * i, 0, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
-        const double x = tracker->builder.report().pose.x;
-        QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, saying(x));
-    }
-
     void whatContradictedAMapDoesNotStopItsGrowth() {
         float far = 4.5f; // walls that are not where the map has them, so far that some of it still matches
         for (; far < 12 && !tracker->isContradicted(); far += 0.5f) {
@@ -350,172 +305,6 @@ private Q_SLOTS:
         QVERIFY(tracker->placeState() == PlaceState::Known);
     }
 
-    void aBreakIsToldByWhatTheMapHidesMore() {
-        const auto matched = ScanReport::Outcome::Matched;
-        DriveBreak drive;
-        QVERIFY(!drive.isContradicted(matched, 0.3, false)); // the map is bent
-        drive.take(matched, true, false, false, 0);
-        QVERIFY(drive.isSuspect());
-        QVERIFY(!drive.isContradicted(matched, 0.4, false));
-        QVERIFY(!drive.isSuspect());
-        drive.correct(); // it is not bent any more
-        drive.take(matched, true, false, false, 0);
-        QVERIFY(drive.isContradicted(matched, 0.3, false));
-    }
-
-    // Who is carried contradicts one scan, who walks beside the sensor one after another.
-    void aDriveTearsBetweenTwoScans() {
-        const auto matched = ScanReport::Outcome::Matched;
-        DriveBreak carried, walked;
-        carried.take(matched, true, true, false, 0.2);
-        QVERIFY(carried.mayBeTorn() && !carried.isTorn());
-        carried.take(matched, true, true, false, 0.01);
-        QVERIFY(carried.isTorn());
-        for (int i = 0; i < 5; ++i) {
-            walked.take(matched, true, true, false, 0.2);
-            QVERIFY(!walked.isTorn());
-        }
-        QVERIFY(!walked.mayBeTorn());
-        DriveBreak bent;
-        bent.take(matched, true, true, false, 0.2);
-        bent.take(matched, true, true, false, std::nullopt); // there was nothing to compare
-        QVERIFY(!bent.isTorn());
-    }
-
-    void whatTheMapShowsTearsNoDrive() {
-        const auto matched = ScanReport::Outcome::Matched;
-        DriveBreak drive;
-        drive.take(matched, true, false, true, 0.2);
-        QVERIFY(drive.isSuspect() && !drive.mayBeTorn());
-        QVERIFY(!drive.isContradicted(matched, 0.5, false));
-        drive.take(matched, true, true, true, 0.01);
-        QVERIFY(!drive.isTorn());
-    }
-
-    // As the lost scan between the two is passed over.
-    void twoScansThatTheSameOneContradictTearADrive() {
-        const auto lost = ScanReport::Outcome::Lost;
-        DriveBreak drive;
-        drive.take(ScanReport::Outcome::Matched, true, true, false, 0);
-        drive.take(lost, true, false, false, 0.4);
-        QVERIFY(drive.mayBeTorn() && !drive.isTorn());
-        drive.take(lost, true, false, false, 0.4, true);
-        QVERIFY(drive.isTorn());
-    }
-
-    void oneBadScanTearsNoDrive() {
-        const auto lost = ScanReport::Outcome::Lost, matched = ScanReport::Outcome::Matched;
-        DriveBreak drive;
-        drive.take(matched, true, true, false, 0);
-        drive.take(lost, true, false, false, 0.4);
-        QVERIFY(drive.mayBeTorn());
-        drive.take(matched, true, true, false, 0.01, true); // the scan before the bad one shows it
-        QVERIFY(!drive.isTorn() && !drive.mayBeTorn());
-    }
-
-    // A corridor with doors whose ends are out of reach, in a finished map: only the ends of walls tell how
-    // far along it the sensor is.
-    void endsOfWallsTellThePlaceAlongACorridor_data() {
-        QTest::addColumn<double>("wrong"); // metres
-        for (const double wrong : {-0.7, -0.4, 0.0, 0.7, 1.5})
-            QTest::addRow("%g m off", wrong) << wrong;
-    }
-    void endsOfWallsTellThePlaceAlongACorridor() {
-        QFETCH(double, wrong);
-        const std::vector<LineSegment2D<float>> corridor{
-            {{-40, -1}, {-3.1f, -1}}, {{-2.2f, -1}, {0.4f, -1}}, {{2, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
-        scanner.maxRange = 5;
-        tracker = std::make_unique<ScanTracker>();
-        for (const LineSegment2D<float> &wall : corridor)
-            tracker->builder.map.add(EdgeRaw2D({}, LineSegment2D<double>(wall), 0.01));
-        tracker->grow(false);
-        tracker->place({wrong, 0, 0});
-        see(corridor, {0, 0, 0}, 10);
-        const Pose2D &pose = tracker->builder.report().pose;
-        QVERIFY2(std::abs(pose.x) < 0.2, saying(pose.x));
-        see(corridor, {0.1, 0, 0}, 10.1); // what was mended is no motion
-        QVERIFY2(std::abs(pose.x - 0.1) < 0.2, saying(pose.x));
-        QVERIFY2(tracker->trust() > 0.5, saying(tracker->trust()));
-    }
-
-    // Nothing there tells where.
-    void aBareCorridorIsNotSlidAlong() {
-        const std::vector<LineSegment2D<float>> corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
-        scanner.maxRange = 5;
-        tracker = std::make_unique<ScanTracker>();
-        for (const LineSegment2D<float> &wall : corridor)
-            tracker->builder.map.add(EdgeRaw2D({}, LineSegment2D<double>(wall), 0.01));
-        tracker->grow(false);
-        tracker->place({1, 0, 0});
-        for (int i = 0; i < 20; ++i)
-            QVERIFY(isNear(see(corridor, {0, 0, 0}, 10 + 0.1 * i).pose, {1, 0, 0}));
-    }
-
-    // Who is pushed is doubted though the wheels stand; a map that grows is drawn as the pose errs.
-    void aDirectionIsOpenByTheWay() {
-        OpenDirection pushed, drives, mapped;
-        for (int i = 0; i <= 40; ++i) {
-            const Transformation2D pose(0.5 * i, 0, 0);
-            pushed.dispute({0.05, 0});
-            mapped.follow(pose, true, true, true, std::nullopt, i, {});
-            drives.follow(pose, true, true, false, std::nullopt, i, {});
-        }
-        QVERIFY2(pushed.belief() < 0.5, saying(pushed.belief()));
-        QVERIFY2(mapped.belief() > 0.95, saying(mapped.belief()));
-        QVERIFY2(drives.belief() < 0.5, saying(drives.belief()));
-        for (int i = 0; i < 5; ++i)
-            mapped.dispute({0.5, 0});
-        QVERIFY2(mapped.belief() < 0.5, saying(mapped.belief()));
-    }
-
-    // The odometry knows nothing of it, and the map does not have the place.
-    void whoIsCarriedMapsNothing() {
-        const std::vector<LineSegment2D<float>> other{{{0, 0}, {2, 0}},    {{2, 0}, {2, 9}},
-                                                      {{2, 9}, {0.5f, 9}}, {{0.5f, 9}, {0.5f, 7}},
-                                                      {{0.5f, 7}, {0, 7}}, {{0, 7}, {0, 0}}};
-        for (int i = 1; i < 6; ++i)
-            see({-2, -1, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
-        const std::size_t walls = tracker->builder.map.size();
-        for (int i = 6; i < 40; ++i) {
-            see(other, {1, 3, 0.4}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
-            QVERIFY(tracker->trust() < 0.5);
-        }
-        QCOMPARE(tracker->builder.map.size(), walls);
-        QVERIFY(tracker->placeState() == PlaceState::Sought);
-        QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
-    }
-
-    // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads. Also
-    // where a map that was bent hid as much before it was corrected.
-    void whoIsCarriedToARoomAlikeMapsNothing_data() {
-        falseAndTrue("wasBent", "from a good map", "from one that was bent");
-    }
-    void whoIsCarriedToARoomAlikeMapsNothing() {
-        QFETCH(bool, wasBent);
-        auto alike = room;
-        for (LineSegment2D<float> &wall : alike)
-            wall = {{wall.begin().x == 4 ? 4.3f : wall.begin().x, wall.begin().y},
-                    {wall.end().x == 4 ? 4.3f : wall.end().x, wall.end().y}};
-        tracker->place({1, 0, 0});
-        for (int i = 1; i < 5; ++i)
-            see({1, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
-        if (wasBent) {
-            VectorMap good = tracker->builder.map, bent;
-            good.forEach([&](const MapEdge &edge) {
-                const bool isRight = std::min(edge.segment.begin().x, edge.segment.end().x) > 3.9;
-                bent.add(Transformation2D(isRight ? -1 : 0, 0, 0) * EdgeRaw2D(edge));
-            });
-            tracker->correct(bent, {});
-            see({1, 0, 0}, 10.5, track({}, 10.5)); // the fifth scan, which is judged
-            tracker->correct(good, {});
-        }
-        const std::size_t walls = tracker->builder.map.size();
-        for (int i = 6; i < 20; ++i)
-            see(alike, {0.5, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
-        QCOMPARE(tracker->builder.map.size(), walls);
-        QVERIFY(tracker->placeState() == PlaceState::Sought);
-    }
-
     void trustIsAProbabilityWhateverComes() {
         const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
         const double hostile[] = {0, 1, -1, 1e300, -1e300, nan, infinite, -infinite};
@@ -534,22 +323,4 @@ private Q_SLOTS:
                 }
         QCOMPARE(trust({1, nan, 0, 0, 0, 0}), 0.0);
     }
-
-private:
-    const ScanReport &see(const Pose2D &pose, double stamp,
-                          const std::optional<OdometryTrack> &odometry = std::nullopt) {
-        return see(room, pose, stamp, odometry);
-    }
-    const ScanReport &see(const std::vector<LineSegment2D<float>> &world, const Pose2D &pose, double stamp,
-                          const std::optional<OdometryTrack> &odometry = std::nullopt) {
-        TimedScan scan;
-        scan.points = scanner(world, pose);
-        scan.rays = std::size_t(scanner.rays);
-        scan.stamp = stamp;
-        scan.odometry = odometry;
-        return tracker->process(scan);
-    }
-
-    SimulatedScanner<float> scanner{5};
-    std::unique_ptr<ScanTracker> tracker;
 };

@@ -1,0 +1,121 @@
+// What tells that the sensor was carried while it maps.
+#include "tests/vectorlib/TrackedRoom.h"
+
+using namespace vectorlib;
+
+class TestDriveBreak : public QObject, TrackedRoom {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { enter(); }
+
+    void aBreakIsToldByWhatTheMapHidesMore() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        QVERIFY(!drive.isContradicted(matched, 0.3, false)); // the map is bent
+        drive.take(matched, true, false, false, 0);
+        QVERIFY(drive.isSuspect());
+        QVERIFY(!drive.isContradicted(matched, 0.4, false));
+        QVERIFY(!drive.isSuspect());
+        drive.correct(); // it is not bent any more
+        drive.take(matched, true, false, false, 0);
+        QVERIFY(drive.isContradicted(matched, 0.3, false));
+    }
+
+    // Who is carried contradicts one scan, who walks beside the sensor one after another.
+    void aDriveTearsBetweenTwoScans() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak carried, walked;
+        carried.take(matched, true, true, false, 0.2);
+        QVERIFY(carried.mayBeTorn() && !carried.isTorn());
+        carried.take(matched, true, true, false, 0.01);
+        QVERIFY(carried.isTorn());
+        for (int i = 0; i < 5; ++i) {
+            walked.take(matched, true, true, false, 0.2);
+            QVERIFY(!walked.isTorn());
+        }
+        QVERIFY(!walked.mayBeTorn());
+        DriveBreak bent;
+        bent.take(matched, true, true, false, 0.2);
+        bent.take(matched, true, true, false, std::nullopt); // there was nothing to compare
+        QVERIFY(!bent.isTorn());
+    }
+
+    void whatTheMapShowsTearsNoDrive() {
+        const auto matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        drive.take(matched, true, false, true, 0.2);
+        QVERIFY(drive.isSuspect() && !drive.mayBeTorn());
+        QVERIFY(!drive.isContradicted(matched, 0.5, false));
+        drive.take(matched, true, true, true, 0.01);
+        QVERIFY(!drive.isTorn());
+    }
+
+    // As the lost scan between the two is passed over.
+    void twoScansThatTheSameOneContradictTearADrive() {
+        const auto lost = ScanReport::Outcome::Lost;
+        DriveBreak drive;
+        drive.take(ScanReport::Outcome::Matched, true, true, false, 0);
+        drive.take(lost, true, false, false, 0.4);
+        QVERIFY(drive.mayBeTorn() && !drive.isTorn());
+        drive.take(lost, true, false, false, 0.4, true);
+        QVERIFY(drive.isTorn());
+    }
+
+    void oneBadScanTearsNoDrive() {
+        const auto lost = ScanReport::Outcome::Lost, matched = ScanReport::Outcome::Matched;
+        DriveBreak drive;
+        drive.take(matched, true, true, false, 0);
+        drive.take(lost, true, false, false, 0.4);
+        QVERIFY(drive.mayBeTorn());
+        drive.take(matched, true, true, false, 0.01, true); // the scan before the bad one shows it
+        QVERIFY(!drive.isTorn() && !drive.mayBeTorn());
+    }
+
+    // The odometry knows nothing of it, and the map does not have the place.
+    void whoIsCarriedMapsNothing() {
+        const std::vector<LineSegment2D<float>> other{{{0, 0}, {2, 0}},    {{2, 0}, {2, 9}},
+                                                      {{2, 9}, {0.5f, 9}}, {{0.5f, 9}, {0.5f, 7}},
+                                                      {{0.5f, 7}, {0, 7}}, {{0, 7}, {0, 0}}};
+        for (int i = 1; i < 6; ++i)
+            see({-2, -1, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        const std::size_t walls = tracker->builder.map.size();
+        for (int i = 6; i < 40; ++i) {
+            see(other, {1, 3, 0.4}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+            QVERIFY(tracker->trust() < 0.5);
+        }
+        QCOMPARE(tracker->builder.map.size(), walls);
+        QVERIFY(tracker->placeState() == PlaceState::Sought);
+        QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
+    }
+
+    // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads. Also
+    // where a map that was bent hid as much before it was corrected.
+    void whoIsCarriedToARoomAlikeMapsNothing_data() {
+        falseAndTrue("wasBent", "from a good map", "from one that was bent");
+    }
+    void whoIsCarriedToARoomAlikeMapsNothing() {
+        QFETCH(bool, wasBent);
+        auto alike = room;
+        for (LineSegment2D<float> &wall : alike)
+            wall = {{wall.begin().x == 4 ? 4.3f : wall.begin().x, wall.begin().y},
+                    {wall.end().x == 4 ? 4.3f : wall.end().x, wall.end().y}};
+        tracker->place({1, 0, 0});
+        for (int i = 1; i < 5; ++i)
+            see({1, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        if (wasBent) {
+            VectorMap good = tracker->builder.map, bent;
+            good.forEach([&](const MapEdge &edge) {
+                const bool isRight = std::min(edge.segment.begin().x, edge.segment.end().x) > 3.9;
+                bent.add(Transformation2D(isRight ? -1 : 0, 0, 0) * EdgeRaw2D(edge));
+            });
+            tracker->correct(bent, {});
+            see({1, 0, 0}, 10.5, track({}, 10.5)); // the fifth scan, which is judged
+            tracker->correct(good, {});
+        }
+        const std::size_t walls = tracker->builder.map.size();
+        for (int i = 6; i < 20; ++i)
+            see(alike, {0.5, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        QCOMPARE(tracker->builder.map.size(), walls);
+        QVERIFY(tracker->placeState() == PlaceState::Sought);
+    }
+};

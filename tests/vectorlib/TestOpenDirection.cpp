@@ -1,0 +1,79 @@
+// Along corridors, where the lines leave a direction open.
+#include "tests/vectorlib/TrackedRoom.h"
+
+using namespace vectorlib;
+
+class TestOpenDirection : public QObject, TrackedRoom {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { enter(); }
+
+    // Its ends are out of reach: nothing tells how far the sensor went.
+    void trustIsLowAlongABareCorridor() {
+        const Walls corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 6;
+        tracker = std::make_unique<ScanTracker>();
+        for (int i = 0; i <= 20; ++i) {
+            see(corridor, {0.1 * i, 0, 0}, 10 + 0.1 * i);
+            QVERIFY2(tracker->trust() < 0.5, saying(tracker->trust()));
+        }
+        QCOMPARE(tracker->counts().matched, std::uint64_t(21));
+    }
+
+    void aCorridorIsLeftOpenToTheOdometry() {
+        const Walls corridor{{{-99, -1}, {99, -1}}, {{99, 1}, {-99, 1}}};
+        tracker = std::make_unique<ScanTracker>();
+        scanner.maxRange = 8; // its ends are never seen
+        for (int i = 0; i < 120; ++i)
+            see(corridor, {0.05 * i, 0, 0}, 10 + 0.1 * i, track({0.05 * i, 0, 0}, 10 + 0.1 * i));
+        const double x = tracker->builder.report().pose.x;
+        QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, saying(x));
+    }
+
+    // A corridor with doors whose ends are out of reach, in a finished map: only the ends of walls tell how
+    // far along it the sensor is.
+    void endsOfWallsTellThePlaceAlongACorridor_data() {
+        QTest::addColumn<double>("wrong"); // metres
+        for (const double wrong : {-0.7, -0.4, 0.0, 0.7, 1.5})
+            QTest::addRow("%g m off", wrong) << wrong;
+    }
+    void endsOfWallsTellThePlaceAlongACorridor() {
+        QFETCH(double, wrong);
+        const Walls corridor{
+            {{-40, -1}, {-3.1f, -1}}, {{-2.2f, -1}, {0.4f, -1}}, {{2, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 5;
+        finishMap(corridor, {wrong, 0, 0});
+        see(corridor, {0, 0, 0}, 10);
+        const Pose2D &pose = tracker->builder.report().pose;
+        QVERIFY2(std::abs(pose.x) < 0.2, saying(pose.x));
+        see(corridor, {0.1, 0, 0}, 10.1); // what was mended is no motion
+        QVERIFY2(std::abs(pose.x - 0.1) < 0.2, saying(pose.x));
+        QVERIFY2(tracker->trust() > 0.5, saying(tracker->trust()));
+    }
+
+    // Nothing there tells where.
+    void aBareCorridorIsNotSlidAlong() {
+        const Walls corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 5;
+        finishMap(corridor, {1, 0, 0});
+        for (int i = 0; i < 20; ++i)
+            QVERIFY(isNear(see(corridor, {0, 0, 0}, 10 + 0.1 * i).pose, {1, 0, 0}));
+    }
+
+    // Who is pushed is doubted though the wheels stand; a map that grows is drawn as the pose errs.
+    void aDirectionIsOpenByTheWay() {
+        OpenDirection pushed, drives, mapped;
+        for (int i = 0; i <= 40; ++i) {
+            const Transformation2D pose(0.5 * i, 0, 0);
+            pushed.dispute({0.05, 0});
+            mapped.follow(pose, true, true, true, std::nullopt, i, {});
+            drives.follow(pose, true, true, false, std::nullopt, i, {});
+        }
+        QVERIFY2(pushed.belief() < 0.5, saying(pushed.belief()));
+        QVERIFY2(mapped.belief() > 0.95, saying(mapped.belief()));
+        QVERIFY2(drives.belief() < 0.5, saying(drives.belief()));
+        for (int i = 0; i < 5; ++i)
+            mapped.dispute({0.5, 0});
+        QVERIFY2(mapped.belief() < 0.5, saying(mapped.belief()));
+    }
+};
