@@ -9,11 +9,12 @@ private Q_SLOTS:
         QTest::addColumn<bool>("hasOdometry");
         QTest::addColumn<double>("period");
         for (const double degrees : {180.0, 240.0})
-            for (const bool odometry : {true, false})
-                for (const double period : {0.1, 0.14})
-                    QTest::addRow("%.0f degrees, %s, every %.2f s", degrees,
-                                  odometry ? "odometry" : "scans alone", period)
-                        << degrees * pi / 180 << odometry << period;
+            for (const bool odometry : {true, false}) {
+                const double period = odometry == (degrees > 200) ? 0.1 : 0.14;
+                QTest::addRow("%.0f degrees, %s, every %.2f s", degrees,
+                              odometry ? "odometry" : "scans alone", period)
+                    << degrees * pi / 180 << odometry << period;
+            }
     }
     void bothMakeOneMap() {
         QFETCH(double, fieldOfView);
@@ -105,9 +106,8 @@ private Q_SLOTS:
     void goodOneIsTakenWhereWallsAreOpen_data() {
         QTest::addColumn<std::vector<Segment>>("walls");
         QTest::addColumn<double>("degrees");
-        for (const double degrees : {180.0, 240.0})
-            for (const auto &[name, walls] : {std::pair("hall", &hall), std::pair("corridor", &corridor)})
-                QTest::addRow("%s, %.0f degrees", name, degrees) << *walls << degrees;
+        QTest::newRow("hall, 180 degrees") << hall << 180.0;
+        QTest::newRow("corridor, 240 degrees") << corridor << 240.0;
     }
     void goodOneIsTakenWhereWallsAreOpen() {
         QFETCH(std::vector<Segment>, walls);
@@ -128,13 +128,12 @@ private Q_SLOTS:
         QVERIFY(length2 > length1 + 3);
     }
 
+    // TestBadSecondScanner has mounts that are turned by more.
     void wrongOneIsLeftOut_data() {
         QTest::addColumn<Pose2D>("told");
         QTest::addColumn<bool>("mirrored");
         QTest::addColumn<bool>("elsewhere");
-        QTest::newRow("10 degrees") << Pose2D{-0.25, 0, pi - 0.175} << false << false;
         QTest::newRow("3 degrees") << Pose2D{-0.25, 0, pi + 0.052} << false << false;
-        QTest::newRow("looks ahead") << Pose2D{-0.25, 0, 0} << false << false;
         QTest::newRow("0.3 m aside") << Pose2D{-0.25, 0.3, pi} << false << false;
         QTest::newRow("mirrored") << Pose2D{-0.25, 0, pi} << true << false;
         QTest::newRow("another robot's") << Pose2D{-0.25, 0, pi} << false << true;
@@ -162,7 +161,7 @@ private Q_SLOTS:
         QVERIFY(robot.farthest(0.98) < 0.02);
         QCOMPARE(taken, 0.0);
         QVERIFY(robot.tracker.second().state() != State::Taken);
-        if (mirrored || elsewhere || std::abs(wrapAngle(told.theta)) < 1)
+        if (mirrored || elsewhere)
             return;
         QCOMPARE(robot.tracker.second().state(), State::Contradicted);
         QVERIFY(!Transformation2D(robot.second.inverse() * *robot.tracker.second().fitting())
