@@ -88,6 +88,26 @@ private Q_SLOTS:
         QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
     }
 
+    // Neither the scan before nor the map tells where along the walls the sensor is, and the odometry knows
+    // nothing of it.
+    void whoIsCarriedBetweenWallsAlikeMapsNothing() {
+        const auto box = [](float half) {
+            return Walls{{{-half, -1}, {half, -1}},
+                         {{half, -1}, {half, 1}},
+                         {{half, 1}, {-half, 1}},
+                         {{-half, 1}, {-half, -1}}};
+        };
+        tracker = std::make_unique<ScanTracker>();
+        for (int i = 0; i < 8; ++i)
+            see(box(3), {}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+        for (int i = 8; i < 16; ++i) {
+            see(box(0.8f), {}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+            QVERIFY(tracker->trust() < 0.5);
+        }
+        QCOMPARE(tracker->builder.map.size(), std::size_t(4));
+        QVERIFY(tracker->placeState() == PlaceState::Sought);
+    }
+
     // A room that is nearly the same: the scan before shows it, too, but not where the odometry leads. Also
     // where a map that was bent hid as much before it was corrected.
     void whoIsCarriedToARoomAlikeMapsNothing_data() {

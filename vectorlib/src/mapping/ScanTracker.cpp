@@ -128,7 +128,8 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     if (report.outcome == ScanReport::Outcome::Skipped || !isDue)
         return;
     const PlaceFit fit = fitOf(scan, scan.points.empty(), withoutPeople_);
-    const bool isUnknown = !located_.byOdometry && fit.explainedShare() < fewKnown;
+    const bool isOpen = isMatched() && !builder.isFollowed() && m.reliability < openReliability;
+    const bool isUnknown = isOpen || (!located_.byOdometry && fit.explainedShare() < fewKnown);
     if (!break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown))
         return;
     if (lostInARow_ + 1 >= builder.settings.lostBeforeRestart)
