@@ -147,6 +147,8 @@ VECTORLIB_BODY void ScanTracker::breakOff() {
 VECTORLIB_BODY void ScanTracker::weigh(const TimedScan &scan, const std::optional<double> &lastStamp) {
     if (!grows_ && builder.match().reliability < openReliability)
         slide(scan);
+    else
+        slid_.reset();
     const Pose2D &pose = builder.report().pose;
     const PlaceFit fit = fitOf(scan, scan.points.empty(), search_.fit);
     evidence_.take(fit.against(), pose, lastStamp ? std::max(0.0, scan.stamp - *lastStamp) : 0);
@@ -162,15 +164,22 @@ VECTORLIB_BODY void ScanTracker::slide(const TimedScan &scan) {
     const Vector2D<double> along = walls.weakest();
     const std::optional<double> off =
         search_.slide(builder.map.slots(), builder.edges(), scan.points, pose, along);
+    const auto before = std::exchange(slid_, std::nullopt);
     if (!off)
         return;
+    const Vector2D<double> way = along * *off;
+    constexpr double right_m = OpenDirection::right_m;
+    if (std::abs(*off) > right_m && !(before && (way - *before).norm() <= right_m)) {
+        slid_ = way;
+        open_.dispute(way);
+        return;
+    }
     open_.place(); // nothing is open there
     if (*off == 0)
         return;
-    const Transformation2D moved(*off * along.x, *off * along.y, 0);
+    const Transformation2D moved(way.x, way.y, 0);
     builder.move(moved);
     locate_.move(moved);
-    check_.restart();
 }
 
 VECTORLIB_BODY void ScanTracker::checkOdometry(const TimedScan &scan) {
@@ -212,6 +221,7 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     check_.restart();
     open_.place();
     break_.place();
+    slid_.reset();
     builder.placed();
 }
 

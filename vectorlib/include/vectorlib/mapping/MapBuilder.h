@@ -81,6 +81,7 @@ public:
 
     /// Between the two: the scan lies elsewhere after all, by this motion of the map.
     void move(const Transformation2D &moved) {
+        expected_ = moved * expected_;
         pose_ = moved * pose_;
         match_.pose = pose_;
         report_.pose = pose_.pose();

@@ -224,6 +224,7 @@ private:
     CounterEvidence evidence_;
     Clock::time_point nextSearch_;
 };
+    std::optional<Vector2D<double>> slid_; // where the last scan lies better, as yet alone; metres, map frame
 
 } // namespace vectorlib
 

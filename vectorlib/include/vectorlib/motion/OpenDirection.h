@@ -35,14 +35,15 @@ public:
         last_.reset();
         from_.reset();
     }
-    /// How probable it is that the pose is right within 0.3 m.
+    /// How probable it is that the pose is right, within `right_m`.
     double belief() const {
         const double deviation = std::hypot(deviation_, disputed_.norm());
         return deviation > 0 ? std::erf(right_m / (std::sqrt(2.0) * deviation)) : 1;
     }
 
+    static constexpr double right_m = 0.3; ///< by which a right pose is off at the most
+
 private:
-    static constexpr double right_m = 0.3;
     /// The share of the way by which the motion so far errs, the odometry at the least, and at first.
     static constexpr double unguided = 0.6, leastSlip = 0.02, firstSlip = 0.03;
     static constexpr double beside_m = 3; // of a growing map: drawn on so much of the way
