@@ -67,6 +67,26 @@ private Q_SLOTS:
         QVERIFY(tracker->counts().contradicted > 0);
     }
 
+    // Five scans agree with it, but tell nothing of the way along.
+    void aPlaceToldInABareCorridorIsDoubted_data() { falseAndTrue("grows", "finished map", "growing map"); }
+    void aPlaceToldInABareCorridorIsDoubted() {
+        QFETCH(bool, grows);
+        Walls corridor{{{-40, -1}, {20, -1}}, {{20, -1}, {20, 1}}, {{20, 1}, {-40, 1}}};
+        scanner.maxRange = 5;
+        finishMap(corridor, {});
+        tracker->grow(grows);
+        tracker->claim({10, 0, 0});
+        for (int i = 0; i < 8; ++i) {
+            see(corridor, {10, 0, 0}, 10 + 0.1 * i, track({}, 10 + 0.1 * i));
+            QVERIFY2(tracker->trust() < 0.5, saying(tracker->trust()));
+        }
+        QVERIFY(!grows || tracker->placeState() == PlaceState::Told);
+        for (int i = 0; i < 80; ++i)
+            see(corridor, {10 + 0.1 * i, 0, 0}, 11 + 0.1 * i, track({0.1 * i, 0, 0}, 11 + 0.1 * i));
+        QVERIFY2(tracker->trust() > 0.5, saying(tracker->trust())); // its end is seen
+        QVERIFY(tracker->placeState() == PlaceState::Known);
+    }
+
     // Nothing there tells where.
     void aBareCorridorIsNotSlidAlong() {
         const Walls corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};

@@ -46,7 +46,7 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     followOpen(scan);
     // What is known of the place now.
     count(report);
-    place_.settle(isMatched() && agrees());
+    place_.settle(isMatched() && agrees() && open_.belief() > claimed);
     return report;
 }
 
@@ -209,6 +209,7 @@ VECTORLIB_BODY bool ScanTracker::wantsToConfirm() const {
 
 VECTORLIB_BODY void ScanTracker::claim(const Pose2D &pose) {
     place(pose);
+    open_.placeAbout();
     doubt();
 }
 

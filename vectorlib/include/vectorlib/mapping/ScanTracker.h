@@ -99,7 +99,8 @@ public:
     /// Puts the sensor somewhere, standing still: the place is known. `against`: what is known to speak
     /// against it.
     void place(const Pose2D &pose, double against = 0);
-    /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree.
+    /// The same for a place that somebody tells: nothing is mapped there until five scans in a row agree, and
+    /// walls told it in all directions.
     void claim(const Pose2D &pose);
     /// Puts the sensor where a search found it; in a map that grows that is to be confirmed.
     void placeFound(const Pose2D &pose, double against = 0);

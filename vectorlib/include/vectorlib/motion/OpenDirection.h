@@ -35,6 +35,11 @@ public:
         last_.reset();
         from_.reset();
     }
+    /// The same at a place that somebody told, who errs by about half a metre.
+    void placeAbout() {
+        place();
+        deviation_ = told_m;
+    }
     /// How probable it is that the pose is right, within `right_m`.
     double belief() const {
         const double deviation = std::hypot(deviation_, disputed_.norm());
@@ -44,6 +49,7 @@ public:
     static constexpr double right_m = 0.3; ///< by which a right pose is off at the most
 
 private:
+    static constexpr double told_m = 0.5;
     /// The share of the way by which the motion so far errs, the odometry at the least, and at first.
     static constexpr double unguided = 0.6, leastSlip = 0.02, firstSlip = 0.03;
     static constexpr double beside_m = 3; // of a growing map: drawn on so much of the way
