@@ -37,7 +37,7 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     // Whether the map speaks against the pose: the scan is lost then.
     judge(scan, lastStamp);
     // The map grows.
-    builder.settings.grow = maps();
+    builder.settings.grow = draws();
     const ScanReport &report = builder.conclude(scan.points, located_.isStraight);
     points_ = scan.points;
     // What the motion, the odometry and open walls tell of the next scan.
@@ -221,8 +221,8 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     locate_.place(pose);
     check_.restart();
     open_.place();
-    break_.place();
     slid_.reset();
+    break_.place();
     builder.placed();
 }
 
@@ -248,7 +248,7 @@ VECTORLIB_BODY Relocalized ScanTracker::relocalize(bool apply) {
 VECTORLIB_BODY bool ScanTracker::wantsSearch() const {
     // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
     // itself, at a place that may be wrong, and the search would find that.
-    const bool holdsTheScan = maps() && lostInARow_ >= builder.settings.lostBeforeRestart;
+    const bool holdsTheScan = draws() && lostInARow_ >= builder.settings.lostBeforeRestart;
     const bool isLost = settings_.relocalizeAfter > 0 && lostInARow_ >= settings_.relocalizeAfter;
     return place_.isSought() || wantsToConfirm() || (isLost && !holdsTheScan);
 }

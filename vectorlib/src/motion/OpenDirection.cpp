@@ -11,8 +11,11 @@ VECTORLIB_BODY void OpenDirection::follow(const Transformation2D &pose, bool isO
     last_ = pose;
     if (!isOpen)
         disputed_ = {};
-    if (grows)
-        deviation_ *= std::max(0.0, 1 - way / beside_m);
+    if (grows) {
+        const double beside = std::max(0.0, 1 - way / beside_m);
+        deviation_ *= beside;
+        disputed_ = disputed_ * beside;
+    }
     deviation_ = isOpen ? deviation_ + (isByOdometry ? slip_ : unguided) * way : 0;
     if (odometry && !isOpen)
         learn(pose, odometry->epoch(), odometry->at(stamp) * mount);

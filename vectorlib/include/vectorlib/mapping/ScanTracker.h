@@ -176,8 +176,10 @@ private:
     static constexpr double minMapped = 0.85; // of the seen length: the map shows the scan
     static constexpr double fewKnown = 0.6;   // of the points, where no odometry tells the pose
 
-    // Whether the next scan enters the map.
+    // Whether the next scan is one of a map that grows.
     bool maps() const { return grows_ && place_.isKnown(); }
+    // Whether it is drawn into the map.
+    bool draws() const { return maps() && !(settings_.seekWhereContradicted && open_.isDisputed()); }
     bool isMatched() const { return builder.report().outcome == ScanReport::Outcome::Matched; }
     void setUp(TimedScan &scan);
     // The motion since a pose, where the odometry and the scan before tell it, each on its own.
@@ -222,10 +224,10 @@ private:
     PlaceFitter withoutPeople_;          // they are drawn, too: short walls do not speak against a pose
     PlaceFitter withoutPeopleAndBeyond_; // for the second scanner: what lies before walls speaks, too
     OpenDirection open_;
+    std::optional<Vector2D<double>> slid_; // where the last scan lies better, as yet alone; metres, map frame
     CounterEvidence evidence_;
     Clock::time_point nextSearch_;
 };
-    std::optional<Vector2D<double>> slid_; // where the last scan lies better, as yet alone; metres, map frame
 
 } // namespace vectorlib
 

@@ -40,6 +40,8 @@ public:
         place();
         deviation_ = told_m;
     }
+    /// Whether the scans and the odometry differ by so much that the pose is wrong by one of them.
+    bool isDisputed() const { return disputed_.norm() > right_m; }
     /// How probable it is that the pose is right, within `right_m`.
     double belief() const {
         const double deviation = std::hypot(deviation_, disputed_.norm());
