@@ -8,6 +8,7 @@
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
+#include <QHostAddress>
 #include <QRegularExpression>
 #include <algorithm>
 #include <cerrno>
@@ -20,23 +21,22 @@ namespace {
 constexpr int longestName = 200; // of a file
 constexpr int fileBytes = 8192;
 constexpr int longestReason = 1000;
-constexpr quint16 firstFleeting = 32768; // ports from here on the system gives to anybody
 
-/// How a daemon is known that has this address; empty: the next one may have it as well.
-QString markOf(const QString &address, bool isOwn) {
+/// How a daemon is known that listens there.
+QString markOf(const QString &address) {
     const auto url = InterfaceUrl::parse(address);
-    if (!url || url->path.startsWith("/dev/pts/"))
+    if (!url || (url->port == 0 && url->path.isEmpty()))
         return {};
-    if (!url->path.isEmpty() && url->port == 0)
-        return url->path;
-    if (url->port == 0 || url->port >= firstFleeting)
-        return {};
-    return isOwn ? QString("port %1").arg(url->port) : url->toString();
+    return url->port != 0 ? QString("port %1").arg(url->port) : url->path;
 }
 
-bool lasts(const QString &address) {
-    const auto url = InterfaceUrl::parse(address);
-    return url && (url->port != 0 || !url->path.isEmpty());
+/// How a robot is known that is driven through this line; empty: it is simulated here, and the next one has
+/// the same.
+QString markOfRobot(const QString &line) {
+    const auto url = InterfaceUrl::parse(line);
+    const bool isSimulated = !url || QFileInfo(url->path).canonicalFilePath().startsWith("/dev/pts/") ||
+                             url->host == "localhost" || QHostAddress(url->host).isLoopback();
+    return isSimulated ? QString() : url->toString();
 }
 
 Error failed(const QString &path, const QString &why) {
@@ -61,14 +61,15 @@ LatchFile::~LatchFile() {
 void LatchFile::setPlace(const QString &settingsFile, const QStringList &listen, const QStringList &lines) {
     path_.clear();
     marks_.clear();
-    if (std::none_of(listen.begin(), listen.end(), lasts))
+    for (const QString &address : listen)
+        marks_.append(markOf(address));
+    marks_.removeAll({});
+    if (marks_.isEmpty())
         return;
     if (!settingsFile.isEmpty())
         marks_.append(QFileInfo(settingsFile).absoluteFilePath());
-    for (const QString &address : listen)
-        marks_.append(markOf(address, true));
     for (const QString &line : lines)
-        marks_.append(markOf(line, false));
+        marks_.append(markOfRobot(line));
     marks_.removeAll({});
     marks_.removeDuplicates();
     QString name = (listen + lines).join('+');

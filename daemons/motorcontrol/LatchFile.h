@@ -10,7 +10,7 @@ namespace hermes::motorcontrol {
 
 /// The emergency stop on the disk: it outlives the program, and a loss of power, until somebody releases it.
 /// It is that of every daemon which has the settings file, an address or a line of the one that wrote it:
-/// whatever else is set in between.
+/// whatever else is set in between. Lines of simulated robots do not count: each has the same.
 class LatchFile {
 public:
     LatchFile() { disk_.setMaxThreadCount(1); }

@@ -55,10 +55,10 @@ def main():
             assert len(files) == 1, files
         again = os.path.join(folder, "again")  # the same line by another name
         os.symlink(link, again)
-        for line, its_port, others in ((link, free_port(0), {}), (link, port, {"frame.layout": "differential"}), (again, port, {})):
+        for line, others in ((link, {"frame.layout": "differential"}), (again, {})):
             killed(process)
-            process, motor = started(folder, its_port, line, others)
-            assert is_refused(), f"the robot drives with other settings though an emergency stop was latched: {line}, {its_port}, {others}"
+            process, motor = started(folder, port, line, others)
+            assert is_refused(), f"the robot drives with other settings though an emergency stop was latched: {line}, {others}"
         release(motor)
         assert not latches(folder), "the released stop is kept"
         killed(process)
