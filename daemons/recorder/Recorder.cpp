@@ -178,7 +178,7 @@ void Recorder::resume(const QJsonObject &latest, double since_s) {
     status.session = latest["session"].toString();
     status.start = latest["start"].toDouble();
     status.duration_s = 0; // the recording that goes on tells it
-    if (since_s < maxAway_s && (ended == "cut off" || ended == "stopped") &&
+    if (since_s < maxAway_s && (ended == "cut off" || ended == "shut down") &&
         !latest["name"].toString().startsWith(ringPrefix))
         QTimer::singleShot(forLoggers, this, [this, status] { session_.resume(status); });
 }
