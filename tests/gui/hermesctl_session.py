@@ -192,7 +192,7 @@ class Session(unittest.TestCase):
         for line, expected in ((f"replay --recorder {recorder.address} ", ["run1", "run2"]),
                                (f"session remove --recorder {recorder.address} run2", ["run2"]),
                                (f"call {recorder.address} session.info name=", ["name=run1", "name=run2"]),
-                               ("session export x --format c", ["csv", "carmen"]), ("session st", ["start", "stop", "status"]),
+                               ("session export x --format c", ["csv", "carmen"]), ("session export x --format p", ["pcap"]), ("session st", ["start", "stop", "status"]),
                                ("session list --recorder rec", ["recorder"])):
             shown = ctl("complete", "hermesctl " + line)
             self.assertEqual([one.split("\t")[0] for one in shown.stdout.splitlines()], expected, line)
