@@ -42,6 +42,7 @@ Recorder::Recorder()
     declareReplay();
     declareStudies();
     work_.setMaxThreadCount(2);
+    exports_.setMaxThreadCount(1);
     connect(&recording_, &Recording::changed, this, &Recorder::recordingChanged);
     connect(&recording_, &Recording::completed, this, &Recorder::resume);
     connect(&topics_, &TopicRecorder::alarmed, this, &Recorder::keepRing);
@@ -78,6 +79,7 @@ void Recorder::stop() {
     recording_.close();
     isEnding_ = true;
     work_.waitForDone();
+    exports_.waitForDone();
 }
 
 void Recorder::settingsChanged(const QStringList &paths) {

@@ -94,7 +94,9 @@ Fields<SessionText> fieldsOf(Of<SessionText>) {
 }
 
 Fields<SessionFiles> fieldsOf(Of<SessionFiles>) {
-    return Fields<SessionFiles>().add("paths", &SessionFiles::paths, "Written");
+    return Fields<SessionFiles>()
+        .add("paths", &SessionFiles::paths, "Written")
+        .add("problems", &SessionFiles::problems, "What of the session is missing in them, a line each");
 }
 
 } // namespace hermes

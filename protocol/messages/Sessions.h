@@ -88,6 +88,7 @@ struct SessionText {
 /// What session.export gives.
 struct SessionFiles {
     QStringList paths;
+    QStringList problems; ///< what of the session is missing in them, a line each, for people
 };
 
 Fields<SessionText> fieldsOf(Of<SessionText>);

@@ -113,6 +113,9 @@ class Session(unittest.TestCase):
         self.assertIn("hermesctl: velodynelogger: lost: queue 3; no answer (-32005)", self.ctl(recorder, "record", "status", status=1))
         shown = ctl("record", "start", "--recorder", recorder.address)
         self.assertEqual((shown.returncode, shown.stderr), (0, "hermesctl: velodynelogger: lost: queue 3\nhermesctl: no answer\n"))
+        recorder = self.recorder(export={"paths": ["/a.csv"], "problems": ["being recorded"]})
+        shown = ctl("session", "export", "x", "--format", "csv", "--recorder", recorder.address)
+        self.assertEqual((shown.returncode, shown.stdout, shown.stderr), (0, "/a.csv\n", "hermesctl: being recorded\n"))
 
     def test_without_a_recorder(self):
         for words in (["status"], ["list"], ["replay", "run1"]):
