@@ -43,11 +43,14 @@ PcapReader::~PcapReader() = default;
 
 Outcome<void> PcapReader::open(const std::string &path) {
     close();
-    auto file = std::make_unique<std::ifstream>(std::filesystem::u8path(path), std::ios::binary);
-    if (!*file) {
-        path_ = path;
+    path_ = path;
+    const auto name = std::filesystem::u8path(path);
+    std::error_code none;
+    if (std::filesystem::exists(name, none) && !std::filesystem::is_regular_file(name, none))
+        return error_ = path + ": not a regular file"; // to open a pipe would wait
+    auto file = std::make_unique<std::ifstream>(name, std::ios::binary);
+    if (!*file)
         return error_ = path + ": cannot be opened: " + std::strerror(errno);
-    }
     const Outcome<void> opened = open(*file, path);
     if (opened)
         file_ = std::move(file);

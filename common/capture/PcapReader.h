@@ -41,6 +41,7 @@ public:
     PcapReader(const PcapReader &) = delete;
     PcapReader &operator=(const PcapReader &) = delete;
 
+    /// A regular file.
     Outcome<void> open(const std::string &path);
     /// From a stream that lives as long; name is what messages call it.
     Outcome<void> open(std::istream &stream, const std::string &name);

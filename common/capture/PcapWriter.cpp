@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <memory>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace hermes {
@@ -37,13 +38,17 @@ bool readRecord(std::FILE *file, std::array<std::uint8_t, frameHeaderSize + maxi
 } // namespace
 
 Outcome<PcapTail> readPcapTail(const std::string &path, std::uint64_t from,
-                               const std::function<void(const Datagram &)> &sink) {
+                               const std::function<bool(const Datagram &)> &sink) {
     PcapTail tail;
-    const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (!file || ::fseeko(file.get(), 0, SEEK_END) != 0) {
-        return path + ": cannot be read: " + std::strerror(errno);
-    }
-    tail.fileBytes = std::uint64_t(::ftello(file.get()));
+    struct stat status {};
+    const int number = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(number < 0 ? nullptr : ::fdopen(number, "rb"),
+                                                                &std::fclose);
+    if (!file || ::fstat(number, &status) != 0)
+        return path + ": cannot be read: " + (errno == ELOOP ? "it is a link" : std::strerror(errno));
+    if (!S_ISREG(status.st_mode))
+        return path + ": not a regular file";
+    tail.fileBytes = std::uint64_t(status.st_size);
     if (tail.fileBytes < PcapWriter::fileHeaderBytes)
         return tail;
     std::uint8_t magic[4];
@@ -62,7 +67,8 @@ Outcome<PcapTail> readPcapTail(const std::string &path, std::uint64_t from,
         tail.last_ns = datagram.stamp_ns;
         tail.wholeBytes += PcapWriter::recordHeaderBytes + length;
         ++tail.packets;
-        sink(datagram);
+        if (!sink(datagram))
+            break;
     }
     return tail;
 }

@@ -20,9 +20,10 @@ struct PcapTail {
 };
 
 /// Reads the records from a byte on where one begins, the first of the file where from is less than that of
-/// the first; stops at the first that is not whole or not ours. sink sees each datagram.
+/// the first; stops at the first that is not whole or not ours. sink sees each datagram, and gives whether to
+/// go on. Fails on a link, and on what is no regular file.
 Outcome<PcapTail> readPcapTail(const std::string &path, std::uint64_t from,
-                               const std::function<void(const Datagram &)> &sink);
+                               const std::function<bool(const Datagram &)> &sink);
 
 /// Writes datagrams to a classic pcap file with nanosecond stamps, each in an Ethernet frame with made-up
 /// link addresses. Not for several threads at once. After a write error the file is cut back to whole

@@ -92,8 +92,9 @@ void Recording::close() {
     syncs_.waitForDone();
     if (session_.isOpen()) {
         const bool isEnding = phase_ == Phase::Ending; // its job was dropped above
+        const RecordingEnd unasked = stopping_.empty() ? RecordingEnd::ShutDown : RecordingEnd::Stopped;
         const Result<void> result =
-            session_.finish(isEnding ? endReason_ : RecordingEnd::Stopped, isEnding ? error_ : std::nullopt);
+            session_.finish(isEnding ? endReason_ : unasked, isEnding ? error_ : std::nullopt);
         if (!result)
             logError("recording", result.error().message);
     }

@@ -32,6 +32,8 @@ QString toText(RecordingEnd end) {
     switch (end) {
     case RecordingEnd::Stopped:
         return "stopped";
+    case RecordingEnd::ShutDown:
+        return "shut down";
     case RecordingEnd::FreeSpace:
         return "free space";
     case RecordingEnd::Failed:

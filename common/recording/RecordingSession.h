@@ -6,8 +6,9 @@
 
 namespace hermes {
 
-/// How a recording ended, as its sidecar says. What was cut off is found by the next start.
-enum class RecordingEnd { Stopped, FreeSpace, Failed, CutOff };
+/// How a recording ended, as its sidecar says. ShutDown: nobody stopped it, its logger ended in order. What
+/// was cut off is found by the next start.
+enum class RecordingEnd { Stopped, ShutDown, FreeSpace, Failed, CutOff };
 
 /// The disk's side of one recording: folder, sidecar, room for its last version, the writer. Blocks: for a
 /// thread that may. Not for several threads at once.

@@ -68,6 +68,8 @@ public:
     Result<QJsonObject> read(const QString &file) const;
     /// Takes what read() gives, and remembers the file for save().
     Result<void> load(const QString &file);
+    /// The file that was loaded; empty: none.
+    const QString &file() const { return fileName_; }
     /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name. What
     /// is no regular file is not replaced, and what load() would not read is not written.
     Result<QString> save(const QString &file = QString()) const;

@@ -1,11 +1,14 @@
 #include "daemons/motorcontrol/LatchFile.h"
 
 #include "common/files/Folder.h"
+#include "common/files/NamedFile.h"
 #include "common/interface/InterfaceUrl.h"
 #include "common/recording/FileSync.h"
 
+#include <QDir>
 #include <QFile>
 #include <QFileInfo>
+#include <QHostAddress>
 #include <QRegularExpression>
 #include <algorithm>
 #include <cerrno>
@@ -16,11 +19,24 @@ namespace hermes::motorcontrol {
 namespace {
 
 constexpr int longestName = 200; // of a file
-constexpr qint64 longestReason = 4096;
+constexpr int fileBytes = 8192;
+constexpr int longestReason = 1000;
 
-bool lasts(const QString &address) {
+/// How a daemon is known that listens there.
+QString markOf(const QString &address) {
     const auto url = InterfaceUrl::parse(address);
-    return url && (url->port != 0 || !url->path.isEmpty());
+    if (!url || (url->port == 0 && url->path.isEmpty()))
+        return {};
+    return url->port != 0 ? QString("port %1").arg(url->port) : url->path;
+}
+
+/// How a robot is known that is driven through this line; empty: it is simulated here, and the next one has
+/// the same.
+QString markOfRobot(const QString &line) {
+    const auto url = InterfaceUrl::parse(line);
+    const bool isSimulated = !url || QFileInfo(url->path).canonicalFilePath().startsWith("/dev/pts/") ||
+                             url->host == "localhost" || QHostAddress(url->host).isLoopback();
+    return isSimulated ? QString() : url->toString();
 }
 
 Error failed(const QString &path, const QString &why) {
@@ -28,33 +44,78 @@ Error failed(const QString &path, const QString &why) {
             QString("an emergency stop does not outlive this program: %1: %2").arg(path, why)};
 }
 
+/// The reason, and the marks after it; empty: it cannot be read.
+QStringList linesOf(const QString &path) {
+    QFile file;
+    return openOwnFile(file, path) ? QString::fromUtf8(file.read(fileBytes)).split('\n', Qt::SkipEmptyParts)
+                                   : QStringList();
+}
+
 } // namespace
 
-void LatchFile::setPlace(const QStringList &listen, const QStringList &lines) {
+LatchFile::~LatchFile() {
+    if (!path_.isEmpty())
+        QFile::remove(draft());
+}
+
+void LatchFile::setPlace(const QString &settingsFile, const QStringList &listen, const QStringList &lines) {
     path_.clear();
-    if (std::none_of(listen.begin(), listen.end(), lasts))
+    marks_.clear();
+    for (const QString &address : listen)
+        marks_.append(markOf(address));
+    marks_.removeAll({});
+    if (marks_.isEmpty())
         return;
+    if (!settingsFile.isEmpty())
+        marks_.append(QFileInfo(settingsFile).absoluteFilePath());
+    for (const QString &line : lines)
+        marks_.append(markOfRobot(line));
+    marks_.removeAll({});
+    marks_.removeDuplicates();
     QString name = (listen + lines).join('+');
     name.replace(QRegularExpression("[^A-Za-z0-9.+-]+"), "_");
     path_ = stateFolder() + "/estop/" + name.left(longestName);
 }
 
-Result<void> LatchFile::mayBeWritten() const {
+Result<void> LatchFile::reserve() {
     if (path_.isEmpty())
         return {};
-    const QFileInfo folder(QFileInfo(path_).path());
-    if (const auto made = makeFolder(folder.filePath()); !made)
-        return failed(folder.filePath(), made.error().message);
-    return folder.isWritable() ? Result<void>() : failed(folder.filePath(), "the folder cannot be written");
+    const QString folder = QFileInfo(path_).path();
+    if (const auto made = makeFolder(folder); !made)
+        return failed(folder, made.error().message);
+    QFile::remove(draft());
+    QFile file;
+    if (const auto opened = openOwnFile(file, draft(), true); !opened)
+        return failed(draft(), opened.error().message);
+    if (file.write(QByteArray(fileBytes, '\n')) != fileBytes || !file.flush())
+        return failed(draft(), file.errorString());
+    disk_.start([path = draft()] { syncFile(path); });
+    return {};
+}
+
+QStringList LatchFile::found() const {
+    QStringList paths;
+    if (path_.isEmpty())
+        return paths;
+    const QDir folder(QFileInfo(path_).path());
+    for (const QString &name :
+         folder.entryList(QDir::AllEntries | QDir::System | QDir::Hidden | QDir::NoDotAndDotDot)) {
+        const QString path = folder.filePath(name);
+        const QStringList lines = name.endsWith(".new") ? QStringList() : linesOf(path);
+        if (path == path_ || std::any_of(marks_.begin(), marks_.end(),
+                                         [&](const QString &mark) { return lines.indexOf(mark, 1) > 0; }))
+            paths.append(path);
+    }
+    return paths;
 }
 
 std::optional<QString> LatchFile::read() const {
-    QFile file(path_);
-    if (path_.isEmpty() || !(file.exists() || QFileInfo(path_).isSymLink()))
+    const QStringList paths = found();
+    if (paths.isEmpty())
         return std::nullopt;
-    const QString text =
-        file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.read(longestReason)).simplified() : QString();
-    return text.isEmpty() ? "an emergency stop of which nothing is known: " + path_ : text;
+    const QStringList lines = linesOf(paths.first());
+    return lines.isEmpty() ? "an emergency stop of which nothing is known: " + paths.first()
+                           : lines.first().simplified();
 }
 
 Result<void> LatchFile::write(const std::optional<QString> &reason) {
@@ -62,26 +123,40 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
         return {};
     const QString folder = QFileInfo(path_).path();
     if (!reason) {
-        if (!QFile::remove(path_) && QFile::exists(path_))
-            return Error(ErrorCode::InputOutput,
-                         QString("%1 cannot be removed: %2; the next start latches the "
-                                 "emergency stop again")
-                             .arg(path_, std::strerror(errno)));
+        for (const QString &path : found())
+            if (!QFile::remove(path) && QFile::exists(path))
+                return Error(ErrorCode::InputOutput,
+                             QString("%1 cannot be removed: %2; the next start latches the "
+                                     "emergency stop again")
+                                 .arg(path, std::strerror(errno)));
         disk_.start([folder] { syncFolder(folder); });
-        return {};
+        return reserve();
     }
-    if (const auto may = mayBeWritten(); !may)
-        return may;
-    const QByteArray text = reason->left(longestReason / 4).toUtf8() + '\n';
-    QFile file(path_ + ".new");
-    file.remove(); // never through a link
-    const bool written = file.open(QIODevice::WriteOnly | QIODevice::NewOnly) &&
-                         file.write(text) == text.size() && file.flush();
-    file.close();
-    if (!written)
+    const QStringList paths = found(); // of one stop, with whatever settings: from now on in one file
+    for (const QString &path : paths)
+        marks_ += linesOf(path).mid(1);
+    marks_.removeDuplicates();
+    const QByteArray text = (QStringList(reason->left(longestReason).simplified()) + marks_)
+                                .join('\n')
+                                .toUtf8()
+                                .left(fileBytes - 1);
+    QFile file;
+    Result<void> opened = openOwnFile(file, draft()); // with the room that it has
+    if (!opened) {
+        if (const auto made = reserve(); !made)
+            return made;
+        opened = openOwnFile(file, draft());
+    }
+    if (!opened)
+        return failed(draft(), opened.error().message);
+    if (file.write(text.leftJustified(fileBytes, '\n')) != fileBytes || !file.flush())
         return failed(path_, file.errorString());
-    if (std::rename(QFile::encodeName(file.fileName()), QFile::encodeName(path_)) != 0)
+    file.close();
+    if (std::rename(QFile::encodeName(draft()), QFile::encodeName(path_)) != 0)
         return failed(path_, std::strerror(errno));
+    for (const QString &path : paths)
+        if (path != path_)
+            QFile::remove(path);
     disk_.start([path = path_, folder] {
         syncFile(path);
         syncFolder(folder);

@@ -2,23 +2,25 @@
 
 #include "common/Result.h"
 
-#include <QString>
+#include <QStringList>
 #include <QThreadPool>
 #include <optional>
 
 namespace hermes::motorcontrol {
 
 /// The emergency stop on the disk: it outlives the program, and a loss of power, until somebody releases it.
+/// It is that of every daemon which has the settings file, an address or a line of the one that wrote it:
+/// whatever else is set in between. Lines of simulated robots do not count: each has the same.
 class LatchFile {
 public:
     LatchFile() { disk_.setMaxThreadCount(1); }
-    /// The file of the daemon that listens at these addresses and drives these lines, in the folder of state.
-    /// None where no address lasts: nobody could tell such a daemon from another.
-    void setPlace(const QStringList &listen, const QStringList &lines);
-    const QString &path() const { return path_; }
+    ~LatchFile();
+    /// The daemon has this settings file (empty: none), listens at these addresses and drives these lines.
+    /// Nothing is kept where no address lasts: nobody could tell such a daemon from another.
+    void setPlace(const QString &settingsFile, const QStringList &listen, const QStringList &lines);
 
-    /// Error: InputOutput, no stop could be written now.
-    Result<void> mayBeWritten() const;
+    /// Takes room for a stop, so that a disk that fills does not lose it. Error: InputOutput.
+    Result<void> reserve();
     /// Why the robot was stopped; nothing where no stop was latched. A file that cannot be read is a stop.
     std::optional<QString> read() const;
     /// At once, for a program that is killed; on the disk soon. Nothing: no stop is latched. Error:
@@ -26,8 +28,13 @@ public:
     Result<void> write(const std::optional<QString> &reason);
 
 private:
+    QString draft() const { return path_ + ".new"; }
+    /// Those that are on the disk, of this daemon.
+    QStringList found() const;
+
     QString path_;
-    QThreadPool disk_; // a disk may take long; its jobs end before this does
+    QStringList marks_; ///< this daemon is known by any of them
+    QThreadPool disk_;  // a disk may take long; its jobs end before this does
 };
 
 } // namespace hermes::motorcontrol

@@ -103,9 +103,9 @@ void MotorControl::restoreStop() {
         listen.append(address.toString());
     for (const ControllerAddress &controller : active_.controllers)
         lines.append(controller.url);
-    latchFile_.setPlace(listen, lines);
-    const auto kept = latchFile_.mayBeWritten();
-    unkept_ = kept ? QString() : kept.error().message;
+    latchFile_.setPlace(settings().file(), listen, lines);
+    const auto room = latchFile_.reserve();
+    unkept_ = room ? QString() : room.error().message;
     const auto reason = latchFile_.read();
     if (!reason)
         return;
@@ -117,6 +117,7 @@ void MotorControl::restoreStop() {
             told_.latch = loop_->drive().latch(); // who asks before the first report is told so
         },
         Qt::BlockingQueuedConnection);
+    keepStop(); // as that of the daemon that this one is now
 }
 
 void MotorControl::keepStop() {
@@ -148,12 +149,14 @@ void MotorControl::stop() {
 }
 
 void MotorControl::settingsChanged(const QStringList &paths) {
-    static const QStringList groups{"controllers.", "pid.",    "frame.",    "wheels.",
-                                    "motion.",      "safety.", "odometry.", "faults."};
-    const bool concernsDrive = std::any_of(paths.begin(), paths.end(), [](const QString &path) {
-        return std::any_of(groups.begin(), groups.end(),
-                           [&](const QString &g) { return path.startsWith(g); });
-    });
+    static const QStringList ofDrive{"controllers.", "pid.",    "frame.",    "wheels.",
+                                     "motion.",      "safety.", "odometry.", "faults."};
+    const auto concerns = [&paths](const QStringList &groups) {
+        return std::any_of(paths.begin(), paths.end(), [&](const QString &path) {
+            return std::any_of(groups.begin(), groups.end(),
+                               [&](const QString &g) { return path.startsWith(g); });
+        });
+    };
     if (!loop_)
         return;
     const MotorSettings before = std::exchange(active_, MotorSettings::from(settings()));
@@ -166,11 +169,15 @@ void MotorControl::settingsChanged(const QStringList &paths) {
                     });
     active_.controllers = before.controllers; // they wait for a restart
     gauge_.configure(active_.gauge);
-    if (!concernsDrive)
+    if (!concerns(ofDrive))
         return;
     server().gaps().watch(active_.drive.commandTimeout_s);
+    static const QStringList ofRobot{"frame.", "wheels."};
+    const bool isOther = concerns(ofRobot); // the same command moves it in another way
     inLoop(
-        [s = active_](DriveLoop &loop) {
+        [s = active_, isOther](DriveLoop &loop) {
+            if (isOther)
+                loop.drive().release(loop.drive().lease().client());
             loop.configure(s);
             return QJsonValue();
         },

@@ -42,6 +42,7 @@ Recorder::Recorder()
     declareReplay();
     declareStudies();
     work_.setMaxThreadCount(2);
+    exports_.setMaxThreadCount(1);
     connect(&recording_, &Recording::changed, this, &Recorder::recordingChanged);
     connect(&recording_, &Recording::completed, this, &Recorder::resume);
     connect(&topics_, &TopicRecorder::alarmed, this, &Recorder::keepRing);
@@ -78,6 +79,7 @@ void Recorder::stop() {
     recording_.close();
     isEnding_ = true;
     work_.waitForDone();
+    exports_.waitForDone();
 }
 
 void Recorder::settingsChanged(const QStringList &paths) {
@@ -178,7 +180,7 @@ void Recorder::resume(const QJsonObject &latest, double since_s) {
     status.session = latest["session"].toString();
     status.start = latest["start"].toDouble();
     status.duration_s = 0; // the recording that goes on tells it
-    if (since_s < maxAway_s && (ended == "cut off" || ended == "stopped") &&
+    if (since_s < maxAway_s && (ended == "cut off" || ended == "shut down") &&
         !latest["name"].toString().startsWith(ringPrefix))
         QTimer::singleShot(forLoggers, this, [this, status] { session_.resume(status); });
 }

@@ -51,8 +51,8 @@ private:
     /// replayed.
     void change(const QString &name, const Reply &reply,
                 std::function<Result<QJsonValue>(const RecordedSession &)> work);
-    /// Does the work with what a session holds in another thread, also while it is recorded.
-    void study(const QString &name, const Reply &reply,
+    /// Does the work with what a session holds in a thread of the pool, also while it is recorded.
+    void study(QThreadPool &pool, const QString &name, const Reply &reply,
                std::function<Result<QJsonValue>(SessionReader &)> work);
     /// Has the marks of what is replayed told, and answers.
     void showMarks(const QString &name, const Reply &reply);
@@ -73,7 +73,8 @@ private:
     QString ringSession_; ///< its id
     std::atomic<bool> isEnding_{false};
     double duration_s_ = 0; ///< of what is replayed
-    QThreadPool work_;      ///< reads and exports
+    QThreadPool work_;      ///< reads
+    QThreadPool exports_;   ///< one after another: those of one session write the same files
     QThreadPool changes_;   ///< renames and removes
 };
 

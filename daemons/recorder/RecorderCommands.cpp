@@ -145,12 +145,12 @@ void Recorder::change(const QString &name, const Reply &reply,
     });
 }
 
-void Recorder::study(const QString &name, const Reply &reply,
+void Recorder::study(QThreadPool &pool, const QString &name, const Reply &reply,
                      std::function<Result<QJsonValue>(SessionReader &)> work) {
-    session_.find(name, [this, reply, work = std::move(work)](const Result<RecordedSession> &session) {
+    session_.find(name, [this, &pool, reply, work = std::move(work)](const Result<RecordedSession> &session) {
         if (!session)
             return reply.error(session.error());
-        work_.start(QRunnable::create([this, reply, work, folder = session->folder()] {
+        pool.start(QRunnable::create([this, reply, work, folder = session->folder()] {
             Result<SessionReader> reader = SessionReader::open(folder, &isEnding_);
             reply.give(reader ? work(*reader) : reader.error());
         }));
@@ -164,9 +164,10 @@ void Recorder::declareStudies() {
                    .param(nameField("Its name"))
                    .gives<SessionInfo>()
                    .asyncHandler([this](const Call &call, const Reply &reply) {
-                       study(call.text("name"), reply, [](SessionReader &session) -> Result<QJsonValue> {
-                           return asJson(sessionInfo(session));
-                       });
+                       study(work_, call.text("name"), reply,
+                             [](SessionReader &session) -> Result<QJsonValue> {
+                                 return asJson(sessionInfo(session));
+                             });
                    }));
     addCommand(Command("session.explain", "A page of text about a moment of a session: who drove, what was "
                                           "commanded and measured, why the robot stopped, what was wrong")
@@ -180,10 +181,11 @@ void Recorder::declareStudies() {
                    .asyncHandler([this](const Call &call, const Reply &reply) {
                        const auto at_s =
                            call.has("at_s") ? std::optional(call.number("at_s")) : std::optional<double>();
-                       study(call.text("name"), reply, [at_s](SessionReader &session) -> Result<QJsonValue> {
-                           const Result<QString> text = explainSession(session, at_s);
-                           return text ? Result<QJsonValue>(asJson(SessionText{*text})) : text.error();
-                       });
+                       study(work_, call.text("name"), reply,
+                             [at_s](SessionReader &session) -> Result<QJsonValue> {
+                                 const Result<QString> text = explainSession(session, at_s);
+                                 return text ? Result<QJsonValue>(asJson(SessionText{*text})) : text.error();
+                             });
                    }));
     addCommand(
         Command("session.export", "Writes a session for other tools into the folder export beside its files")
@@ -200,7 +202,7 @@ void Recorder::declareStudies() {
                        .optional())
             .gives<SessionFiles>()
             .asyncHandler([this](const Call &call, const Reply &reply) {
-                study(call.text("name"), reply,
+                study(exports_, call.text("name"), reply,
                       [topics = textsOf(call.value("topics")), format = call.text("format"),
                        floor = settings().number("record.free_floor_bytes")](
                           SessionReader &session) -> Result<QJsonValue> {
@@ -213,9 +215,9 @@ void Recorder::declareStudies() {
                                                    .arg(*room * 1e-6, 0, 'f', 0)
                                                    .arg(needed * 1e-6, 0, 'f', 0),
                                                session.folder());
-                          const Result<QStringList> paths =
+                          const Result<SessionFiles> files =
                               exportSession(session, format, topics, session.folder() + "/export");
-                          return paths ? Result<QJsonValue>(asJson(SessionFiles{*paths})) : paths.error();
+                          return files ? Result<QJsonValue>(asJson(*files)) : files.error();
                       });
             }));
 }
@@ -271,7 +273,7 @@ void Recorder::declareReplay() {
 
 void Recorder::showMarks(const QString &name, const Reply &reply) {
     const Reply shown([this, reply](const Result<QJsonValue> &) { reply.result(asJson(session_.state())); });
-    study(name, shown, [this](SessionReader &session) -> Result<QJsonValue> {
+    study(work_, name, shown, [this](SessionReader &session) -> Result<QJsonValue> {
         const auto show = [this, marks = sessionMarks(session)] { session_.setMarks(marks); };
         QMetaObject::invokeMethod(this, show, Qt::QueuedConnection);
         return QJsonValue();

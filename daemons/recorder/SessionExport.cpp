@@ -3,6 +3,7 @@
 #include "common/Project.h"
 #include "common/capture/PcapWriter.h"
 #include "common/files/NamedFile.h"
+#include "common/files/WriteAll.h"
 #include "common/platform/PrivateFiles.h"
 #include "common/recording/DiskError.h"
 #include "daemons/recorder/CarmenText.h"
@@ -17,12 +18,13 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <filesystem>
 
 namespace hermes::recorder {
 namespace {
 
-/// A file that takes the place of the one before when commit() succeeds. It is open only while a piece of it
-/// is written: there may be one for each topic.
+/// A file that takes the place of the one before when finish() and commit() succeed. It is open only while a
+/// piece of it is written: there may be one for each topic.
 class ExportFile {
 public:
     ExportFile(const QString &folder, const QString &name)
@@ -42,12 +44,14 @@ public:
     /// For who writes it otherwise: the file that gets the name at the end.
     std::string draft() const { return QFile::encodeName(draft_).toStdString(); }
     void fail(const std::string &why) { done_ = failure(QString::fromStdString(why)); }
-    Result<QString> commit() {
+    Result<void> finish() {
         flush(true);
-        if (done_ &&
-            std::rename(QFile::encodeName(draft_).constData(), QFile::encodeName(path_).constData()) != 0)
-            done_ = failure(qt_error_string());
-        return done_ ? Result<QString>(path_) : done_.error();
+        return done_;
+    }
+    Result<QString> commit() const {
+        if (std::rename(QFile::encodeName(draft_).constData(), QFile::encodeName(path_).constData()) != 0)
+            return failure(qt_error_string());
+        return path_;
     }
 
 private:
@@ -57,9 +61,9 @@ private:
         QFile file;
         if (done_)
             done_ = openOwnFile(file, draft_, true);
-        if (done_ && !(file.seek(file.size()) && file.write(waiting_) == waiting_.size() && file.flush() &&
+        if (done_ && !(::lseek(file.handle(), 0, SEEK_END) >= 0 && writeAll(file.handle(), waiting_) &&
                        (!toDisk || syncToDisk(file.handle()))))
-            done_ = failure(file.errorString());
+            done_ = failure(qt_error_string());
         waiting_.clear();
     }
     Error failure(const QString &why) const {
@@ -78,11 +82,14 @@ public:
         : folder_(folder) {}
 
     Result<void> begin() const {
-        return QFileInfo(folder_).isSymLink() || !QDir().mkpath(folder_)
-                   ? Result<void>(diskError(folder_ + ": is no folder, and cannot be made one", folder_))
-                   : Result<void>();
+        for (const QString &folder : {QFileInfo(folder_).path(), folder_})
+            if (QFileInfo(folder).isSymLink())
+                return diskError(folder + ": it is a link; nothing is exported elsewhere", folder);
+        if (!QDir().mkpath(folder_))
+            return diskError(folder_ + ": is no folder, and cannot be made one", folder_);
+        return {};
     }
-    /// name: of a topic, or a session. Whether it can be written commit() tells.
+    /// name: of a topic, or a session. Whether it can be written finish() tells.
     ExportFile &open(QString name, const QString &extension) {
         name.replace(QRegularExpression("[^A-Za-z0-9._-]|^\\."), "-");
         QString unique = name.left(longestName) + extension;
@@ -91,9 +98,16 @@ public:
         names_.insert(unique.toLower());
         return files_.emplace_back(folder_, unique);
     }
-    Result<QStringList> commit() {
+    /// All is on the disk, and nothing replaced as yet.
+    Result<void> finish() {
+        for (ExportFile &file : files_)
+            if (Result<void> finished = file.finish(); !finished)
+                return finished;
+        return {};
+    }
+    Result<QStringList> commit() const {
         QStringList paths;
-        for (ExportFile &file : files_) {
+        for (const ExportFile &file : files_) {
             const Result<QString> path = file.commit();
             if (!path)
                 return path.error();
@@ -254,37 +268,53 @@ private:
         channels_;
 };
 
-/// The capture files in a folder, LOGGER-0001.pcap and on: of each logger, in order.
-std::map<QString, QStringList> capturesIn(const QString &folder) {
+/// The capture files in a folder, LOGGER-0001.pcap and on: of each logger, in order. A name may have any
+/// bytes.
+std::map<QString, std::vector<std::string>> capturesIn(const QString &folder) {
     static const QRegularExpression numbered("^(.+)-[0-9]{4,}\\.pcap$");
-    QStringList names = QDir(folder).entryList({"*.pcap"}, QDir::Files);
-    std::sort(names.begin(), names.end(), [](const QString &a, const QString &b) {
+    const std::string place = QFile::encodeName(folder).toStdString();
+    std::vector<std::string> names;
+    std::error_code error;
+    for (std::filesystem::directory_iterator file(place, error), end; file != end; file.increment(error))
+        names.push_back(file->path().filename().string());
+    std::sort(names.begin(), names.end(), [](const std::string &a, const std::string &b) {
         return std::pair(a.size(), a) < std::pair(b.size(), b); // 9999 comes before 10000
     });
-    std::map<QString, QStringList> captures;
-    for (const QString &name : names)
-        if (const auto match = numbered.match(name); match.hasMatch())
-            captures[match.captured(1)].append(folder + '/' + name);
+    std::map<QString, std::vector<std::string>> captures;
+    for (const std::string &name : names)
+        if (const auto match = numbered.match(QString::fromLatin1(name.c_str())); match.hasMatch())
+            captures[match.captured(1)].push_back(place + '/' + name);
     return captures;
 }
 
-/// Files as one. What is torn at the end of one is left out.
-void join(const QStringList &captures, ExportFile &file) {
+/// Files as one, and how many packets they have. What is not whole in one ends it, which is noted.
+quint64 join(SessionReader &session, const std::vector<std::string> &captures, ExportFile &file) {
     PcapWriter writer;
     Outcome<void> done = writer.open(file.draft());
     for (auto path = captures.begin(); done && path != captures.end(); ++path) {
-        const auto read =
-            readPcapTail(QFile::encodeName(*path).toStdString(), 0, [&](const Datagram &datagram) {
-                if (done)
-                    done = writer.write(datagram);
-            });
+        const auto read = readPcapTail(*path, 0, [&](const Datagram &datagram) {
+            done = writer.write(datagram);
+            return done && !session.isStopped();
+        });
         if (done && !read)
             done = read.error();
+        if (done && (read->wholeBytes < read->fileBytes || read->wholeBytes == 0))
+            session.note(QString("%1: only %2 of its %3 bytes could be read, %4 packets%5")
+                             .arg(QString::fromStdString(*path))
+                             .arg(read->wholeBytes)
+                             .arg(read->fileBytes)
+                             .arg(read->packets)
+                             .arg(read->packets == 0
+                                      ? QString()
+                                      : QString(", the last at %1 s of the session")
+                                            .arg(1e-9 * double(read->last_ns) - session.start(), 0, 'f', 2)));
     }
+    const quint64 packets = writer.packets();
     if (done)
         done = writer.close();
     if (!done)
         file.fail(done.error());
+    return packets;
 }
 
 SessionReader::Wanted wantedOf(const QStringList &topics) {
@@ -302,29 +332,20 @@ SessionReader::Wanted wantedOf(const QStringList &topics) {
 double captureBytes(const QString &folder) {
     double sum = 0;
     for (const auto &[logger, names] : capturesIn(folder))
-        for (const QString &name : names)
-            sum += double(QFileInfo(name).size());
+        for (const std::string &name : names) {
+            std::error_code error;
+            const auto bytes = std::filesystem::file_size(name, error);
+            sum += error ? 0 : double(bytes);
+        }
     return sum;
 }
 
-Result<QStringList> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
-                                  const QString &into) {
+Result<SessionFiles> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
+                                   const QString &into) {
     ExportFiles files(into);
     if (const auto begun = files.begin(); !begun)
         return begun.error();
-    if (format == "pcap") {
-        const auto captures = capturesIn(session.folder());
-        if (captures.empty() || !topics.isEmpty())
-            return captures.empty()
-                       ? Error(ErrorCode::NotReady,
-                               session.folder() + ": found no capture of a lidar, expected LOGGER-0001.pcap")
-                       : Error(ErrorCode::InvalidParams,
-                               "topics: found " + topics.join(", ") + ", expected none with pcap");
-        for (const auto &[logger, names] : captures)
-            join(names, files.open(logger, ".pcap"));
-        return files.commit();
-    }
-    quint64 messages = 0;
+    quint64 messages = 0; ///< or packets
     const auto readAll = [&](const QStringList &usual, const auto &take) {
         session.read(wantedOf(topics.isEmpty() ? usual : topics), [&](const SessionMessage &message) {
             ++messages;
@@ -367,14 +388,32 @@ Result<QStringList> exportSession(SessionReader &session, const QString &format,
                                                    ": found topics with schemas of more than " +
                                                    QString::number(mcap::mostDefinitions) +
                                                    " bytes, expected fewer in one file: export fewer topics");
+    } else if (format == "pcap") {
+        const auto captures = capturesIn(session.folder());
+        if (captures.empty() || !topics.isEmpty())
+            return captures.empty()
+                       ? Error(ErrorCode::NotReady,
+                               session.folder() + ": found no capture of a lidar, expected LOGGER-0001.pcap")
+                       : Error(ErrorCode::InvalidParams,
+                               "topics: found " + topics.join(", ") + ", expected none with pcap");
+        for (const auto &[logger, names] : captures)
+            messages += join(session, names, files.open(logger, ".pcap"));
     } else {
         return Error(ErrorCode::InvalidParams,
                      "format: found " + format + ", expected csv, tum, carmen, mcap or pcap");
     }
+    if (session.isStopped())
+        return Error(ErrorCode::NotReady, session.folder() + ": the program ends; nothing was exported");
+    if (const Result<void> written = files.finish(); !written)
+        return written.error();
+    const QStringList problems = session.recorded().problems() + session.problems();
     if (messages == 0)
-        return Error(ErrorCode::NotReady,
-                     session.folder() + ": found no messages of these topics, expected some");
-    return files.commit();
+        return Error(ErrorCode::NotReady, session.folder() + ": found no " +
+                                              (format == "pcap" ? "packets" : "messages of these topics") +
+                                              ", expected some" +
+                                              (problems.isEmpty() ? QString() : ": " + problems.join("; ")));
+    const Result<QStringList> paths = files.commit();
+    return paths ? Result<SessionFiles>(SessionFiles{*paths, problems}) : paths.error();
 }
 
 } // namespace hermes::recorder

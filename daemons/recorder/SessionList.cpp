@@ -37,7 +37,7 @@ QString RecordedPart::problem() const {
         return "being recorded";
     if (!error.isEmpty())
         return error;
-    if (ended() != "stopped")
+    if (ended() != "stopped" && ended() != "shut down")
         return ended();
     if (!entry.complete.value_or(false))
         return "not complete";

@@ -2,6 +2,7 @@
 
 #include "common/recording/DiskError.h"
 #include "common/recording/Sidecar.h"
+#include "common/recording/StoredRecording.h"
 
 #include <QDir>
 #include <QJsonObject>
@@ -50,18 +51,23 @@ Result<SessionReader> SessionReader::open(const QString &folder, const std::atom
         if (isRecorder || reader.session_.parts.empty())
             reader.start_ = part.entry.start.value_or(0);
         reader.session_.add(part);
+        if (const auto whole = StoredRecording{reader.folder_, *sidecar}.isWhole(); !whole && !part.goesOn())
+            reader.note(whole.error().message);
     }
     if (reader.session_.parts.empty())
         return diskError(reader.folder_ + ": found no sidecar of a recording, expected some", reader.folder_);
     reader.session_.name = place.dirName();
-    for (const QString &name :
-         place.entryList({recorderName + "-*.mcap"}, QDir::Files | QDir::NoSymLinks, QDir::Name))
-        reader.files_.append(place.filePath(name));
+    for (const QFileInfo &file :
+         place.entryInfoList({recorderName + "-*.mcap"}, QDir::Files | QDir::System, QDir::Name))
+        if (file.isSymLink())
+            reader.note(file.absoluteFilePath() + ": it is a link, and is not read");
+        else
+            reader.files_.append(file.absoluteFilePath());
     return reader;
 }
 
 void SessionReader::note(const QString &problem) {
-    if (!problem.isEmpty() && !problems_.contains(problem))
+    if (!problems_.contains(problem))
         problems_.append(problem);
 }
 
@@ -102,7 +108,8 @@ void SessionReader::read(const Wanted &wanted, const Take &take, double from_s, 
                 break;
             take(recorded);
         }
-        note(QString::fromStdString(reader.problem()));
+        if (!reader.problem().empty())
+            note(path + ": " + QString::fromStdString(reader.problem()));
     }
 }
 

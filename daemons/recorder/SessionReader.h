@@ -54,11 +54,12 @@ public:
     const NamedCounts &lost() const { return lost_; }
     /// What could not be read so far, a line each.
     const QStringList &problems() const { return problems_; }
+    /// One more of them.
+    void note(const QString &problem);
+    /// Not all was read: it was to end early.
+    bool isStopped() const { return stop_ && *stop_; }
 
 private:
-    bool isStopped() const { return stop_ && *stop_; }
-    void note(const QString &problem);
-
     QString folder_;
     const std::atomic<bool> *stop_ = nullptr;
     QStringList files_; ///< of the recorder, in order

@@ -51,7 +51,7 @@ Fields<Tables> fieldsOf(Of<Tables>) {
 
 namespace {
 
-constexpr double farthest_m = 1e6, farthestSeen_m = 1e4, most_rad = 10, maxInformation = 1e12, most = 1e15;
+constexpr double farthest_m = 1.1e7, farthestSeen_m = 1e4, most_rad = 10, maxInformation = 1e12, most = 1e15;
 constexpr double maxOfScan = 99999; // points, edges
 
 /// Goes along a table: puts values behind its rows, or gives those that are there.

@@ -18,6 +18,7 @@ struct Scan {
     quint64 number = 0;
     bool partial = false; ///< not a whole turn: the first or last of a stream
     bool replayed = false;
+    bool upsideDown = false; ///< as the scanner sees it; not data any more
     vectorlib::TimedScan data;
 };
 

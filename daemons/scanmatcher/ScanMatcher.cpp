@@ -191,7 +191,8 @@ void ScanMatcher::takeSecond(Scan scan) {
 }
 
 void ScanMatcher::takeScan(Scan scan) {
-    if (settings().flag("sensor.upside_down"))
+    scan.upsideDown = settings().flag("sensor.upside_down");
+    if (scan.upsideDown)
         scan.data.turnOver();
     match(std::move(scan));
 }

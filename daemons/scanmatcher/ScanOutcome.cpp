@@ -39,6 +39,7 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
         result.pose.covariance = covariance(match);
     result.pose.outcome = toText(report.outcome);
     result.pose.scan = scan.number;
+    result.pose.upsideDown = scan.upsideDown;
     result.pose.trust = tracker.trust();
     if (const auto frame = tracker.odometryFrame())
         result.pose.odometryFrame = frame->pose();

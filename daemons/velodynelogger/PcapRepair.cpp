@@ -42,7 +42,10 @@ Result<bool> repairFile(const QString &path, QJsonObject &entry, PacketAccount &
     if (const Result<void> opened = openOwnFile(file, path); !opened)
         return opened.error();
     const double known = entry.value("bytes").toDouble();
-    const auto sink = [&account](const Datagram &datagram) { account.add(datagram); };
+    const auto sink = [&account](const Datagram &datagram) {
+        account.add(datagram);
+        return true;
+    };
     const Outcome<PcapTail> read =
         readPcapTail(path.toStdString(), std::uint64_t(std::max(0.0, known)), sink);
     if (!read)

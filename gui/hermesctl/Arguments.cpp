@@ -120,7 +120,7 @@ const std::vector<Option> &options() {
         {"--detach", "replay: the recorder goes on alone; session live ends it", take<&Arguments::detach>},
         {"--at S", "session explain: what was at this second of the session",
          take<&Arguments::at_s, 1000000000, true>},
-        {"--format F", "session export: csv, tum, carmen or mcap", take<&Arguments::format>},
+        {"--format F", "session export: csv, tum, carmen, mcap or pcap", take<&Arguments::format>},
         {"--topics A,B", "session export: these topics and no others, as motorcontrol/odometry",
          takeList<&Arguments::topics>},
         {"--role ROLE", "keys issue, pair: observer, operator, engineer, or daemon", take<&Arguments::role>},

@@ -138,7 +138,7 @@ private:
         if (option == "--role")
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option == "--format")
-            return plain({"csv", "tum", "carmen", "mcap"}, before);
+            return plain({"csv", "tum", "carmen", "mcap", "pcap"}, before);
         if (option == "--base" && line_.arguments.command == "simulate")
             return plain(FoundSerial::controllerKinds(), before);
         if (option == "--kinematics")

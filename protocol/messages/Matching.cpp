@@ -18,6 +18,8 @@ Fields<PoseMessage> fieldsOf(Of<PoseMessage>) {
                   "the map shows the same")
         .addMaybe("corrected", &PoseMessage::corrected,
                   "The map was corrected since the message before: the pose leapt, the robot did not")
+        .addMaybe("upside_down", &PoseMessage::upsideDown,
+                  "The scanner hangs so, or counts angles clockwise: y of its scan2d is to be negated")
         .addOrNull("map_to_odometry", &PoseMessage::odometryFrame,
                    "Where the frame of the odometry lies in the map; null without odometry. What follows a "
                    "path by the odometry and this stays smooth when the map is corrected");

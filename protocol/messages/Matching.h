@@ -18,6 +18,7 @@ struct PoseMessage {
     quint64 scan = 0;
     double trust = 0;
     bool corrected = false;
+    bool upsideDown = false;
     std::optional<Pose2D> odometryFrame;
 };
 

@@ -42,7 +42,8 @@ Fields<RecordingEntry> fieldsOf(Of<RecordingEntry>) {
         .add("boot", &E::boot, "The run of the kernel to which that belongs")
         .add("end", &E::end, "Since the Unix epoch; null: not ended", "s")
         .add("duration_s", &E::duration_s, "Whatever happened to the wall clock; absent: not ended", "s")
-        .add("ended", &E::ended, "How: stopped, free space, failed, cut off; null: not ended")
+        .add("ended", &E::ended,
+             "How: stopped, shut down (with its logger), free space, failed, cut off; null: not ended")
         .add("complete", &E::complete, "What was written is whole")
         .add("files", &E::files, "How many")
         .add("bytes", &E::bytes, "Of all files", "byte")

@@ -9,7 +9,7 @@ Fields<SessionPart> fieldsOf(Of<SessionPart>) {
     return Fields<P>()
         .add("daemon", &P::daemon, "Its name; with @HOST:PORT where several daemons have it")
         .add("state", &P::state, "What it does with the session; silent: it does not answer")
-        .choices({"recording", "stopped", "cut off", "failed", "free space", "silent"})
+        .choices({"recording", "stopped", "shut down", "cut off", "failed", "free space", "silent"})
         .add("bytes", &P::bytes, "Of its files", "byte")
         .add("counts", &P::counts, "What was recorded, by kind")
         .add("losses", &P::losses, "What was not, by reason")
@@ -94,7 +94,9 @@ Fields<SessionText> fieldsOf(Of<SessionText>) {
 }
 
 Fields<SessionFiles> fieldsOf(Of<SessionFiles>) {
-    return Fields<SessionFiles>().add("paths", &SessionFiles::paths, "Written");
+    return Fields<SessionFiles>()
+        .add("paths", &SessionFiles::paths, "Written")
+        .add("problems", &SessionFiles::problems, "What of the session is missing in them, a line each");
 }
 
 } // namespace hermes

@@ -12,7 +12,7 @@ namespace hermes {
 /// What one daemon records, or recorded, of a session.
 struct SessionPart {
     QString daemon; ///< its name; with "@HOST:PORT" where several daemons have it
-    QString state;  ///< recording, stopped, cut off, failed, free space, silent: it does not answer
+    QString state; ///< recording, stopped, shut down, cut off, failed, free space, silent: it does not answer
     double bytes = 0;
     NamedCounts counts, losses;
     QString problem; ///< why something is missing, for people; empty: nothing is
@@ -88,6 +88,7 @@ struct SessionText {
 /// What session.export gives.
 struct SessionFiles {
     QStringList paths;
+    QStringList problems; ///< what of the session is missing in them, a line each, for people
 };
 
 Fields<SessionText> fieldsOf(Of<SessionText>);

@@ -2,14 +2,30 @@
 
 namespace hermes {
 
+void FieldTable::add(const char *name, std::size_t offset, const MemberType &type, const char *description,
+                     const char *unit) {
+    entries_.push_back({name, offset, &type});
+    QJsonObject &keywords = entries_.back().keywords;
+    keywords.insert(QStringLiteral("description"), QString::fromUtf8(description));
+    if (*unit)
+        keywords.insert(QStringLiteral("unit"), QString::fromUtf8(unit));
+}
+
+void FieldTable::include(const FieldTable &part, std::size_t offset) {
+    for (Entry entry : part.entries_) {
+        entry.offset += offset;
+        entries_.push_back(std::move(entry));
+    }
+}
+
 void FieldTable::write(WireWriter &out, const void *message) const {
     out.beginObject();
     for (const Entry &entry : entries_) {
-        const bool isEmpty = entry.isOptional && entry.isEmpty(message);
+        const bool isEmpty = entry.isOptional() && entry.type->isEmpty(entry.of(message));
         if (isEmpty && !entry.isNullable)
             continue;
         out.key(QLatin1String(entry.name));
-        isEmpty ? out.null() : entry.write(out, message);
+        isEmpty ? out.null() : entry.type->write(out, entry.of(message));
         if (out.hasRefused())
             return out.within(QLatin1String(entry.name));
     }
@@ -24,10 +40,10 @@ void FieldTable::read(WireView in, void *message, ReadReport &report) const {
         const WireView value = in[entry.name.constData()];
         known += value.kind() != WireView::Kind::Undefined;
         const bool isMissing = value.kind() == WireView::Kind::Undefined;
-        if ((isMissing && (entry.isOptional || entry.mayBeMissing)) ||
+        if ((isMissing && (entry.isOptional() || entry.mayBeMissing)) ||
             (entry.isNullable && value.kind() == WireView::Kind::Null))
             continue;
-        entry.read(value, message, entry.limits, report);
+        entry.type->read(value, entry.of(message), entry.limits, report);
         if (report.hasFailed())
             return report.within(QLatin1String(entry.name));
     }
@@ -47,7 +63,7 @@ QJsonObject orNull(QJsonObject schema) {
 }
 
 QJsonObject FieldTable::schemaOf(const Entry &entry) {
-    QJsonObject schema = entry.schema(entry.limits);
+    QJsonObject schema = entry.type->schema(entry.limits);
     for (auto keyword = entry.keywords.begin(); keyword != entry.keywords.end(); ++keyword)
         schema.insert(keyword.key(), keyword.value());
     return entry.isNullable ? orNull(schema) : schema;
@@ -58,7 +74,7 @@ QJsonObject FieldTable::schema() const {
     QJsonArray required;
     for (const Entry &entry : entries_) {
         properties.insert(QLatin1String(entry.name), schemaOf(entry));
-        if (!entry.isOptional || entry.isNullable)
+        if (!entry.isOptional() || entry.isNullable)
             required.append(QLatin1String(entry.name));
     }
     return objectSchema(properties, required);

@@ -6,7 +6,6 @@
 #include <QJsonArray>
 #include <QJsonObject>
 #include <QString>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -47,6 +46,14 @@ QJsonObject orNull(QJsonObject schema);
 /// Of an object that has these members and no others.
 QJsonObject objectSchema(const QJsonObject &properties, const QJsonArray &required);
 
+/// How a member of a struct is written, read and described. One for all members of a type.
+struct MemberType {
+    bool (*isEmpty)(const void *member); ///< null: it always has a value
+    void (*write)(WireWriter &out, const void *member);
+    void (*read)(WireView in, void *member, const Limits &limits, ReadReport &report);
+    QJsonObject (*schema)(const Limits &limits);
+};
+
 /// How the fields of a struct are named on the wire and what they mean: writing, checked reading and the JSON
 /// Schema follow from it. Made by Fields<T>.
 class FieldTable {
@@ -60,23 +67,22 @@ public:
 protected:
     struct Entry {
         QByteArray name;
-        Limits limits;
-        QJsonObject keywords; ///< description, unit ...
-        bool isOptional = false;
-        bool isNullable = false; ///< empty: null instead of left out
+        std::size_t offset; ///< in the struct, bytes
+        const MemberType *type;
+        Limits limits = {};
+        QJsonObject keywords = {}; ///< description, unit ...
+        bool isNullable = false;   ///< empty: null instead of left out
         bool mayBeMissing = false;
-        void describe(const char *description, const char *unit) {
-            keywords.insert(QStringLiteral("description"), QString::fromUtf8(description));
-            if (*unit)
-                keywords.insert(QStringLiteral("unit"), QString::fromUtf8(unit));
-        }
 
-        std::function<bool(const void *message)> isEmpty; ///< of an optional one
-        std::function<void(WireWriter &out, const void *message)> write;
-        std::function<void(WireView in, void *message, const Limits &limits, ReadReport &report)> read;
-        std::function<QJsonObject(const Limits &limits)> schema;
+        bool isOptional() const { return type->isEmpty; }
+        const void *of(const void *message) const { return static_cast<const char *>(message) + offset; }
+        void *of(void *message) const { return static_cast<char *>(message) + offset; }
     };
 
+    void add(const char *name, std::size_t offset, const MemberType &type, const char *description,
+             const char *unit);
+    /// The fields of a part of the struct, which lies there.
+    void include(const FieldTable &part, std::size_t offset);
     static QJsonObject schemaOf(const Entry &entry);
 
     std::vector<Entry> entries_;

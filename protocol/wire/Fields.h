@@ -3,7 +3,7 @@
 #include "protocol/wire/JsonWriters.h"
 #include "protocol/wire/Types.h"
 
-#include <array>
+#include <memory>
 
 namespace hermes {
 
@@ -21,24 +21,7 @@ class Fields : public FieldTable {
 public:
     template <typename M, typename Owner>
     Fields &add(const char *name, M Owner::*member, const char *description, const char *unit = "") {
-        using Value = typename Unwrapped<M>::Type;
-        Entry entry;
-        entry.name = name;
-        entry.describe(description, unit);
-        entry.write = [member](WireWriter &out, const void *message) {
-            Type<Value>::write(out, Unwrapped<M>::value(static_cast<const T *>(message)->*member));
-        };
-        entry.read = [member](WireView in, void *message, const Limits &limits, ReadReport &report) {
-            Type<Value>::read(in, Unwrapped<M>::make(static_cast<T *>(message)->*member), limits, report);
-        };
-        entry.schema = [](const Limits &limits) { return Type<Value>::schema(limits); };
-        if constexpr (Unwrapped<M>::isOptional) {
-            entry.isOptional = true;
-            entry.isEmpty = [member](const void *message) {
-                return !(static_cast<const T *>(message)->*member).has_value();
-            };
-        }
-        entries_.push_back(std::move(entry));
+        FieldTable::add(name, offsetOf(member), memberType<M>, description, unit);
         return *this;
     }
 
@@ -53,43 +36,10 @@ public:
         return add(name, member, description, unit).mayBeMissing();
     }
 
-    /// The elements of an array, each under a name of its own.
-    template <typename M, std::size_t N, typename Owner>
-    Fields &addEach(const std::array<const char *, N> &names, std::array<M, N> Owner::*member,
-                    const char *description, const char *unit = "") {
-        for (std::size_t i = 0; i < N; ++i) {
-            Entry entry;
-            entry.name = names[i];
-            entry.describe(description, unit);
-            entry.write = [member, i](WireWriter &out, const void *message) {
-                Type<M>::write(out, (static_cast<const T *>(message)->*member)[i]);
-            };
-            entry.read = [member, i](WireView in, void *message, const Limits &limits, ReadReport &report) {
-                Type<M>::read(in, (static_cast<T *>(message)->*member)[i], limits, report);
-            };
-            entry.schema = [](const Limits &limits) { return Type<M>::schema(limits); };
-            entries_.push_back(std::move(entry));
-        }
-        return *this;
-    }
-
     /// The fields of Part, a member, beside the others.
     template <typename Part, typename Owner>
     Fields &include(Part Owner::*member) {
-        for (FieldTable::Entry entry : fieldsOf<Part>().entries_) {
-            entry.write = [member, inner = entry.write](WireWriter &out, const void *message) {
-                inner(out, &(static_cast<const T *>(message)->*member));
-            };
-            entry.read = [member, inner = entry.read](WireView in, void *message, const Limits &limits,
-                                                      ReadReport &report) {
-                inner(in, &(static_cast<T *>(message)->*member), limits, report);
-            };
-            if (entry.isEmpty)
-                entry.isEmpty = [member, inner = entry.isEmpty](const void *message) {
-                    return inner(&(static_cast<const T *>(message)->*member));
-                };
-            entries_.push_back(std::move(entry));
-        }
+        FieldTable::include(fieldsOf<Part>(), offsetOf(member));
         return *this;
     }
 
@@ -118,8 +68,19 @@ public:
         return *this;
     }
 
-    template <typename Other>
-    friend class Fields;
+private:
+    template <typename M, typename Owner>
+    static std::size_t offsetOf(M Owner::*member) {
+        const union Place { // of a T that is never made
+            char begin;
+            T message;
+            Place()
+                : begin(0) {}
+            ~Place() {}
+        } place;
+        return std::size_t(reinterpret_cast<const char *>(std::addressof(place.message.*member)) -
+                           &place.begin);
+    }
 };
 
 /// As QJsonValue; undefined where a number is not finite.

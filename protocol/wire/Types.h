@@ -220,21 +220,26 @@ struct Type<QMap<QString, T>> {
     }
 };
 
-/// What lies in a field: a std::optional's value, or the field itself.
+/// Of members of the type M.
 template <typename M>
-struct Unwrapped {
-    using Type = M;
-    static constexpr bool isOptional = false;
-    static const M &value(const M &field) { return field; }
-    static M &make(M &field) { return field; }
-};
+inline constexpr MemberType memberType{
+    nullptr,
+    [](WireWriter &out, const void *member) { Type<M>::write(out, *static_cast<const M *>(member)); },
+    [](WireView in, void *member, const Limits &limits, ReadReport &report) {
+        Type<M>::read(in, *static_cast<M *>(member), limits, report);
+    },
+    [](const Limits &limits) { return Type<M>::schema(limits); }};
 
+/// Of members that may be empty: their value, where there is one.
 template <typename M>
-struct Unwrapped<std::optional<M>> {
-    using Type = M;
-    static constexpr bool isOptional = true;
-    static const M &value(const std::optional<M> &field) { return *field; }
-    static M &make(std::optional<M> &field) { return field.emplace(); }
-};
+inline constexpr MemberType memberType<std::optional<M>>{
+    [](const void *member) { return !static_cast<const std::optional<M> *>(member)->has_value(); },
+    [](WireWriter &out, const void *member) {
+        Type<M>::write(out, **static_cast<const std::optional<M> *>(member));
+    },
+    [](WireView in, void *member, const Limits &limits, ReadReport &report) {
+        Type<M>::read(in, static_cast<std::optional<M> *>(member)->emplace(), limits, report);
+    },
+    [](const Limits &limits) { return Type<M>::schema(limits); }};
 
 } // namespace hermes

@@ -2,6 +2,7 @@
 #include "common/capture/PcapReader.h"
 #include "common/capture/PcapWriter.h"
 #include "protocol/velodyne/TurnAssembler.h"
+#include "tests/support/Texts.h"
 
 using namespace hermes;
 
@@ -240,6 +241,9 @@ private Q_SLOTS:
         QVERIFY(!reader.open("/nonexistent/c.pcap"));
         QCOMPARE(QByteArray::fromStdString(reader.error()),
                  QByteArray("/nonexistent/c.pcap: cannot be opened: No such file or directory"));
+        QCOMPARE(::mkfifo(qPrintable(folder.filePath("pipe")), 0600), 0); // nobody writes
+        QVERIFY(!reader.open(folder.filePath("pipe").toStdString()));
+        VERIFY_CONTAINS(QString::fromStdString(reader.error()), "pipe: not a regular file");
         Datagram d;
         QCOMPARE(reader.next(d), PcapReader::Next::Failed);
     }

@@ -111,7 +111,7 @@ private Q_SLOTS:
         Logger logger(root.path());
         QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
         logger.recording.close();
-        QCOMPARE(sidecarOf(root.path() + "/a").value("ended").toString(), "stopped");
+        QCOMPARE(sidecarOf(root.path() + "/a").value("ended").toString(), "shut down");
     }
 
     /// Its free space is read in a thread: until then nothing is wrong.

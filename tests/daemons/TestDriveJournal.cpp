@@ -57,6 +57,7 @@ private Q_SLOTS:
         building = std::make_unique<RingBuilding>(random);
         way = building->drive(2);
         trust.assign(100000, 0.75);
+        origin = {};
     }
 
     void whatWasWrittenIsThereAgain() {
@@ -109,6 +110,16 @@ private Q_SLOTS:
         QCOMPARE(again.drive.loops.counts().closed, memory.loops.counts().closed);
         const Pose2D p = again.drive.loops.pose(end - 1), q = memory.loops.pose(end - 1);
         QVERIFY(std::hypot(p.x - q.x, p.y - q.y) < 1e-6);
+    }
+
+    // Its coordinates may be those of a country.
+    void aDriveInUtmIsThereAgain() {
+        origin = Transformation2D(5e5, 5.9e6, 0);
+        MappedDrive memory;
+        drive(memory, 0, 400);
+        DriveJournal journal(folder->path(), "drive.journal");
+        journal.finish(memory, trust);
+        QCOMPARE(difference(memory, read().drive), QString());
     }
 
     // By a third too little or too much at most, and the same once it is read again.
@@ -282,7 +293,7 @@ private:
             Transformation2D motion = Transformation2D(way[before]).inverse() * Transformation2D(way[at]);
             if (at != before)
                 motion = motion * Transformation2D(0, 0, 0.0005);
-            memory.add(points, eyes.edges(), i ? motion : Transformation2D(way[0]),
+            memory.add(points, eyes.edges(), i ? motion : origin * Transformation2D(way[0]),
                        i == from ? first : TrackedBy::Map, i % 400 == 7 ? 1 : MappedDrive::all);
             if (memory.loops.isDue())
                 memory.loops.correct();
@@ -308,6 +319,7 @@ private:
     std::mt19937 random;
     std::unique_ptr<RingBuilding> building;
     std::vector<Pose2D> way;
+    Transformation2D origin; ///< of the building, in the map
     std::vector<double> trust;
     vectorlib::MapBuilder eyes;
 };

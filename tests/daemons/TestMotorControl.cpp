@@ -284,6 +284,19 @@ private Q_SLOTS:
         QTRY_VERIFY(state()["ready"].toBool());
     }
 
+    // The same command would move the robot in another way.
+    void otherWheelsTakeTheControlAway() {
+        launchHeld();
+        call("motor.drive", {{"vx", 0.1}});
+        call("settings.set", {{"values", QJsonObject{{"motion", QJsonObject{{"ax", 0.7}}}}}});
+        call("motor.drive", {{"vx", 0.1}});
+        call("settings.set", {{"values", QJsonObject{{"frame", QJsonObject{{"wheel_radius_m", 0.05}}}}}});
+        QTRY_COMPARE(state()["halted"].toString(), QString("the settings were changed"));
+        VERIFY_CONTAINS(failure("motor.drive", {{"vx", 0.1}}).message, QString("control.acquire gives it"));
+        call("control.acquire");
+        call("motor.drive", {{"vx", 0.1}});
+    }
+
     void twoLines() {
         rig_.reset();
         RoboClawRig front(folder_->filePath("front"), {controllerAt(0x80)});

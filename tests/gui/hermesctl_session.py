@@ -113,6 +113,9 @@ class Session(unittest.TestCase):
         self.assertIn("hermesctl: velodynelogger: lost: queue 3; no answer (-32005)", self.ctl(recorder, "record", "status", status=1))
         shown = ctl("record", "start", "--recorder", recorder.address)
         self.assertEqual((shown.returncode, shown.stderr), (0, "hermesctl: velodynelogger: lost: queue 3\nhermesctl: no answer\n"))
+        recorder = self.recorder(export={"paths": ["/a.csv"], "problems": ["being recorded"]})
+        shown = ctl("session", "export", "x", "--format", "csv", "--recorder", recorder.address)
+        self.assertEqual((shown.returncode, shown.stdout, shown.stderr), (0, "/a.csv\n", "hermesctl: being recorded\n"))
 
     def test_without_a_recorder(self):
         for words in (["status"], ["list"], ["replay", "run1"]):
@@ -192,7 +195,7 @@ class Session(unittest.TestCase):
         for line, expected in ((f"replay --recorder {recorder.address} ", ["run1", "run2"]),
                                (f"session remove --recorder {recorder.address} run2", ["run2"]),
                                (f"call {recorder.address} session.info name=", ["name=run1", "name=run2"]),
-                               ("session export x --format c", ["csv", "carmen"]), ("session st", ["start", "stop", "status"]),
+                               ("session export x --format c", ["csv", "carmen"]), ("session export x --format p", ["pcap"]), ("session st", ["start", "stop", "status"]),
                                ("session list --recorder rec", ["recorder"])):
             shown = ctl("complete", "hermesctl " + line)
             self.assertEqual([one.split("\t")[0] for one in shown.stdout.splitlines()], expected, line)

@@ -14,6 +14,11 @@ struct Inner {
     int count = 7;
 };
 
+struct Wheels {
+    std::optional<double> left;
+    double right = 0;
+};
+
 struct Sample {
     QString name;
     bool on = false;
@@ -22,7 +27,7 @@ struct Sample {
     std::optional<double> height;
     std::optional<QString> note;
     std::optional<std::optional<double>> end;
-    std::array<double, 2> wheels{};
+    Wheels wheels;
     QMap<QString, double> counts;
     QJsonValue open;
     quint8 small = 0;
@@ -39,8 +44,14 @@ const Fields<Inner> &fieldsOf(Of<Inner>) {
     return fields;
 }
 
+const Fields<Wheels> &fieldsOf(Of<Wheels>) {
+    static const auto fields = Fields<Wheels>()
+                                   .add("left", &Wheels::left, "Speed of a wheel", "rad/s")
+                                   .add("right", &Wheels::right, "Speed of a wheel", "rad/s");
+    return fields;
+}
+
 const Fields<Sample> &fieldsOf(Of<Sample>) {
-    static constexpr std::array<const char *, 2> wheelNames{"left", "right"};
     static const auto fields = Fields<Sample>()
                                    .add("name", &Sample::name, "Whose")
                                    .add("on", &Sample::on, "Works")
@@ -52,7 +63,7 @@ const Fields<Sample> &fieldsOf(Of<Sample>) {
                                    .choices({"dry", "wet"})
                                    .orNull()
                                    .add("end", &Sample::end, "Left out, or not known")
-                                   .addEach(wheelNames, &Sample::wheels, "Speed of a wheel", "rad/s")
+                                   .include(&Sample::wheels)
                                    .add("counts", &Sample::counts, "Of each kind")
                                    .add("open", &Sample::open, "Anything")
                                    .add("small", &Sample::small, "A byte");

@@ -104,6 +104,24 @@ class Recorder(RecordedRobot):
         wait_for("what is on the disk", lambda: self.call("session.list"))
         self.assertEqual(self.call("session.state")["state"], "idle")
 
+    def test_ended_in_order_goes_on_unless_it_was_stopped(self):
+        def again():
+            for name in self.robot.processes:
+                self.assertEqual(self.robot.processes[name].stop(), 0)
+            for name in self.robot.processes:
+                self.robot.start(name)
+        self.call("session.start", name="drive")
+        self.wait_for_messages(50)
+        again()
+        parts = lambda: {part["daemon"]: part["state"] for part in self.call("session.state")["parts"]}
+        wait_for("the parts", lambda: parts() == {"recorder": "recording", "velodynelogger": "recording", "seriallogger": "recording"})
+        self.call("session.stop")
+        os.remove(os.path.join(self.robot.records, ".recorder.ended"))  # as if its folder had come from elsewhere
+        again()
+        wait_for("the time for loggers", lambda: self.call("daemon.info")["uptime_s"] > 5)
+        self.assertEqual(self.call("session.state")["state"], "idle")
+        self.assertEqual(len(self.robot.files("drive")), 2)
+
     def test_replay_is_the_drive_again(self):
         seen = self.listen("motorcontrol/odometry", "scanmatcher/pose", "velodynelogger/scan2d", "seriallogger/lines")
         lidar = self.robot.daemons["velodynelogger"]

@@ -77,10 +77,11 @@ class Reports(RecordedRobot):
         self.assertGreater(summary["scans"], 60)
         self.assertEqual(summary["by_odometry"], summary["scans"] - summary["skipped"] - 1)
         self.assertLess(self.farthest(self.poses(live), self.poses(out)), 0.01)
-        for form, least in (("csv", 15), ("carmen", 1), ("mcap", 1)):
-            paths = self.call("session.export", name="drive", format=form)["paths"]
-            self.assertGreaterEqual(len(paths), least)
-            self.assertTrue(all(os.path.getsize(path) > 0 for path in paths))
+        for form, least in (("csv", 15), ("carmen", 1), ("mcap", 1), ("pcap", 1)):
+            told = self.call("session.export", name="drive", format=form)
+            self.assertGreaterEqual(len(told["paths"]), least)
+            self.assertTrue(all(os.path.getsize(path) > 0 for path in told["paths"]))
+            self.assertEqual(told["problems"], [])
         log = self.call("session.export", name="drive", format="carmen")["paths"][0]
         subprocess.run([os.path.join(BINARIES, "hermes-vector"), "map", log, "--summary", os.devnull, "--force"], check=True)
 

@@ -17,7 +17,7 @@ import time
 
 from stop_ends import Caller, Tap
 from stop_traffic import LIMIT_S, batch, figures, hold, line, measure, others, pump, request, set_niceness
-from support import BINARIES, BUILD, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for, put, text_of
+from support import BINARIES, BUILD, Daemon, DaemonError, Process, free_port, simulated_hall, small_disk, wait_for, put, text_of
 from tls import context_of, issued, keys
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "8"))
@@ -25,7 +25,6 @@ SHARE = 0.99 if TRIALS >= 100 else 0.75  # a few trials say little about the las
 DISCOVERS = 33  # descriptions of 32 kB: 1 MB
 LARGE_BYTES = 800000
 SPEED, SLOW_BYTES_S = 0.05, 4e6
-CLONE_NEWNS = 0x20000
 INPUT_OUTPUT = -32008
 CANDIDATES = {"rpc.discover": {}, "settings.schema": {}, "settings.get": {}, "topics.list": {}, "daemon.status": {}, "motor.state": {},
               "log.tail": {"count": 1000}}
@@ -181,18 +180,6 @@ def play(kind, port):
     if kind == "flood":
         return pump(port, line({"jsonrpc": "2.0", "method": "motor.drive", "params": {"vx": 0.3}}) * 200, reads=False)
     return pump(port, batch(kind, 1000, **CANDIDATES[kind]))
-
-
-def small_disk(folder):
-    """Of 4 MB, in a name space of mounts that ends with this process; None where that is not allowed."""
-    disk = os.path.join(folder, "disk")
-    os.mkdir(disk)
-    if os.geteuid() != 0 or ctypes.CDLL(None).unshare(CLONE_NEWNS) != 0:
-        return None
-    for words in (["--make-rprivate", "/"], ["-t", "tmpfs", "-o", "size=4m", "tmpfs", disk]):
-        if subprocess.run(["mount", *words], capture_output=True, check=False).returncode != 0:
-            return None
-    return disk
 
 
 class FullDisk:

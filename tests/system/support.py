@@ -1,9 +1,12 @@
 """What tests of whole systems share: where the programs are, the modules that start and ask them, waiting, a serial port."""
+import ctypes
 import json
 import os
 import re
 import socket
+import subprocess
 import sys
+import tempfile
 import threading
 import time
 import tty
@@ -16,6 +19,10 @@ WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 EXPERIMENTS = os.path.exists(os.path.join(BINARIES, "hermes-experiments"))  # ./check builds it with --all
+CLONE_NEWNS = 0x20000
+# What one test leaves there no other one finds.
+STATE = tempfile.TemporaryDirectory()
+os.environ["XDG_STATE_HOME"] = STATE.name
 # How many times slower and larger programs are than those for which limits are written: as tests/support/Patience.h.
 IS_SANITIZED = bool({"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys())
 SLOWNESS = 5 if IS_SANITIZED else int(os.environ.get("HERMES_SLOWNESS", 1))
@@ -65,6 +72,18 @@ def put(path, content):
     with open(path, "w", encoding="utf-8") as file:
         file.write(content if isinstance(content, str) else json.dumps(content))
     return path
+
+
+def small_disk(folder):
+    """Of 4 MB, in a name space of mounts that ends with this process; None where that is not allowed."""
+    disk = os.path.join(folder, "disk")
+    os.mkdir(disk)
+    if os.geteuid() != 0 or ctypes.CDLL(None).unshare(CLONE_NEWNS) != 0:
+        return None
+    for words in (["--make-rprivate", "/"], ["-t", "tmpfs", "-o", "size=4m", "tmpfs", disk]):
+        if subprocess.run(["mount", *words], capture_output=True, check=False).returncode != 0:
+            return None
+    return disk
 
 
 def wait_for(what, condition, limit_s=60):

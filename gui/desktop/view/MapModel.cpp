@@ -177,6 +177,7 @@ void MapModel::onPose(const PoseMessage &message) {
     twist_ = isMoving ? message.twist : Twist2D();
     ignored_ += !isMoving;
     poseScan_ = message.scan;
+    handedness_ = message.upsideDown ? -1 : 1;
     if (poseLead_ == 0)
         paths_[MovingMap::Matched].add(*pose_, moment(twist_), newestKeyScan());
     placeScan();
@@ -235,7 +236,7 @@ void MapModel::placeScan() {
     for (std::size_t i = 0; i < count; ++i) {
         const double dt = rawScan_.t && i < rawScan_.t->size() ? double((*rawScan_.t)[i]) - middle : 0;
         const QPointF point =
-            at * (twist_.motion(dt) * QPointF(double(rawScan_.x[i]), double(rawScan_.y[i])));
+            at * (twist_.motion(dt) * QPointF(double(rawScan_.x[i]), handedness_ * double(rawScan_.y[i])));
         if (isPlausible(point.x()) && isPlausible(point.y()))
             scan_.append(point);
         else

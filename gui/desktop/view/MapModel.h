@@ -134,6 +134,7 @@ private:
     QPolygonF scan_;
     Twist2D twist_;                  // of the sensor
     quint64 poseScan_ = ~quint64(0); // the number of the scan that the pose belongs to
+    double handedness_ = 1;          // of the scan: -1 where the scanner hangs upside down
     std::optional<Pose2D> pose_;
     std::optional<std::array<double, 9>> covariance_;
     QString outcome_;

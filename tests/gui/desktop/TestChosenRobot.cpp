@@ -56,6 +56,20 @@ private Q_SLOTS:
         }
     }
 
+    /// Its points lie where the matcher took them.
+    void scanOfAnUpsideDownScannerIsMirrored() {
+        FakeDaemon daemon(withMap());
+        OpenWindow open;
+        QVERIFY(open.show());
+        QVERIFY(open.fleet.add(daemon.address()));
+        const MapModel &model = open.window.map().model();
+        QTRY_COMPARE(model.scan().size(), 2);
+        const double y = model.scan().last().y();
+        QVERIFY(y != 0);
+        daemon.say("pose", R"({"x":0,"y":0,"theta":0,"outcome":"matched","scan":0,"upside_down":true})");
+        QTRY_COMPARE(model.scan().last().y(), -y);
+    }
+
     void recordingsOfOneAreNotOfTheOther() {
         Mischief recorded = robot("red");
         recorded.results["session.list"] =
@@ -107,7 +121,7 @@ private:
                 "edges":[{"id":1,"x1":0,"y1":0,"x2":1,"y2":0}]})";
         all.topics["pose"] = R"({"x":0,"y":0,"theta":0,"outcome":"matched","scan":0})";
         all.topics["scan2d"] =
-            R"({"turn":0,"stamp":1,"duration_s":0.1,"x":[1,2],"y":[0,0],"t":[0,0],"laser":1,"frame":"lidar"})";
+            R"({"turn":0,"stamp":1,"duration_s":0.1,"x":[1,2],"y":[0,1],"t":[0,0],"laser":1,"frame":"lidar"})";
         all.topics["scan"] = R"({"stamp":1,"pose":{"x":0,"y":0,"theta":0,"outcome":"matched"},
             "match":{"reliability":0.5,"ambiguity":0.1,"pairs":[[1,0]]},"segments":[[0,0,1,1]]})";
         all.topics["odometry"] =
