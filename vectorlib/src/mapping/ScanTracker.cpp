@@ -116,9 +116,12 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     const bool isMapped = isMatched() && located_.byOdometry && !isSurprising &&
                           m.reliability >= openReliability && m.matchedLength >= minMapped * m.visibleLength;
     const bool isPaired = builder.isExpectedByScan() || !builder.isFollowed();
-    break_.take(report.outcome, located_.isWellExpected && !located_.way.exceeds(near_m, near_rad),
-                isShown && !isSurprising, isMapped,
-                isPaired ? std::optional(builder.matchPair.match().agreement.contradicted()) : std::nullopt,
+    isInterrupted_ = isInterrupted_ || located_.isInterrupted;
+    const bool isNear = located_.isWellExpected && !located_.way.exceeds(near_m, near_rad);
+    break_.take(report.outcome, isNear || located_.isInterrupted, isShown && !isSurprising, isMapped,
+                isPaired && !located_.isInterrupted
+                    ? std::optional(builder.matchPair.match().agreement.contradicted())
+                    : std::nullopt,
                 builder.isPassedOver());
     if (break_.isTorn())
         return breakOff();
@@ -129,8 +132,11 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
         return;
     const PlaceFit fit = fitOf(scan, scan.points.empty(), withoutPeople_);
     const bool isOpen = isMatched() && !builder.isFollowed() && m.reliability < openReliability;
-    const bool isUnknown = isOpen || (!located_.byOdometry && fit.explainedShare() < fewKnown);
-    if (!break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown))
+    const bool isGuided = located_.byOdometry && !isInterrupted_;
+    const bool isUnknown = isOpen || (!isGuided && fit.explainedShare() < fewKnown);
+    const bool isContradicted = break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown);
+    isInterrupted_ = isInterrupted_ && break_.isSuspect();
+    if (!isContradicted)
         return;
     if (lostInARow_ + 1 >= builder.settings.lostBeforeRestart)
         return breakOff();

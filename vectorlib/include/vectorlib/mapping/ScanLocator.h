@@ -25,6 +25,7 @@ struct LocatedScan {
     bool isOdometryKnown = false; ///< the odometry tells that pose
     bool byOdometry = false;      ///< the scan was found from there, and not by the motion so far
     bool isWellExpected = false;  ///< by the odometry, or soon after the scan before
+    bool isInterrupted = false;   ///< not soon after it, or by a leap: meanwhile anything may have happened
     bool isDisputed = false;      ///< the scans tell another way along open walls: the odometry counts
     bool isStraight = true;       ///< else the scan is in doubt, and stays bent
 };
@@ -65,8 +66,9 @@ private:
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int maxTries = 3;
-    static constexpr std::int64_t knownForLong = 10;        // scans
-    static constexpr double close_m = 0.2, close_rad = 0.2; // between two scans
+    static constexpr std::int64_t knownForLong = 10;            // scans
+    static constexpr double fastest_m_s = 5, fastest_rad_s = 6; // that a robot moves
+    static constexpr double close_m = 0.2, close_rad = 0.2;     // between two scans
     static constexpr double odometryErrs = 2, leastErr_m = 0.01,
                             errsByWay = 0.15; // deviations; metres, share
     static constexpr double leap_m = 0.1, leap_rad = 0.1;

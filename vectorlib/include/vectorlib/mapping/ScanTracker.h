@@ -221,6 +221,7 @@ private:
     PlaceKnowledge place_;
     bool grows_ = true;
     DriveBreak break_;
+    bool isInterrupted_ = false; // the drive, and no scan has agreed with the map since
     PlaceFitter withoutPeople_;          // they are drawn, too: short walls do not speak against a pose
     PlaceFitter withoutPeopleAndBeyond_; // for the second scanner: what lies before walls speaks, too
     OpenDirection open_;
