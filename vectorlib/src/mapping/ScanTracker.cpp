@@ -92,6 +92,8 @@ VECTORLIB_BODY PlaceFit ScanTracker::fitOf(const TimedScan &scan, bool bySecond,
 }
 
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optional<double> &lastStamp) {
+    if (located_.isInterrupted && isMatched() && settings_.seekWhereContradicted)
+        doubt(); // it may be elsewhere, where the map is alike
     if (maps())
         judgeBreak(scan);
     else if (isMatched())
