@@ -88,6 +88,46 @@ private Q_SLOTS:
         QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
     }
 
+    // What the odometry and the scan before tell does not hold over a pause or a leap: then the map decides.
+    void whoIsCarriedInAPauseMapsNothing_data() {
+        QTest::addColumn<double>("pause_s");
+        QTest::addColumn<double>("leap_m");
+        QTest::addColumn<bool>("hasOdometry");
+        QTest::addColumn<bool>("isCarried");
+        for (const bool isCarried : {true, false}) {
+            const auto row = [isCarried](const char *name) -> QTestData & {
+                return QTest::addRow("%s, %s", name, isCarried ? "carried" : "as before");
+            };
+            row("no scans for 6 s") << 6.0 << 0.0 << true << isCarried;
+            row("without odometry") << 6.0 << 0.0 << false << isCarried;
+            row("the clock is set back") << -5.0 << 0.0 << true << isCarried;
+            row("the odometry leaps") << 0.1 << 2.0 << true << isCarried;
+        }
+    }
+    void whoIsCarriedInAPauseMapsNothing() {
+        QFETCH(double, pause_s);
+        QFETCH(double, leap_m);
+        QFETCH(bool, hasOdometry);
+        QFETCH(bool, isCarried);
+        const auto seen = [&](const Walls &world, const Pose2D &pose, double stamp, double x) {
+            see(world, pose, stamp, hasOdometry ? std::optional(track({x, 0, 0}, stamp)) : std::nullopt);
+        };
+        for (int i = 1; i < 6; ++i)
+            seen(room, {-2, -1, 0}, 10 + 0.1 * i, 0);
+        const std::size_t walls = tracker->builder.map.size();
+        const Walls other{{{0, 0}, {2, 0}},       {{2, 0}, {2, 9}},    {{2, 9}, {0.5f, 9}},
+                          {{0.5f, 9}, {0.5f, 7}}, {{0.5f, 7}, {0, 7}}, {{0, 7}, {0, 0}}};
+        for (int i = 0; i < 40; ++i) {
+            const double stamp = 10.5 + pause_s + 0.1 * i;
+            isCarried ? seen(other, {1, 3, 0.4}, stamp, leap_m) : seen(room, {-2, -1, 0}, stamp, leap_m);
+            QVERIFY(!isCarried || tracker->trust() < 0.5);
+            QVERIFY(isCarried || i < 5 || tracker->trust() > 0.5 || leap_m > 0);
+        }
+        QCOMPARE(tracker->builder.map.size(), walls);
+        QCOMPARE(tracker->counts().restarts, std::uint64_t(0));
+        QCOMPARE(tracker->placeState() == PlaceState::Known, !isCarried);
+    }
+
     // Neither the scan before nor the map tells where along the walls the sensor is, and the odometry knows
     // nothing of it.
     void whoIsCarriedBetweenWallsAlikeMapsNothing() {

@@ -31,8 +31,8 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
     located.isWellExpected = isLastWithin(followed_s, scan.stamp);
     located.isInterrupted =
         lastStamp_ && (!isLastWithin(moment, scan.stamp) ||
-                       located.way.exceeds(leap_m + fastest_m_s * (scan.stamp - *lastStamp_),
-                                           leap_rad + fastest_rad_s * (scan.stamp - *lastStamp_)));
+                       located.way.exceeds(leap_m + fastest_mps * (scan.stamp - *lastStamp_),
+                                           leap_rad + fastest_radps * (scan.stamp - *lastStamp_)));
     Found found = find(builder, scan, guess);
     const bool isClose = isLastWithin(moment, scan.stamp) && !located.way.exceeds(close_m, close_rad);
     const auto off = guess.byOdometry && isClose

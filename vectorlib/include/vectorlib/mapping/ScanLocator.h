@@ -67,7 +67,7 @@ private:
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int maxTries = 3;
     static constexpr std::int64_t knownForLong = 10;            // scans
-    static constexpr double fastest_m_s = 5, fastest_rad_s = 6; // that a robot moves
+    static constexpr double fastest_mps = 5, fastest_radps = 6; // that a robot moves
     static constexpr double close_m = 0.2, close_rad = 0.2;     // between two scans
     static constexpr double odometryErrs = 2, leastErr_m = 0.01,
                             errsByWay = 0.15; // deviations; metres, share
