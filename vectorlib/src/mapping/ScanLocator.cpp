@@ -29,10 +29,10 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
     located.way = Transformation2D(builder.report().pose).inverse() * located.expected;
     located.isOdometryKnown = guess.byOdometry;
     located.isWellExpected = isLastWithin(followed_s, scan.stamp);
-    located.isInterrupted =
-        lastStamp_ && (!isLastWithin(moment, scan.stamp) ||
-                       located.way.exceeds(leap_m + fastest_mps * (scan.stamp - *lastStamp_),
-                                           leap_rad + fastest_radps * (scan.stamp - *lastStamp_)));
+    located.hasPaused = lastStamp_ && !isLastWithin(moment, scan.stamp);
+    const double since = lastStamp_ ? scan.stamp - *lastStamp_ : 0;
+    located.hasLeapt =
+        lastStamp_ && located.way.exceeds(leap_m + fastest_mps * since, leap_rad + fastest_radps * since);
     Found found = find(builder, scan, guess);
     const bool isClose = isLastWithin(moment, scan.stamp) && !located.way.exceeds(close_m, close_rad);
     const auto off = guess.byOdometry && isClose

@@ -46,7 +46,8 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     followOpen(scan);
     // What is known of the place now.
     count(report);
-    place_.settle(isMatched() && agrees() && open_.belief() > claimed);
+    place_.settle(isMatched() && agrees() && (isAfterPause_ || open_.belief() > claimed));
+    isAfterPause_ = isAfterPause_ && !place_.isKnown();
     return report;
 }
 
@@ -92,8 +93,10 @@ VECTORLIB_BODY PlaceFit ScanTracker::fitOf(const TimedScan &scan, bool bySecond,
 }
 
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optional<double> &lastStamp) {
-    if (located_.isInterrupted && isMatched() && settings_.seekWhereContradicted)
+    if (located_.isInterrupted() && isMatched() && maps() && settings_.seekWhereContradicted) {
         doubt(); // it may be elsewhere, where the map is alike
+        isAfterPause_ = true;
+    }
     if (maps())
         judgeBreak(scan);
     else if (isMatched())
@@ -118,10 +121,10 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     const bool isMapped = isMatched() && located_.byOdometry && !isSurprising &&
                           m.reliability >= openReliability && m.matchedLength >= minMapped * m.visibleLength;
     const bool isPaired = builder.isExpectedByScan() || !builder.isFollowed();
-    isInterrupted_ = isInterrupted_ || located_.isInterrupted;
+    isUnguided_ = isUnguided_ || located_.hasLeapt || (located_.hasPaused && !located_.byOdometry);
     const bool isNear = located_.isWellExpected && !located_.way.exceeds(near_m, near_rad);
-    break_.take(report.outcome, isNear || located_.isInterrupted, isShown && !isSurprising, isMapped,
-                isPaired && !located_.isInterrupted
+    break_.take(report.outcome, isNear || located_.isInterrupted(), isShown && !isSurprising, isMapped,
+                isPaired && !located_.isInterrupted()
                     ? std::optional(builder.matchPair.match().agreement.contradicted())
                     : std::nullopt,
                 builder.isPassedOver());
@@ -134,10 +137,10 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
         return;
     const PlaceFit fit = fitOf(scan, scan.points.empty(), withoutPeople_);
     const bool isOpen = isMatched() && !builder.isFollowed() && m.reliability < openReliability;
-    const bool isGuided = located_.byOdometry && !isInterrupted_;
+    const bool isGuided = located_.byOdometry && !isUnguided_;
     const bool isUnknown = isOpen || (!isGuided && fit.explainedShare() < fewKnown);
     const bool isContradicted = break_.isContradicted(report.outcome, fit.hiddenShare(), isUnknown);
-    isInterrupted_ = isInterrupted_ && break_.isSuspect();
+    isUnguided_ = isUnguided_ && break_.isSuspect();
     if (!isContradicted)
         return;
     if (lostInARow_ + 1 >= builder.settings.lostBeforeRestart)
@@ -230,6 +233,7 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     check_.restart();
     open_.place();
     slid_.reset();
+    isAfterPause_ = false;
     break_.place();
     builder.placed();
 }

@@ -25,9 +25,12 @@ struct LocatedScan {
     bool isOdometryKnown = false; ///< the odometry tells that pose
     bool byOdometry = false;      ///< the scan was found from there, and not by the motion so far
     bool isWellExpected = false;  ///< by the odometry, or soon after the scan before
-    bool isInterrupted = false;   ///< not soon after it, or by a leap: meanwhile anything may have happened
+    bool hasPaused = false;       ///< not soon after it: meanwhile anything may have happened
+    bool hasLeapt = false;        ///< expected farther away than a robot drives
     bool isDisputed = false;      ///< the scans tell another way along open walls: the odometry counts
     bool isStraight = true;       ///< else the scan is in doubt, and stays bent
+
+    bool isInterrupted() const { return hasPaused || hasLeapt; }
 };
 
 /// Finds scans in a map from where they are expected, and straightens them on the way. Where the odometry

@@ -221,7 +221,8 @@ private:
     PlaceKnowledge place_;
     bool grows_ = true;
     DriveBreak break_;
-    bool isInterrupted_ = false; // the drive, and no scan has agreed with the map since
+    bool isAfterPause_ = false;          // the place is doubted for that alone
+    bool isUnguided_ = false;            // by the odometry, and no scan has agreed with the map since
     PlaceFitter withoutPeople_;          // they are drawn, too: short walls do not speak against a pose
     PlaceFitter withoutPeopleAndBeyond_; // for the second scanner: what lies before walls speaks, too
     OpenDirection open_;
