@@ -48,6 +48,7 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     count(report);
     place_.settle(isMatched() && agrees() && (isAfterPause_ || open_.belief() > claimed));
     isAfterPause_ = isAfterPause_ && !place_.isKnown();
+    isUnguided_ = isUnguided_ && !(isMatched() && place_.isKnown());
     return report;
 }
 
@@ -93,6 +94,11 @@ VECTORLIB_BODY PlaceFit ScanTracker::fitOf(const TimedScan &scan, bool bySecond,
 }
 
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optional<double> &lastStamp) {
+    isUnguided_ = isUnguided_ || located_.hasLeapt || (located_.hasPaused && !located_.byOdometry);
+    if (isAfterPause_ && !isUnguided_ && builder.report().outcome == ScanReport::Outcome::Lost) {
+        place_.place(); // as a lost scan after a pause: it may have driven on beyond the map
+        isAfterPause_ = false;
+    }
     if (located_.isInterrupted() && isMatched() && maps() && settings_.seekWhereContradicted) {
         doubt(); // it may be elsewhere, where the map is alike
         isAfterPause_ = true;
@@ -121,7 +127,6 @@ VECTORLIB_BODY void ScanTracker::judgeBreak(const TimedScan &scan) {
     const bool isMapped = isMatched() && located_.byOdometry && !isSurprising &&
                           m.reliability >= openReliability && m.matchedLength >= minMapped * m.visibleLength;
     const bool isPaired = builder.isExpectedByScan() || !builder.isFollowed();
-    isUnguided_ = isUnguided_ || located_.hasLeapt || (located_.hasPaused && !located_.byOdometry);
     const bool isNear = located_.isWellExpected && !located_.way.exceeds(near_m, near_rad);
     break_.take(report.outcome, isNear || located_.isInterrupted(), isShown && !isSurprising, isMapped,
                 isPaired && !located_.isInterrupted()
