@@ -97,22 +97,28 @@ QStringList LatchFile::found() const {
     QStringList paths;
     if (path_.isEmpty())
         return paths;
+    if (QFile::exists(path_) || QFileInfo(path_).isSymLink())
+        paths.append(path_);
     const QDir folder(QFileInfo(path_).path());
     for (const QString &name :
          folder.entryList(QDir::AllEntries | QDir::System | QDir::Hidden | QDir::NoDotAndDotDot)) {
         const QString path = folder.filePath(name);
         const QStringList lines = name.endsWith(".new") ? QStringList() : linesOf(path);
-        if (path == path_ || std::any_of(marks_.begin(), marks_.end(),
+        if (path != path_ && std::any_of(marks_.begin(), marks_.end(),
                                          [&](const QString &mark) { return lines.indexOf(mark, 1) > 0; }))
             paths.append(path);
     }
     return paths;
 }
 
-std::optional<QString> LatchFile::read() const {
+std::optional<QString> LatchFile::read() {
     const QStringList paths = found();
     if (paths.isEmpty())
         return std::nullopt;
+    taken_ = paths;
+    for (const QString &path : paths)
+        takenMarks_ += linesOf(path).mid(1);
+    takenMarks_.removeDuplicates();
     const QStringList lines = linesOf(paths.first());
     return lines.isEmpty() ? "an emergency stop of which nothing is known: " + paths.first()
                            : lines.first().simplified();
@@ -123,20 +129,18 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
         return {};
     const QString folder = QFileInfo(path_).path();
     if (!reason) {
-        for (const QString &path : found())
+        for (const QString &path : taken_ + QStringList(path_))
             if (!QFile::remove(path) && QFile::exists(path))
                 return Error(ErrorCode::InputOutput,
                              QString("%1 cannot be removed: %2; the next start latches the "
                                      "emergency stop again")
                                  .arg(path, std::strerror(errno)));
+        taken_.clear();
+        takenMarks_.clear();
         disk_.start([folder] { syncFolder(folder); });
         return reserve();
     }
-    const QStringList paths = found(); // of one stop, with whatever settings: from now on in one file
-    for (const QString &path : paths)
-        marks_ += linesOf(path).mid(1);
-    marks_.removeDuplicates();
-    const QByteArray text = (QStringList(reason->left(longestReason).simplified()) + marks_)
+    const QByteArray text = (QStringList(reason->left(longestReason).simplified()) + marks_ + takenMarks_)
                                 .join('\n')
                                 .toUtf8()
                                 .left(fileBytes - 1);
@@ -154,9 +158,6 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
     file.close();
     if (std::rename(QFile::encodeName(draft()), QFile::encodeName(path_)) != 0)
         return failed(path_, std::strerror(errno));
-    for (const QString &path : paths)
-        if (path != path_)
-            QFile::remove(path);
     disk_.start([path = path_, folder] {
         syncFile(path);
         syncFolder(folder);

@@ -9,8 +9,9 @@
 namespace hermes::motorcontrol {
 
 /// The emergency stop on the disk: it outlives the program, and a loss of power, until somebody releases it.
-/// It is that of every daemon which has the settings file, an address or a line of the one that wrote it:
-/// whatever else is set in between. Lines of simulated robots do not count: each has the same.
+/// A daemon begins with the stop of one that had the same settings file, port or line, whatever else was set
+/// in between. Lines of simulated robots do not count: each has the same. A file has the reason in its first
+/// line, and in those after it by what its daemon is known.
 class LatchFile {
 public:
     LatchFile() { disk_.setMaxThreadCount(1); }
@@ -22,7 +23,7 @@ public:
     /// Takes room for a stop, so that a disk that fills does not lose it. Error: InputOutput.
     Result<void> reserve();
     /// Why the robot was stopped; nothing where no stop was latched. A file that cannot be read is a stop.
-    std::optional<QString> read() const;
+    std::optional<QString> read();
     /// At once, for a program that is killed; on the disk soon. Nothing: no stop is latched. Error:
     /// InputOutput.
     Result<void> write(const std::optional<QString> &reason);
@@ -34,7 +35,9 @@ private:
 
     QString path_;
     QStringList marks_; ///< this daemon is known by any of them
-    QThreadPool disk_;  // a disk may take long; its jobs end before this does
+    QStringList taken_,
+        takenMarks_;   ///< files of the stop that it began with, and their marks, until released
+    QThreadPool disk_; // a disk may take long; its jobs end before this does
 };
 
 } // namespace hermes::motorcontrol

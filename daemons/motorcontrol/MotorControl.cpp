@@ -117,7 +117,7 @@ void MotorControl::restoreStop() {
             told_.latch = loop_->drive().latch(); // who asks before the first report is told so
         },
         Qt::BlockingQueuedConnection);
-    keepStop(); // as that of the daemon that this one is now
+    keepStop(); // now by what this daemon is known, too
 }
 
 void MotorControl::keepStop() {

@@ -87,6 +87,7 @@ void FakeRobot::start() {
          QStringList{"controllers.1.url=" + line, "controllers.2.url=" + line, "safety.command_timeout_s=1"} +
              settings_)
         arguments << "--set" << setting;
+    qputenv("STATE_DIRECTORY", QFile::encodeName(state_.path()));
     inThread([&] {
         daemon_ = new motorcontrol::MotorControl;
         if (daemon_->prepare(arguments) || !daemon_->launch())

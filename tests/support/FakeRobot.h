@@ -4,6 +4,7 @@
 
 #include <QSemaphore>
 #include <QStringList>
+#include <QTemporaryDir>
 #include <QThread>
 #include <memory>
 #include <mutex>
@@ -49,6 +50,7 @@ private:
     void advance();
 
     const QStringList settings_;
+    const QTemporaryDir state_; // an emergency stop of one is none of the next
     const quint16 port_;
     std::mutex mutex_;
     simulator::Drivetrain motors_;

@@ -128,6 +128,18 @@ private Q_SLOTS:
         QCOMPARE(tracker->placeState() == PlaceState::Known, !isCarried);
     }
 
+    // A slow scanner pauses not at all.
+    void slowScansAreMapped() {
+        const Walls longer{{{-4, -3}, {9, -3}}, {{9, -3}, {9, 3}}, {{9, 3}, {-4, 3}}, {{-4, 3}, {-4, -3}}};
+        tracker = std::make_unique<ScanTracker>();
+        for (int i = 0; i < 12; ++i)
+            see(longer, {-2 + 0.2 * i, 0, 0}, 10 + i, track({0.2 * i, 0, 0}, 10 + i));
+        QVERIFY(tracker->placeState() == PlaceState::Known);
+        int often = 0;
+        tracker->builder.map.forEach([&](const MapEdge &edge) { often += edge.observations > 5; });
+        QVERIFY(often >= 4);
+    }
+
     // Neither the scan before nor the map tells where along the walls the sensor is, and the odometry knows
     // nothing of it.
     void whoIsCarriedBetweenWallsAlikeMapsNothing() {

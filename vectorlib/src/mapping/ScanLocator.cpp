@@ -29,10 +29,11 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
     located.way = Transformation2D(builder.report().pose).inverse() * located.expected;
     located.isOdometryKnown = guess.byOdometry;
     located.isWellExpected = isLastWithin(followed_s, scan.stamp);
-    located.hasPaused = lastStamp_ && !isLastWithin(moment, scan.stamp);
     const double since = lastStamp_ ? scan.stamp - *lastStamp_ : 0;
-    located.hasLeapt =
-        lastStamp_ && located.way.exceeds(leap_m + fastest_mps * since, leap_rad + fastest_radps * since);
+    located.hasPaused = lastStamp_ && (since <= 0 || since > std::max(moment, pauses * period_));
+    located.hasLeapt = located.way.exceeds(leap_m + fastest_mps * std::max(since, 0.0),
+                                           leap_rad + fastest_radps * std::max(since, 0.0)) &&
+                       lastStamp_;
     Found found = find(builder, scan, guess);
     const bool isClose = isLastWithin(moment, scan.stamp) && !located.way.exceeds(close_m, close_rad);
     const auto off = guess.byOdometry && isClose
@@ -62,6 +63,8 @@ VECTORLIB_BODY void ScanLocator::update(const Pose2D &pose, const TimedScan &sca
     motion_.update(pose, scan.stamp);
     if (scan.odometry)
         odometry_.update(pose, *scan.odometry, scan.stamp);
+    if (lastStamp_ && scan.stamp > *lastStamp_) // one pause does not make it long
+        period_ = period_ > 0 ? std::min(scan.stamp - *lastStamp_, 2 * period_) : scan.stamp - *lastStamp_;
     lastStamp_ = scan.stamp;
 }
 

@@ -47,7 +47,6 @@ VECTORLIB_BODY const ScanReport &ScanTracker::process(TimedScan &scan) {
     // What is known of the place now.
     count(report);
     place_.settle(isMatched() && agrees() && (isAfterPause_ || open_.belief() > claimed));
-    isAfterPause_ = isAfterPause_ && !place_.isKnown();
     isUnguided_ = isUnguided_ && !(isMatched() && place_.isKnown());
     return report;
 }
@@ -94,15 +93,16 @@ VECTORLIB_BODY PlaceFit ScanTracker::fitOf(const TimedScan &scan, bool bySecond,
 }
 
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optional<double> &lastStamp) {
+    isInterrupted_ = isInterrupted_ || located_.isInterrupted();
     isUnguided_ = isUnguided_ || located_.hasLeapt || (located_.hasPaused && !located_.byOdometry);
-    if (isAfterPause_ && !isUnguided_ && builder.report().outcome == ScanReport::Outcome::Lost) {
+    if (isAfterPause_ && !isUnguided_ && agrees() && builder.report().outcome == ScanReport::Outcome::Lost)
         place_.place(); // as a lost scan after a pause: it may have driven on beyond the map
-        isAfterPause_ = false;
-    }
-    if (located_.isInterrupted() && isMatched() && maps() && settings_.seekWhereContradicted) {
+    if (isInterrupted_ && isMatched() && maps() && settings_.seekWhereContradicted) {
         doubt(); // it may be elsewhere, where the map is alike
         isAfterPause_ = true;
     }
+    isInterrupted_ = isInterrupted_ && !isMatched();
+    isAfterPause_ = isAfterPause_ && place_.state() == PlaceState::Told;
     if (maps())
         judgeBreak(scan);
     else if (isMatched())
@@ -216,6 +216,7 @@ VECTORLIB_BODY void ScanTracker::followOpen(const TimedScan &scan) {
 
 VECTORLIB_BODY void ScanTracker::seek() {
     place_.seek();
+    isAfterPause_ = false;
     nextSearch_ = {};
 }
 
@@ -238,7 +239,7 @@ VECTORLIB_BODY void ScanTracker::place(const Pose2D &pose, double against) {
     check_.restart();
     open_.place();
     slid_.reset();
-    isAfterPause_ = false;
+    isAfterPause_ = isInterrupted_ = false;
     break_.place();
     builder.placed();
 }

@@ -69,7 +69,8 @@ private:
     static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int maxTries = 3;
-    static constexpr std::int64_t knownForLong = 10;            // scans
+    static constexpr std::int64_t knownForLong = 10; // scans
+    static constexpr double pauses = 3;              // of the usual time between two scans: it has paused
     static constexpr double fastest_mps = 5, fastest_radps = 6; // that a robot moves
     static constexpr double close_m = 0.2, close_rad = 0.2;     // between two scans
     static constexpr double odometryErrs = 2, leastErr_m = 0.01,
@@ -113,6 +114,7 @@ private:
         return lastStamp_ && stamp > *lastStamp_ && stamp - *lastStamp_ <= seconds;
     }
 
+    double period_ = 0;                // of the scans; seconds
     std::vector<Vector2D<float>> raw_; // the points as they were measured
     float middle_ = 0;                 // of their times
     std::vector<LineSegment2D<double>> known_;

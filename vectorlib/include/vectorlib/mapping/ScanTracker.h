@@ -105,7 +105,10 @@ public:
     /// Puts the sensor where a search found it; in a map that grows that is to be confirmed.
     void placeFound(const Pose2D &pose, double against = 0);
     /// The place may be wrong: nothing is mapped until five scans in a row agree with it.
-    void doubt() { place_.doubt(grows_ && !builder.map.isEmpty()); }
+    void doubt() {
+        place_.doubt(grows_ && !builder.map.isEmpty());
+        isAfterPause_ = false;
+    }
     /// The place in the map is not known: scans count as lost until it is found or told.
     void seek();
     /// What is known of the place in the map. Nothing is mapped but where it is Known.
@@ -221,8 +224,9 @@ private:
     PlaceKnowledge place_;
     bool grows_ = true;
     DriveBreak break_;
-    bool isAfterPause_ = false;          // the place is doubted for that alone
-    bool isUnguided_ = false;            // by the odometry, and no scan has agreed with the map since
+    // The drive was interrupted, and no scan was matched since; the place is doubted for that alone; the
+    // odometry may be wrong since, and no scan has agreed with the map.
+    bool isInterrupted_ = false, isAfterPause_ = false, isUnguided_ = false;
     PlaceFitter withoutPeople_;          // they are drawn, too: short walls do not speak against a pose
     PlaceFitter withoutPeopleAndBeyond_; // for the second scanner: what lies before walls speaks, too
     OpenDirection open_;
