@@ -196,8 +196,9 @@ void ScanMatcher::updateTrackingHealth() {
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
     const PlaceState place = this->place();
     if (place == PlaceState::Told)
-        message += "; the scans do not confirm the place that was told: nothing is mapped until they do, or "
-                   "pose.set insists with confirm";
+        message +=
+            "; the scans do not confirm yet the place that was told, or where a pause ended: nothing is "
+            "mapped until they do, or pose.set insists with confirm";
     else if (place == PlaceState::Found && mapping_)
         message += "; the place was found in the map: nothing is mapped until a second search, a metre on, "
                    "agrees";

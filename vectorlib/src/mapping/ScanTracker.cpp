@@ -95,7 +95,8 @@ VECTORLIB_BODY PlaceFit ScanTracker::fitOf(const TimedScan &scan, bool bySecond,
 VECTORLIB_BODY void ScanTracker::judge(const TimedScan &scan, const std::optional<double> &lastStamp) {
     isInterrupted_ = isInterrupted_ || located_.isInterrupted();
     isUnguided_ = isUnguided_ || located_.hasLeapt || (located_.hasPaused && !located_.byOdometry);
-    if (isAfterPause_ && !isUnguided_ && agrees() && builder.report().outcome == ScanReport::Outcome::Lost)
+    if (isAfterPause_ && !isUnguided_ && !isContradicted() &&
+        builder.report().outcome == ScanReport::Outcome::Lost)
         place_.place(); // as a lost scan after a pause: it may have driven on beyond the map
     if (isInterrupted_ && isMatched() && maps() && settings_.seekWhereContradicted) {
         doubt(); // it may be elsewhere, where the map is alike
