@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <sys/file.h>
 
 namespace hermes::motorcontrol {
 namespace {
@@ -44,17 +45,18 @@ Error failed(const QString &path, const QString &why) {
             QString("an emergency stop does not outlive this program: %1: %2").arg(path, why)};
 }
 
-/// The reason, and the marks after it; empty: it cannot be read.
+/// The reason, and the marks after it; empty: it cannot be read, or its motor control is running.
 QStringList linesOf(const QString &path) {
     QFile file;
-    return openOwnFile(file, path) ? QString::fromUtf8(file.read(fileBytes)).split('\n', Qt::SkipEmptyParts)
-                                   : QStringList();
+    return openOwnFile(file, path) && ::flock(file.handle(), LOCK_SH | LOCK_NB) == 0
+               ? QString::fromUtf8(file.read(fileBytes)).split('\n', Qt::SkipEmptyParts)
+               : QStringList();
 }
 
 } // namespace
 
 LatchFile::~LatchFile() {
-    if (!path_.isEmpty())
+    if (file_.isOpen() && !isLatched_)
         QFile::remove(draft());
 }
 
@@ -83,12 +85,16 @@ Result<void> LatchFile::reserve() {
     const QString folder = QFileInfo(path_).path();
     if (const auto made = makeFolder(folder); !made)
         return failed(folder, made.error().message);
-    QFile::remove(draft());
-    QFile file;
-    if (const auto opened = openOwnFile(file, draft(), true); !opened)
+    if (QFileInfo(draft()).isSymLink())
+        QFile::remove(draft());
+    if (const auto opened = openOwnFile(file_, draft(), true); !opened)
         return failed(draft(), opened.error().message);
-    if (file.write(QByteArray(fileBytes, '\n')) != fileBytes || !file.flush())
-        return failed(draft(), file.errorString());
+    if (::flock(file_.handle(), LOCK_EX | LOCK_NB) != 0) { // as long as this program lives
+        file_.close();
+        return failed(draft(), "another motor control with these settings is running");
+    }
+    if (file_.write(QByteArray(fileBytes, '\n')) != fileBytes || !file_.flush())
+        return failed(draft(), file_.errorString());
     disk_.start([path = draft()] { syncFile(path); });
     return {};
 }
@@ -137,6 +143,8 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
                                  .arg(path, std::strerror(errno)));
         taken_.clear();
         takenMarks_.clear();
+        isLatched_ = false;
+        file_.close();
         disk_.start([folder] { syncFolder(folder); });
         return reserve();
     }
@@ -144,20 +152,14 @@ Result<void> LatchFile::write(const std::optional<QString> &reason) {
                                 .join('\n')
                                 .toUtf8()
                                 .left(fileBytes - 1);
-    QFile file;
-    Result<void> opened = openOwnFile(file, draft()); // with the room that it has
-    if (!opened) {
+    if (!file_.isOpen())
         if (const auto made = reserve(); !made)
             return made;
-        opened = openOwnFile(file, draft());
-    }
-    if (!opened)
-        return failed(draft(), opened.error().message);
-    if (file.write(text.leftJustified(fileBytes, '\n')) != fileBytes || !file.flush())
-        return failed(path_, file.errorString());
-    file.close();
-    if (std::rename(QFile::encodeName(draft()), QFile::encodeName(path_)) != 0)
+    if (!file_.seek(0) || file_.write(text.leftJustified(fileBytes, '\n')) != fileBytes || !file_.flush())
+        return failed(path_, file_.errorString());
+    if (!isLatched_ && std::rename(QFile::encodeName(draft()), QFile::encodeName(path_)) != 0)
         return failed(path_, std::strerror(errno));
+    isLatched_ = true;
     disk_.start([path = path_, folder] {
         syncFile(path);
         syncFolder(folder);

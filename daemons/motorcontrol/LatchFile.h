@@ -2,6 +2,7 @@
 
 #include "common/Result.h"
 
+#include <QFile>
 #include <QStringList>
 #include <QThreadPool>
 #include <optional>
@@ -10,8 +11,8 @@ namespace hermes::motorcontrol {
 
 /// The emergency stop on the disk: it outlives the program, and a loss of power, until somebody releases it.
 /// A daemon begins with the stop of one that had the same settings file, port or line, whatever else was set
-/// in between. Lines of simulated robots do not count: each has the same. A file has the reason in its first
-/// line, and in those after it by what its daemon is known.
+/// in between, unless that one is still running. Lines of simulated robots do not count: each has the same. A
+/// file has the reason in its first line, and in those after it by what its daemon is known.
 class LatchFile {
 public:
     LatchFile() { disk_.setMaxThreadCount(1); }
@@ -34,10 +35,11 @@ private:
     QStringList found() const;
 
     QString path_;
-    QStringList marks_; ///< this daemon is known by any of them
-    QStringList taken_,
-        takenMarks_;   ///< files of the stop that it began with, and their marks, until released
-    QThreadPool disk_; // a disk may take long; its jobs end before this does
+    QStringList marks_;              ///< this daemon is known by any of them
+    QStringList taken_, takenMarks_; ///< of the stop that it began with: its files and their marks
+    QFile file_;                     ///< locked, so that no other motor control takes it for its own
+    bool isLatched_ = false;         ///< the file is at its path, not the draft
+    QThreadPool disk_;               // a disk may take long; its jobs end before this does
 };
 
 } // namespace hermes::motorcontrol

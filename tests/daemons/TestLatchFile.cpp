@@ -42,33 +42,48 @@ private Q_SLOTS:
         QFETCH(QString, listen);
         QFETCH(QString, line);
         QFETCH(bool, isKept);
-        LatchFile first;
-        first.setPlace("/etc/hermes/motors.json", {"tcp://127.0.0.1:7420?protocol=json"},
-                       {"serial:///dev/ttyACM0?baud=115200"});
-        QVERIFY(first.reserve());
-        QVERIFY(!first.read());
-        QVERIFY(first.write(QString("emergency stop by\nport 7421")));
+        killed({"/etc/hermes/motors.json", "tcp://127.0.0.1:7420?protocol=json",
+                "serial:///dev/ttyACM0?baud=115200"},
+               "emergency stop by\nport 7421");
         LatchFile next;
         next.setPlace(settingsFile, {listen}, {line});
         QVERIFY(next.reserve());
         QCOMPARE(next.read().value_or(QString()),
                  isKept ? QString("emergency stop by port 7421") : QString());
         QVERIFY(next.write(std::nullopt));
+        LatchFile first;
+        first.setPlace("/etc/hermes/motors.json", {"tcp://127.0.0.1:7420?protocol=json"}, {});
         QCOMPARE(first.read().has_value(), !isKept);
+    }
+
+    /// Two robots of one computer, with one settings file: neither takes the other's stop, nor its room.
+    void whoRunsKeepsItsOwn() {
+        LatchFile first, second, again;
+        first.setPlace("file", {"tcp://127.0.0.1:1"}, {"serial:///dev/ttyACM0"});
+        second.setPlace("file", {"tcp://127.0.0.1:2"}, {"serial:///dev/ttyACM1"});
+        again.setPlace("file", {"tcp://127.0.0.1:1"}, {"serial:///dev/ttyACM0"});
+        QVERIFY(first.reserve() && second.reserve());
+        QVERIFY(!again.reserve());
+        QVERIFY(first.write(QString("stop")) && !second.read());
+        QVERIFY(second.write(QString("another")) && second.write(std::nullopt));
+        QCOMPARE(again.read().value_or(QString()),
+                 "an emergency stop of which nothing is known: " +
+                     folder_->filePath("estop/tcp_127.0.0.1_1+serial_dev_ttyACM0"));
+        QVERIFY(first.write(std::nullopt) && !again.read());
     }
 
     /// It is told what it is known by before: the second finds it by the first one's line.
     void itGoesOnWhateverIsSetNext() {
-        const QStringList usual{"serial:///dev/ttyACM0"};
-        LatchFile a, b, c;
-        a.setPlace({}, {"tcp://127.0.0.1:1"}, usual);
-        b.setPlace({}, {"tcp://127.0.0.1:2"}, usual);
+        const QString line = "serial:///dev/ttyACM0";
+        killed({{}, "tcp://127.0.0.1:1", line}, "stop");
+        killed({{}, "tcp://127.0.0.1:2", line}, {});
+        LatchFile c;
         c.setPlace({}, {"tcp://127.0.0.1:1"}, {"serial:///dev/ttyACM1"});
-        QVERIFY(a.write(QString("stop")) && b.read());
-        QVERIFY(b.write(b.read()));
         QCOMPARE(c.read().value_or(QString()), QString("stop"));
         QVERIFY(c.write(std::nullopt));
-        QVERIFY(!a.read() && !b.read());
+        LatchFile a;
+        a.setPlace({}, {"tcp://127.0.0.1:2"}, {line});
+        QVERIFY(!a.read());
     }
 
     /// Another robot that is simulated here has the same.
@@ -76,16 +91,25 @@ private Q_SLOTS:
         for (const QString &line : {QString("tcp://127.0.0.1:4000"), QString("serial:///dev/pts/0")}) {
             if (line.contains("pts") && !QFile::exists("/dev/pts/0"))
                 continue;
-            LatchFile first, next;
-            first.setPlace({}, {"tcp://127.0.0.1:1"}, {line});
+            killed({{}, "tcp://127.0.0.1:1", line}, "stop");
+            LatchFile next;
             next.setPlace({}, {"tcp://127.0.0.1:2"}, {line});
-            QVERIFY(first.write(QString("stop")));
             QVERIFY(!next.read());
-            QVERIFY(first.write(std::nullopt));
+            QFile::remove(folder_->filePath("estop"));
         }
     }
 
 private:
+    struct Place {
+        QString settingsFile, listen, line;
+    };
+    /// One that latched this stop, or went on with what it found, and then was killed.
+    static void killed(const Place &place, const std::optional<QString> &reason) {
+        LatchFile file;
+        file.setPlace(place.settingsFile, {place.listen}, {place.line});
+        const auto found = file.read();
+        QVERIFY(file.write(reason ? reason : found));
+    }
     std::unique_ptr<QTemporaryDir> folder_;
 };
 
