@@ -131,7 +131,7 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     }
     leftOut_.reset();
     seen.points = points;
-    if (tracker.isStraight())
+    if (tracker.isStraight() && tracker.draws())
         seen.edges = tracker.builder.edges();
     seen.own = std::uint32_t(tracker.builder.own());
     ++added_;

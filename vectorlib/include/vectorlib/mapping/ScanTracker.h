@@ -113,6 +113,8 @@ public:
     void seek();
     /// What is known of the place in the map. Nothing is mapped but where it is Known.
     PlaceState placeState() const { return place_.state(); }
+    /// Whether scans are drawn now: the map grows, and scans and odometry tell the same along open walls.
+    bool draws() const { return maps() && !(settings_.seekWhereContradicted && open_.isDisputed()); }
     /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
     Relocalized relocalize(bool apply);
     /// Whether a search of the whole map would help: enough scans in a row were lost, the place is sought, or
@@ -179,10 +181,8 @@ private:
     static constexpr double minMapped = 0.85; // of the seen length: the map shows the scan
     static constexpr double fewKnown = 0.6;   // of the points, where no odometry tells the pose
 
-    // Whether the next scan is one of a map that grows.
+    // Whether the map grows: a scan may be drawn, and is judged for that.
     bool maps() const { return grows_ && place_.isKnown(); }
-    // Whether it is drawn into the map.
-    bool draws() const { return maps() && !(settings_.seekWhereContradicted && open_.isDisputed()); }
     bool isMatched() const { return builder.report().outcome == ScanReport::Outcome::Matched; }
     void setUp(TimedScan &scan);
     // The motion since a pose, where the odometry and the scan before tell it, each on its own.
@@ -224,10 +224,10 @@ private:
     PlaceKnowledge place_;
     bool grows_ = true;
     DriveBreak break_;
-    // The drive was interrupted, and no scan was matched since; the place is doubted for that alone; the
-    // odometry may be wrong since, and no scan has agreed with the map.
-    bool isInterrupted_ = false, isAfterPause_ = false, isUnguided_ = false;
-    PlaceFitter withoutPeople_;          // they are drawn, too: short walls do not speak against a pose
+    bool isInterrupted_ = false; // the drive, by a pause or a leap, and no scan was matched since
+    bool isAfterPause_ = false;  // the place is doubted as the drive was interrupted, and for nothing else
+    bool isUnguided_ = false;    // the odometry may be wrong since then, and no scan has agreed with the map
+    PlaceFitter withoutPeople_;  // they are drawn, too: short walls do not speak against a pose
     PlaceFitter withoutPeopleAndBeyond_; // for the second scanner: what lies before walls speaks, too
     OpenDirection open_;
     std::optional<Vector2D<double>> slid_; // where the last scan lies better, as yet alone; metres, map frame
