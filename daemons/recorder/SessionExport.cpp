@@ -2,127 +2,21 @@
 
 #include "common/Project.h"
 #include "common/capture/PcapWriter.h"
-#include "common/files/NamedFile.h"
-#include "common/files/WriteAll.h"
-#include "common/platform/PrivateFiles.h"
 #include "common/recording/DiskError.h"
 #include "daemons/recorder/CarmenText.h"
+#include "daemons/recorder/ExportFiles.h"
 #include "protocol/mcap/Writer.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QDir>
 #include <QJsonObject>
 #include <QRegularExpression>
-#include <QSet>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <deque>
 #include <filesystem>
 
 namespace hermes::recorder {
 namespace {
-
-/// A file that takes the place of the one before when finish() and commit() succeed. It is open only while a
-/// piece of it is written: there may be one for each topic.
-class ExportFile {
-public:
-    ExportFile(const QString &folder, const QString &name)
-        : path_(folder + '/' + name)
-        , draft_(folder + "/." + name + ".new") {
-        QFile::remove(draft_); // of an export that was cut off, or a link
-    }
-    ~ExportFile() { QFile::remove(draft_); }
-    ExportFile(const ExportFile &) = delete;
-    ExportFile &operator=(const ExportFile &) = delete;
-
-    void write(const QByteArray &bytes) {
-        waiting_ += bytes;
-        if (waiting_.size() >= pieceBytes)
-            flush(false);
-    }
-    /// For who writes it otherwise: the file that gets the name at the end.
-    std::string draft() const { return QFile::encodeName(draft_).toStdString(); }
-    void fail(const std::string &why) { done_ = failure(QString::fromStdString(why)); }
-    Result<void> finish() {
-        flush(true);
-        return done_;
-    }
-    Result<QString> commit() const {
-        if (std::rename(QFile::encodeName(draft_).constData(), QFile::encodeName(path_).constData()) != 0)
-            return failure(qt_error_string());
-        return path_;
-    }
-
-private:
-    static constexpr int pieceBytes = 1 << 16;
-
-    void flush(bool toDisk) {
-        QFile file;
-        if (done_)
-            done_ = openOwnFile(file, draft_, true);
-        if (done_ && !(::lseek(file.handle(), 0, SEEK_END) >= 0 && writeAll(file.handle(), waiting_) &&
-                       (!toDisk || syncToDisk(file.handle()))))
-            done_ = failure(qt_error_string());
-        waiting_.clear();
-    }
-    Error failure(const QString &why) const {
-        return diskError(path_ + ": cannot be written: " + why, path_);
-    }
-
-    const QString path_, draft_;
-    QByteArray waiting_;
-    Result<void> done_;
-};
-
-/// The files of one export.
-class ExportFiles {
-public:
-    explicit ExportFiles(const QString &folder)
-        : folder_(folder) {}
-
-    Result<void> begin() const {
-        for (const QString &folder : {QFileInfo(folder_).path(), folder_})
-            if (QFileInfo(folder).isSymLink())
-                return diskError(folder + ": it is a link; nothing is exported elsewhere", folder);
-        if (!QDir().mkpath(folder_))
-            return diskError(folder_ + ": is no folder, and cannot be made one", folder_);
-        return {};
-    }
-    /// name: of a topic, or a session. Whether it can be written finish() tells.
-    ExportFile &open(QString name, const QString &extension) {
-        name.replace(QRegularExpression("[^A-Za-z0-9._-]|^\\."), "-");
-        QString unique = name.left(longestName) + extension;
-        for (int number = 2; names_.contains(unique.toLower()); ++number)
-            unique = QString("%1-%2%3").arg(name.left(longestName)).arg(number).arg(extension);
-        names_.insert(unique.toLower());
-        return files_.emplace_back(folder_, unique);
-    }
-    /// All is on the disk, and nothing replaced as yet.
-    Result<void> finish() {
-        for (ExportFile &file : files_)
-            if (Result<void> finished = file.finish(); !finished)
-                return finished;
-        return {};
-    }
-    Result<QStringList> commit() const {
-        QStringList paths;
-        for (const ExportFile &file : files_) {
-            const Result<QString> path = file.commit();
-            if (!path)
-                return path.error();
-            paths.append(*path);
-        }
-        return paths;
-    }
-
-private:
-    static constexpr int longestName = 150;
-
-    const QString folder_;
-    QSet<QString> names_; ///< in small letters: some disks know no others
-    std::deque<ExportFile> files_;
-};
 
 /// Files by topic and schema: one that changed in a restart is told from the one before.
 template <typename File>
@@ -296,8 +190,10 @@ quint64 join(SessionReader &session, const std::vector<std::string> &captures, E
             done = writer.write(datagram);
             return done && !session.isStopped();
         });
-        if (done && !read)
-            done = read.error();
+        if (!read) {
+            session.note(QString::fromStdString(read.error()));
+            continue;
+        }
         if (done && (read->wholeBytes < read->fileBytes || read->wholeBytes == 0))
             session.note(QString("%1: only %2 of its %3 bytes could be read, %4 packets%5")
                              .arg(QString::fromStdString(*path))
