@@ -30,7 +30,7 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
     located.isOdometryKnown = guess.byOdometry;
     located.isWellExpected = isLastWithin(followed_s, scan.stamp);
     const double since = lastStamp_ ? scan.stamp - *lastStamp_ : 0;
-    located.hasPaused = lastStamp_ && (since <= 0 || since > std::max(moment, pauses * period_));
+    located.hasPaused = lastStamp_ && std::abs(since) > std::max(moment, pauses * period_);
     located.hasLeapt = located.way.exceeds(leap_m + fastest_mps * std::max(since, 0.0),
                                            leap_rad + fastest_radps * std::max(since, 0.0)) &&
                        lastStamp_;
