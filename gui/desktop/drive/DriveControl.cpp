@@ -2,6 +2,7 @@
 
 #include "common/Time.h"
 #include "gui/desktop/drive/OwnName.h"
+#include "gui/desktop/drive/StopLine.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
@@ -125,7 +126,7 @@ void DriveControl::onMoved(const DaemonLink *daemon, Robot *to) {
 QString DriveControl::objection(const Robot &robot) const {
     if (isDriving_ && robot.has(motors_))
         return tr("%1 is driven: let go first.").arg(robot.name());
-    if (stop_.isPressedFor(robot))
+    if (stop_.isPressedFor(&robot))
         return tr("STOP was pressed for %1: release it first.").arg(robot.name());
     return {};
 }
@@ -347,12 +348,12 @@ void DriveControl::stop() {
 
 void DriveControl::release() {
     inputs_.needRest();
-    if (stop_.isOfOthers() && hold_.latched.contains("estop") && !confirmation_.press())
+    if (!stop_.isPressedFor(fleet_.robot()) && hold_.latched.contains("estop") && !confirmation_.press())
         return;
     stop_.release();
     if (!motors_ || stop_.phase() != StopPhase::None)
         return; // whose lines ask for it
-    motors_->call("motor.reset_estop", ownNameFor(motors_, "motor.reset_estop"), this,
+    motors_->call("motor.reset_estop", StopLine::releaseParams(motors_), this,
                   [this](const Result<QJsonValue> &result) {
                       tell(result ? QString() : result.error().message);
                       poll();

@@ -83,7 +83,7 @@ void DriveControl::onState(const QJsonValue &state) {
 
 QString DriveControl::stopReason() const {
     QStringList reasons;
-    const bool isOurs = fleet_.robot() && stop_.isPressedFor(*fleet_.robot());
+    const bool isOurs = stop_.isPressedFor(fleet_.robot());
     for (const QString &reason : hold_.latched)
         reasons.append(readableStop(reason, isOurs));
     return reasons.join("; ");

@@ -28,10 +28,9 @@ public:
     bool isLate() const;
     /// One was pressed, for any robot, and is not confirmed as yet.
     bool isOnItsWay() const;
-    /// A STOP for this robot was pressed here, and is not released as yet.
-    bool isPressedFor(const Robot &robot) const { return pressed_.contains(&robot); }
-    /// The chosen robot is held by a STOP that was pressed elsewhere, or before this program was started.
-    bool isOfOthers() const { return phase() != StopPhase::None && !pressed_.contains(fleet_.robot()); }
+    /// A STOP for this robot was pressed here, and is not released as yet: another that holds it was pressed
+    /// elsewhere, before this program was started, or came behind its release.
+    bool isPressedFor(const Robot *robot) const { return pressed_.contains(robot); }
     /// What the operator has to know now; empty: nothing.
     QString text() const;
 

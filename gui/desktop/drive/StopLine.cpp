@@ -144,12 +144,16 @@ void StopLine::release() {
                 guard->release();
         });
     };
-    QJsonObject wanted = ownNameFor(daemon_, "motor.reset_estop");
-    if (daemon_ && daemon_->takes("motor.reset_estop", "confirm"))
-        wanted.insert("confirm", true); // by whoever sits here; the second connection has never driven
     for (Client *const client : clients)
-        client->call("motor.reset_estop", wanted, released);
+        client->call("motor.reset_estop", releaseParams(daemon_), released);
     Q_EMIT changed();
+}
+
+QJsonObject StopLine::releaseParams(const DaemonLink *daemon) {
+    QJsonObject params = ownNameFor(daemon, "motor.reset_estop");
+    if (daemon && daemon->takes("motor.reset_estop", "confirm"))
+        params.insert("confirm", true); // by whoever sits here; the second connection has never driven
+    return params;
 }
 
 // It is stopped, and not to be stopped again.

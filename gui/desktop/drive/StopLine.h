@@ -46,6 +46,8 @@ public:
     /// Asks for the release; until the robot has given it nothing changes but that the stop is not sent any
     /// more. A robot without a connection gets no stop.
     void release();
+    /// What the release is called with: the name of this window, and that a person confirms it.
+    static QJsonObject releaseParams(const DaemonLink *daemon);
     /// It is stopped by somebody else, and watched until it is not any more.
     bool isWatched() const { return isWatched_; }
     /// The daemon behind it was found again.
