@@ -95,8 +95,12 @@ private:
             QTest::keyRelease(&window, Qt::Key_W);
             if (drive.isStopped())
                 drive.release();
-            if (drive.isReleaseAsked())
-                drive.release(); // a person is asked once more for a STOP that came behind its release
+            const auto isAnswered = [&drive] { // for a STOP that came behind its release a person is asked
+                if (drive.isReleaseAsked())
+                    drive.release();
+                return !drive.isReleaseAsked();
+            };
+            QVERIFY(QTest::qWaitFor(isAnswered, 5000));
             QTest::qWait(200); // a press that follows a release at once is the repeat of a held key
             if (QTest::qWaitFor([&drive] { return !drive.isStopped() && !drive.mustLetGo(); }, 10000)) {
                 QTest::keyPress(&window, Qt::Key_W);
