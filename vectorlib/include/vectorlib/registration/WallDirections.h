@@ -12,6 +12,12 @@ namespace vectorlib {
 /// In which directions walls fix the position of a sensor, by sums over their normals.
 class WallDirections {
 public:
+    WallDirections() = default;
+    /// Of sums that are known.
+    WallDirections(double xx, double xy, double yy)
+        : xx_(xx)
+        , xy_(xy)
+        , yy_(yy) {}
     /// A wall with this normal, or a point on it; the weight is its length, or 1.
     template <typename Scalar>
     void add(Vector2D<Scalar> normal, Scalar weight = 1) {
