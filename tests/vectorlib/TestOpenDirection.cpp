@@ -143,6 +143,30 @@ private Q_SLOTS:
         QVERIFY2(tracker->trust() > 0.5, saying(tracker->trust()));
     }
 
+    // It shows more of the robot's surroundings than the walls, and always the same.
+    void whoGoesAlongDoesNotPull() {
+        const auto box = [](Walls &walls, const Pose2D &robot, float x, float y, float length, float width) {
+            const Transformation2D pose(robot);
+            const Vector2D<double> corners[] = {
+                {x, y}, {x + length, y}, {x + length, y + width}, {x, y + width}};
+            for (int k = 0; k < 4; ++k)
+                walls.emplace_back(Vector2D<float>(pose * corners[(k + 1) % 4]),
+                                   Vector2D<float>(pose * corners[k]));
+        };
+        enter();
+        Pose2D real{-2, -1, 0};
+        for (int i = 0; i < 90; ++i) {
+            real.x += i > 20 ? 0.06 : 0;
+            Walls seen = room;
+            box(seen, real, 0.8f, -0.7f, 0.6f, 1.2f);
+            box(seen, real, -0.3f, 0.6f, 1.0f, 0.6f);
+            box(seen, real, -0.3f, -1.3f, 1.0f, 0.6f);
+            const Pose2D pose =
+                see(seen, real, 10.1 + 0.1 * i, track({real.x + 2, real.y + 1, 0}, 10.1 + 0.1 * i)).pose;
+            QVERIFY2(std::hypot(pose.x - real.x, pose.y - real.y) < 0.2, saying(pose.x - real.x));
+        }
+    }
+
     // Nothing there tells where.
     void aBareCorridorIsNotSlidAlong() {
         const Walls corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};

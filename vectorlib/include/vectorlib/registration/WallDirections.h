@@ -47,7 +47,9 @@ public:
         const double sum = xx_ + yy_, apart = std::hypot(xx_ - yy_, 2 * xy_);
         return sum > 0 ? 0.5 * (1 - apart / sum) : 0;
     }
-    bool isEmpty() const { return !(xx_ + yy_ > 0); }
+    /// Of all walls together.
+    double weight() const { return xx_ + yy_; }
+    bool isEmpty() const { return !(weight() > 0); }
 
 private:
     double xx_ = 0, xy_ = 0, yy_ = 0;
