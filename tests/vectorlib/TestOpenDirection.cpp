@@ -30,6 +30,33 @@ private Q_SLOTS:
         QVERIFY2(std::abs(x - 0.05 * 119) < 0.01, saying(x));
     }
 
+    // Its walls face all ways, and yet it looks the same farther on.
+    void aBendIsLeftOpenToTheOdometry_data() { falseAndTrue("grows", "finished map", "growing map"); }
+    void aBendIsLeftOpenToTheOdometry() {
+        QFETCH(bool, grows);
+        const Walls bend = ringCorridor();
+        finishMap(grows ? Walls() : bend, inRing(0));
+        tracker->grow(grows);
+        for (int i = 0; i < 300; ++i) {
+            const Pose2D real = inRing(0.01 * i);
+            const Pose2D pose = see(bend, real, 10 + 0.1 * i, track(real, 10 + 0.1 * i)).pose;
+            QVERIFY2(std::hypot(pose.x - real.x, pose.y - real.y) < 0.2, saying(pose.x - real.x));
+        }
+        QVERIFY2((tracker->trust() > 0.5) == grows, saying(tracker->trust())); // after 18 m by the odometry
+    }
+
+    // Who is driven there seems to stand.
+    void withoutOdometryTrustIsLowInABareCorridor_data() { falseAndTrue("bends", "straight", "bent"); }
+    void withoutOdometryTrustIsLowInABareCorridor() {
+        QFETCH(bool, bends);
+        const Walls walls = bends ? ringCorridor() : Walls{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+        scanner.maxRange = 5;
+        finishMap(walls, bends ? inRing(0) : Pose2D());
+        for (int i = 0; i < 30; ++i)
+            see(walls, bends ? inRing(0.01 * i) : Pose2D{0.06 * i, 0, 0}, 10 + 0.1 * i);
+        QVERIFY2(tracker->trust() < 0.5, saying(tracker->trust()));
+    }
+
     // A corridor with doors whose ends are out of reach, in a finished map: only the ends of walls tell how
     // far along it the sensor is.
     void endsOfWallsTellThePlaceAlongACorridor_data() {
@@ -116,6 +143,30 @@ private Q_SLOTS:
         QVERIFY2(tracker->trust() > 0.5, saying(tracker->trust()));
     }
 
+    // It shows more of the robot's surroundings than the walls, and always the same.
+    void whoGoesAlongDoesNotPull() {
+        const auto box = [](Walls &walls, const Pose2D &robot, float x, float y, float length, float width) {
+            const Transformation2D pose(robot);
+            const Vector2D<double> corners[] = {
+                {x, y}, {x + length, y}, {x + length, y + width}, {x, y + width}};
+            for (int k = 0; k < 4; ++k)
+                walls.emplace_back(Vector2D<float>(pose * corners[(k + 1) % 4]),
+                                   Vector2D<float>(pose * corners[k]));
+        };
+        enter();
+        Pose2D real{-2, -1, 0};
+        for (int i = 0; i < 90; ++i) {
+            real.x += i > 20 ? 0.06 : 0;
+            Walls seen = room;
+            box(seen, real, 0.8f, -0.7f, 0.6f, 1.2f);
+            box(seen, real, -0.3f, 0.6f, 1.0f, 0.6f);
+            box(seen, real, -0.3f, -1.3f, 1.0f, 0.6f);
+            const Pose2D pose =
+                see(seen, real, 10.1 + 0.1 * i, track({real.x + 2, real.y + 1, 0}, 10.1 + 0.1 * i)).pose;
+            QVERIFY2(std::hypot(pose.x - real.x, pose.y - real.y) < 0.2, saying(pose.x - real.x));
+        }
+    }
+
     // Nothing there tells where.
     void aBareCorridorIsNotSlidAlong() {
         const Walls corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
@@ -140,5 +191,23 @@ private Q_SLOTS:
         for (int i = 0; i < 5; ++i)
             mapped.dispute({0.5, 0});
         QVERIFY2(mapped.belief() < 0.5, saying(mapped.belief()));
+    }
+
+private:
+    // Between walls of 5 m and 7 m radius.
+    static Walls ringCorridor() {
+        Walls walls;
+        const auto at = [](double radius, int i) {
+            return Vector2D<float>(float(radius * std::cos(i * pi / 45)),
+                                   float(radius * std::sin(i * pi / 45)));
+        };
+        for (int i = 0; i < 90; ++i) {
+            walls.emplace_back(at(7, i), at(7, i + 1));
+            walls.emplace_back(at(5, i + 1), at(5, i));
+        }
+        return walls;
+    }
+    static Pose2D inRing(double angle) {
+        return {6 * std::cos(angle), 6 * std::sin(angle), wrapAngle(angle + pi / 2)};
     }
 };

@@ -120,10 +120,21 @@ VECTORLIB_BODY void MapBuilder::locate(const Transformation2D &expected) {
         collectVisible(expected);
         match_ = track(static_, *edges_, expected);
         report_.outcome = match_.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
-        if (match_.accepted)
+        if (match_.accepted) {
+            if (byScan_)
+                leaveOpen();
             pose_ = match_.pose;
+        }
     }
     report_.pose = pose_.pose();
+}
+
+VECTORLIB_BODY void MapBuilder::leaveOpen() {
+    const Localizability &walls = matchPair.match().agreement.localizability();
+    if (walls.kept() < 1) {
+        match_.pose = walls.leaveOpen(match_.pose, expected_);
+        match_.reliability = std::min(match_.reliability, walls.position().reliability());
+    }
 }
 
 VECTORLIB_BODY void MapBuilder::collectVisible(const Transformation2D &expected) {

@@ -36,15 +36,9 @@ VECTORLIB_BODY LocatedScan ScanLocator::operator()(MapBuilder &builder, TimedSca
                        lastStamp_;
     Found found = find(builder, scan, guess);
     const bool isClose = isLastWithin(moment, scan.stamp) && !located.way.exceeds(close_m, close_rad);
-    const auto off = guess.byOdometry && isClose
-                         ? disputed(builder, guess, located.way.translation().norm(), open.slip())
-                         : std::nullopt;
-    if (off) {
-        open.dispute(*off);
-        located.isDisputed = true;
-        found = findByOdometry(builder, scan, guess);
-    } else if (scan.odometry && (found.score < 0 || (isStraightened(scan) &&
-                                                     (found.again || leaps(byMotion, guess, end - begin))))) {
+    const bool isGuided = guess.byOdometry && isClose && found.score > 0;
+    if (!(isGuided && goesByOdometry(builder, scan, guess, located, open, found)) && scan.odometry &&
+        (found.score < 0 || (isStraightened(scan) && (found.again || leaps(byMotion, guess, end - begin))))) {
         const Found other = find(builder, scan, byMotion);
         const bool better = other.score > muchBetter * found.score || (other.straight && !found.straight);
         if (other.score > 0 && better) {
@@ -74,25 +68,36 @@ VECTORLIB_BODY void ScanLocator::place(const Pose2D &pose) {
     lastStamp_.reset();
 }
 
-VECTORLIB_BODY std::optional<Vector2D<double>> ScanLocator::disputed(MapBuilder &builder, const Guess &guess,
-                                                                     double way, double slip) const {
+VECTORLIB_BODY bool ScanLocator::goesByOdometry(MapBuilder &builder, TimedScan &scan, const Guess &guess,
+                                                LocatedScan &located, OpenDirection &open, Found &found) {
+    const double way = located.way.translation().norm(),
+                 errs = odometryErrs * ((guess.deviations ? guess.deviations->xy : leastErr_m) +
+                                        std::max(errsByWay, open.slip()) * way);
     const Transformation2D pose(builder.report().pose);
-    const Vector2D<double> off = pose.translation() - Transformation2D(guess.pose).translation();
-    const double errs =
-        (guess.deviations ? guess.deviations->xy : leastErr_m) + std::max(errsByWay, slip) * way;
-    if (builder.report().outcome != ScanReport::Outcome::Matched || off.norm() < odometryErrs * errs)
-        return std::nullopt;
-    WallDirections known; // for long
+    const Vector2D<double> off = pose.translation() - located.expected.translation();
+    if (off.norm() <= errs)
+        return false;
+    const WallDirections known = knownWalls(builder);
+    const Vector2D<double> along = known.weakest();
+    located.isDisputed = !known.isEmpty() && known.reliability() <= OpenDirection::openReliability &&
+                         std::abs(along.dot(off)) > errs;
+    if (located.isDisputed)
+        open.dispute(along * along.dot(off));
+    const Found other = findByOdometry(builder, scan, guess);
+    const bool isMoreKnown = other.score > 0 && knownWalls(builder).weight() > muchBetter * known.weight();
+    const bool isTaken = located.isDisputed || isMoreKnown;
+    found = isTaken ? other : find(builder, scan, guess);
+    return isTaken;
+}
+
+VECTORLIB_BODY WallDirections ScanLocator::knownWalls(const MapBuilder &builder) {
+    WallDirections known;
     for (const CorrespondencePair &pair : builder.match().pairs) {
         const MapEdge &wall = builder.map.slots()[std::size_t(builder.candidates()[std::size_t(pair.fixed)])];
         if (wall.observations >= knownForLong)
             known.add(wall.segment.normal(), builder.edges()[std::size_t(pair.moving)].segment.length());
     }
-    if (known.isEmpty() || known.reliability() > OpenDirection::openReliability)
-        return std::nullopt;
-    const Vector2D<double> open = known.weakest();
-    const double along = open.dot(off);
-    return std::abs(along) > odometryErrs * errs ? std::optional(open * along) : std::nullopt;
+    return known;
 }
 
 VECTORLIB_BODY ScanLocator::Found ScanLocator::findByOdometry(MapBuilder &builder, TimedScan &scan,

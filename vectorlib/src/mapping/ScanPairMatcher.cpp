@@ -48,12 +48,16 @@ VECTORLIB_BODY const ScanPairMatch &ScanPairMatcher::operator()(PointSpan<float>
     match_.accepted = isAcceptable() && !(settings.searchAnywhere && isOutvoted());
     if (settings.searchAnywhere && !match_.accepted)
         takeBestOfAnywhere();
-    if (settings.leavesOpen && !settings.searchAnywhere && !match_.linesSuffice)
+    if (settings.leavesOpen && !settings.searchAnywhere)
         leaveOpen();
     return match_;
 }
 
 VECTORLIB_BODY void ScanPairMatcher::leaveOpen() {
+    if (match_.linesSuffice) {
+        match_.pose = match_.agreement.localizability().leaveOpen(match_.pose, expected_.pose);
+        return;
+    }
     const double share = match_.agreement.walls().weakestShare();
     const double kept =
         std::clamp((share - settings.unknownShare) / (settings.knownShare - settings.unknownShare), 0.0, 1.0);

@@ -8,7 +8,9 @@ VECTORLIB_BODY void OpenDirection::follow(const Transformation2D &pose, bool isO
                                           bool grows, const std::optional<OdometryTrack> &odometry,
                                           double stamp, const Transformation2D &mount) {
     const double way = last_ ? (pose.translation() - last_->translation()).norm() : 0;
+    const double pause = last_ ? std::clamp(stamp - lastStamp_, 0.0, longestPause_s) : 0;
     last_ = pose;
+    lastStamp_ = stamp;
     if (!isOpen)
         disputed_ = {};
     if (grows) {
@@ -16,7 +18,8 @@ VECTORLIB_BODY void OpenDirection::follow(const Transformation2D &pose, bool isO
         deviation_ *= beside;
         disputed_ = disputed_ * beside;
     }
-    deviation_ = isOpen ? deviation_ + (isByOdometry ? slip_ : unguided) * way : 0;
+    const double errs = isByOdometry ? slip_ * way : std::max(unguided * way, unseen_mps * pause);
+    deviation_ = isOpen ? deviation_ + errs : 0;
     if (odometry && !isOpen)
         learn(pose, odometry->epoch(), odometry->at(stamp) * mount);
     else

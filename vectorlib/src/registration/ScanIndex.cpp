@@ -98,6 +98,7 @@ VECTORLIB_BODY void PointAgreement::add(const ScanIndex &points, const Transform
             ++explained_;
             distances_ += d * d / squaredGate;
             walls_.add(n);
+            localizability_.add(p, n, move.rotate(points.normal(i)));
         } else if (other.looksPast(p))
             ++contradicted_;
     }

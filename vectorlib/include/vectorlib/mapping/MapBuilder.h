@@ -148,6 +148,8 @@ private:
                !matchPair.settings.searchAnywhere && passedOver_ + 1 < settings.lostBeforeRestart;
     }
     void locate(const Transformation2D &expected);
+    // Between walls that bend the map tells no more than the scan before.
+    void leaveOpen();
     // The part of the map that the scan can touch from any permitted pose.
     void collectVisible(const Transformation2D &expected);
     void updateMap();

@@ -96,10 +96,13 @@ private:
     Found find(MapBuilder &builder, TimedScan &scan, const Guess &guess);
     // The same by the odometry, and by walls that are known for long.
     Found findByOdometry(MapBuilder &builder, TimedScan &scan, const Guess &guess);
-    // How far the pose that was found is from where the odometry puts it, along a direction that walls known
-    // for long leave open, where that is more than it errs: what tells the pose there may move by itself.
-    std::optional<Vector2D<double>> disputed(MapBuilder &builder, const Guess &guess, double way,
-                                             double slip) const;
+    // A scan was found farther from where the odometry puts it than this errs: what tells its pose may move
+    // by itself. Goes by the odometry and by walls known for long where these leave that direction open, and
+    // where more of them are found so; false: the scan is found as it was.
+    bool goesByOdometry(MapBuilder &builder, TimedScan &scan, const Guess &guess, LocatedScan &located,
+                        OpenDirection &open, Found &found);
+    // The walls of the map that the scan was matched with, and that are known for long.
+    static WallDirections knownWalls(const MapBuilder &builder);
     TwistCorrection::Result twistError(const MapBuilder &builder, const TimedScan &scan);
     void tellHowSure(MapBuilder &builder, const Guess &guess) const;
     // Searches at least as widely as it is set up.

@@ -54,6 +54,8 @@ private:
     static constexpr double told_m = 0.5;
     /// The share of the way by which the motion so far errs, the odometry at the least, and at first.
     static constexpr double unguided = 0.6, leastSlip = 0.02, firstSlip = 0.03;
+    /// Without odometry who is driven along an open direction seems to stand: so fast that may be.
+    static constexpr double unseen_mps = 0.2, longestPause_s = 1;
     static constexpr double beside_m = 3; // of a growing map: drawn on so much of the way
     static constexpr double piece_m = 1,
                             kept = 0.7; // of the way that is compared; of what was learned before
@@ -65,6 +67,7 @@ private:
     void learn(const Transformation2D &pose, std::uint64_t epoch, const Transformation2D &sensor);
 
     std::optional<Transformation2D> last_; // pose
+    double lastStamp_ = 0;                 // seconds
     std::optional<From> from_;
     double deviation_ = 0, slip_ = firstSlip;
     Vector2D<double> disputed_;

@@ -3,6 +3,7 @@
 #include "vectorlib/Body.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/geometry/Vector2D.h"
+#include "vectorlib/registration/Localizability.h"
 #include "vectorlib/registration/WallDirections.h"
 #include "vectorlib/segmentation/ScanOrder.h"
 #include "vectorlib/simd/Lanes.h"
@@ -100,11 +101,14 @@ public:
     double score() const { return points_ > 0 ? (explained_ - distances_ - contradicted_) / points_ : 0; }
     /// How well the walls fix the motion, in the frame of the last scan that was judged against.
     const WallDirections &walls() const { return walls_; }
+    /// The same where the heading is free, too.
+    const Localizability &localizability() const { return localizability_; }
 
 private:
     double points_ = 0, explained_ = 0, contradicted_ = 0;
     double distances_ = 0; // squared, in units of the gate
     WallDirections walls_;
+    Localizability localizability_;
 };
 
 } // namespace vectorlib

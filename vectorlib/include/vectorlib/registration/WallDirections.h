@@ -12,6 +12,12 @@ namespace vectorlib {
 /// In which directions walls fix the position of a sensor, by sums over their normals.
 class WallDirections {
 public:
+    WallDirections() = default;
+    /// Of sums that are known.
+    WallDirections(double xx, double xy, double yy)
+        : xx_(xx)
+        , xy_(xy)
+        , yy_(yy) {}
     /// A wall with this normal, or a point on it; the weight is its length, or 1.
     template <typename Scalar>
     void add(Vector2D<Scalar> normal, Scalar weight = 1) {
@@ -41,7 +47,9 @@ public:
         const double sum = xx_ + yy_, apart = std::hypot(xx_ - yy_, 2 * xy_);
         return sum > 0 ? 0.5 * (1 - apart / sum) : 0;
     }
-    bool isEmpty() const { return !(xx_ + yy_ > 0); }
+    /// Of all walls together.
+    double weight() const { return xx_ + yy_; }
+    bool isEmpty() const { return !(weight() > 0); }
 
 private:
     double xx_ = 0, xy_ = 0, yy_ = 0;
