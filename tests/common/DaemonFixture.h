@@ -77,7 +77,7 @@ public:
     QByteArray line() {
         QElapsedTimer limit;
         limit.start();
-        while (!socket.canReadLine() && limit.elapsed() < 5000 * slowness)
+        while (!socket.canReadLine() && limit.elapsed() < 5000 * patience)
             QTest::qWait(1);
         return socket.readLine().trimmed();
     }

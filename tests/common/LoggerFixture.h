@@ -75,7 +75,7 @@ struct Logger {
                                     answer = std::move(result);
                                     answered = true;
                                 }));
-        if (!QTest::qWaitFor([&] { return answered; }, 5000 * slowness))
+        if (!QTest::qWaitFor([&] { return answered; }, 5000 * patience))
             qFatal("no answer came");
         return answer;
     }

@@ -17,7 +17,7 @@ private Q_SLOTS:
         other.ask("daemon.info");
         auto limit = runningTimer();
         while (client.socket.state() != QAbstractSocket::UnconnectedState &&
-               limit.elapsed() < 20000 * slowness && daemon->server().counters()["clients"].toInt() != 1) {
+               limit.elapsed() < 20000 * patience && daemon->server().counters()["clients"].toInt() != 1) {
             client.request(1, "large", QJsonArray{100000});
             QTest::qWait(1);
         }

@@ -279,7 +279,7 @@ private Q_SLOTS:
             QSKIP(qPrintable("no address " + host + ": " + server.errorString()));
         QTcpSocket client;
         client.connectToHost(address, server.serverPort());
-        QVERIFY(client.waitForConnected() && server.waitForNewConnection(5000 * slowness));
+        QVERIFY(client.waitForConnected() && server.waitForNewConnection(5000 * patience));
         const SocketEnd from{address, client.localPort()}, to{address, server.serverPort()};
         const std::optional<unsigned> mine(::geteuid());
         QVERIFY(ownerOfSocket(from, to) == mine);

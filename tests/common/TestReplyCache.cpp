@@ -26,7 +26,7 @@ class TestReplyCache : public QObject {
         /// What has come, when there are so many.
         std::vector<QJsonValue> replies(std::size_t count) {
             auto limit = runningTimer();
-            while (got.size() < count && limit.elapsed() < 5000 * slowness) {
+            while (got.size() < count && limit.elapsed() < 5000 * patience) {
                 QTest::qWait(1);
                 for (const CodecItem &item : codec.feed(socket.readAll()))
                     got.push_back(item.message);

@@ -132,7 +132,7 @@ inline void RingDrive::waitForCorrector() {
         const QJsonObject state = call("matcher.state");
         return state["loops_waiting"].toInt() == 0 && state["correction"] == QJsonValue("none");
     };
-    QVERIFY(QTest::qWaitFor(isDone, 60000 * slowness)); // asked no more: the last scan may come now
+    QVERIFY(QTest::qWaitFor(isDone, 60000 * patience)); // asked no more: the last scan may come now
 }
 
 inline double RingDrive::farthestFromTheWay() const {

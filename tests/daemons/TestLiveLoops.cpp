@@ -170,15 +170,15 @@ private:
         };
         for (; !stateIs("due") && !stateIs("running") && scans < way.size(); ++scans)
             drive(scans, scans + 1);
-        QDeadlineTimer timeout(5000 * slowness);
+        QDeadlineTimer timeout(5000 * patience);
         while (!stateIs("running") && !timeout.hasExpired())
             ; // the map is made anew after a pause
         call("map.clear");
         const int cleared = call("matcher.state")["map_segments"].toInt();
         waitForCorrector();
         const auto isForgotten = [this] { return call("matcher.state")["key_scans"].toInt() == 0; };
-        const bool forgets = QTest::qWaitFor(isForgotten, 10000 * slowness) &&
-                             QTest::qWaitFor([this] { return graphPoses.isEmpty(); }, 10000 * slowness);
+        const bool forgets = QTest::qWaitFor(isForgotten, 10000 * patience) &&
+                             QTest::qWaitFor([this] { return graphPoses.isEmpty(); }, 10000 * patience);
         const QJsonObject after = call("matcher.state");
         const bool inTime =
             before["correction"] == QJsonValue("running") && after["corrections"] == before["corrections"];

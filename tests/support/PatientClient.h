@@ -3,14 +3,14 @@
 #include "common/client/Client.h"
 #include "tests/support/Patience.h"
 
-/// A client whose waits are as long as this build or emulator needs.
+/// A client whose waits are as long as this build, emulator or machine needs.
 class PatientClient : public hermes::Client {
 public:
     hermes::Result<QJsonValue> callAndWait(const QString &method, const QJsonValue &params = QJsonObject(),
                                            std::chrono::milliseconds timeout = defaultTimeout) {
-        return Client::callAndWait(method, params, slowness * timeout);
+        return Client::callAndWait(method, params, patience * timeout);
     }
-    hermes::Result<void> waitConnected() { return Client::waitConnected(slowness * defaultTimeout); }
+    hermes::Result<void> waitConnected() { return Client::waitConnected(patience * defaultTimeout); }
 };
 
 /// One that is connected to that address.

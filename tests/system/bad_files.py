@@ -190,6 +190,7 @@ class BadFiles(RobotCase):
         self.fill(disk)
 
         def audits():  # the last page of the file has room for some lines
+            self.fill(disk)  # recordings that end give back what they had reserved
             for method in ["odometry.reset"] * 40:  # stops would be summed up
                 robot.call("motorcontrol", method)
             return any("audit" in item for item in robot.items("motorcontrol"))
@@ -199,7 +200,7 @@ class BadFiles(RobotCase):
             self.tells(name, *words, disk, "[Ss]pace|full", since=since)
             if words[0] == "recording":
                 wait_for("its end", lambda: not robot.call(name, "record.status")["recording"])
-            self.fill(disk)  # recordings that ended have given back what they had reserved
+            self.fill(disk)
         for method, params in {"setup.apply": {"settings": {"seriallogger": {"limits": {"clients": 30}}, "simulator": {}}},
                                "setup.undo": {}}.items():
             with self.assertRaisesRegex(DaemonError, f"{disk}.*[Ss]pace"):

@@ -102,7 +102,7 @@ class DriveTest(unittest.TestCase):
 
     def test_arrives(self):
         status, out, err = self.end(self.run_program("--speed", "0.8", "1.5,0", "1.5,1.5"))
-        self.assertEqual((status, out.split()[-1]), (0, "arrived"), err)
+        self.assertEqual((status, out.split()[-1:]), (0, ["arrived"]), err)
         self.assertLess(math.dist(self.place(), (1.5, 1.5)), 0.08)
 
     def test_interrupt_stops_the_robot(self):

@@ -72,7 +72,7 @@ class Watcher(threading.Thread):
     def __init__(self, judge, name, port, topics):
         super().__init__(daemon=True)
         self.judge, self.name = judge, name
-        self.daemon_connection = Daemon(port=port, timeout=60)
+        self.daemon_connection = Daemon(port=port, timeout=None)  # a log may be silent for minutes
         self.ids = {self.daemon_connection.call("topics.subscribe", topic=topic, queue=100)["subscription"]: topic
                     for topic in topics}
 

@@ -112,7 +112,12 @@ def check(folder, name, settings, descriptors, work, count, told=""):
                     answer = connection.makefile().readline()
                 assert '"result"' in answer, f"{name}: newcomer {newcomer} could not stop: {answer}"
             slowest, most = max(slowest, time.monotonic() - began), max(most, memory(process))
-        wait_for(f"{name}: {told!r} in the log", lambda: told in text_of(process.log_name), 10)
+
+        def is_told():
+            nonlocal most
+            most = max(most, memory(process))
+            return told in text_of(process.log_name)
+        wait_for(f"{name}: {told!r} in the log", is_told)
         assert most < MOST_MEMORY, f"{name}: {most >> 20} MB"
         print(f"{name}: the slowest of {NEWCOMERS} newcomers took {1000 * slowest:.0f} ms, {most >> 20} MB at most", flush=True)
     finally:

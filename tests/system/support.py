@@ -26,6 +26,7 @@ os.environ["XDG_STATE_HOME"] = STATE.name
 # How many times slower and larger programs are than those for which limits are written: as tests/support/Patience.h.
 IS_SANITIZED = bool({"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys())
 SLOWNESS = 5 if IS_SANITIZED else int(os.environ.get("HERMES_SLOWNESS", 1))
+PATIENCE = max(SLOWNESS, int(os.environ.get("HERMES_PATIENCE", 1)))  # of waits, where other tests run beside this one
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
 from processes import Daemon, DaemonError, free_port  # noqa: E402, F401
 import processes  # noqa: E402
@@ -88,7 +89,7 @@ def small_disk(folder):
 
 def wait_for(what, condition, limit_s=60):
     """The first value of condition() that counts as true."""
-    deadline = time.monotonic() + limit_s * SLOWNESS
+    deadline = time.monotonic() + limit_s * PATIENCE
     while True:
         value = condition()
         if value:

@@ -16,11 +16,13 @@ private Q_SLOTS:
         ports_ = {{"fan", reservePort()}, {"scanmatcher", reservePort()}};
         const QString url = QString("tcp://127.0.0.1:%1?protocol=json").arg(ports_["scanmatcher"]);
         const QJsonArray processes{
-            QJsonObject{{"name", "fan"},
-                        {"program", qEnvironmentVariable("HERMES_SOURCE") + "/docs/examples/daemon.py"},
-                        {"arguments", QJsonArray{"--port", QString::number(ports_["fan"])}},
-                        {"port", ports_["fan"]},
-                        {"autostart", true}},
+            QJsonObject{
+                {"name", "fan"},
+                {"program", qEnvironmentVariable("HERMES_SOURCE") + "/docs/examples/daemon.py"},
+                // It warns of 60 °C after two seconds.
+                {"arguments", QJsonArray{"--port", QString::number(ports_["fan"]), "--set", "alarm_c=120"}},
+                {"port", ports_["fan"]},
+                {"autostart", true}},
             QJsonObject{{"name", "scanmatcher"},
                         {"arguments", QJsonArray{"--listen", url}},
                         {"port", ports_["scanmatcher"]},

@@ -137,7 +137,8 @@ private Q_SLOTS:
 
     void stopIsLatchedAndNeedsNoControl() {
         QFETCH(int, key);
-        QVERIFY(client_->callAndWait("control.acquire").ok()); // somebody else drives
+        const QJsonObject asAnother{{"client", "patrol"}, {"timeout_s", 30}}; // who drives
+        QVERIFY(client_->callAndWait("control.acquire", asAnother).ok());
         QVERIFY(client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}}).ok());
         if (key == 0)
             QTest::mousePress(find<QPushButton>("stop"), Qt::LeftButton);

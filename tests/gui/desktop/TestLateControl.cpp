@@ -110,7 +110,7 @@ private:
                 hold(!mustLetGo);
                 return !mustLetGo && done();
             },
-            slowness * 20000);
+            patience * 20000);
     }
     /// Asks for the control of red, by driving or by hand; the answer is held back.
     void askRed(bool takesOver) {
@@ -118,7 +118,7 @@ private:
         const auto isAsked = [&] { return red_->calls("control.acquire") == 1; };
         if (takesOver)
             window_->drive.takeOver();
-        QVERIFY(takesOver ? QTest::qWaitFor(isAsked, slowness * 5000) : holdUntil(isAsked));
+        QVERIFY(takesOver ? QTest::qWaitFor(isAsked, patience * 5000) : holdUntil(isAsked));
     }
     /// Sends what red has held back, and waits until it was read.
     void letRedAnswer() {

@@ -28,7 +28,7 @@ private Q_SLOTS:
         const QLineF wall = before.last();
         auto clock = runningTimer();
         while (s.model.isGliding() || seen == 0) {
-            QVERIFY(clock.elapsed() < 5000 * slowness);
+            QVERIFY(clock.elapsed() < 5000 * patience);
             QTest::qWait(5);
             const double robot = s.part(pointOf(*s.model.shownPose()));
             if (!s.model.isGliding() || robot <= 0 || robot >= 1)
