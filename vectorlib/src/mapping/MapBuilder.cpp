@@ -121,7 +121,8 @@ VECTORLIB_BODY void MapBuilder::locate(const Transformation2D &expected) {
         match_ = track(static_, *edges_, expected);
         report_.outcome = match_.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
         if (match_.accepted) {
-            if (byScan_)
+            isBent_ = byScan_ && matchPair.match().agreement.localizability().kept() < 1;
+            if (isBent_)
                 leaveOpen();
             pose_ = match_.pose;
         }
@@ -131,10 +132,8 @@ VECTORLIB_BODY void MapBuilder::locate(const Transformation2D &expected) {
 
 VECTORLIB_BODY void MapBuilder::leaveOpen() {
     const Localizability &walls = matchPair.match().agreement.localizability();
-    if (walls.kept() < 1) {
-        match_.pose = walls.leaveOpen(match_.pose, expected_);
-        match_.reliability = std::min(match_.reliability, walls.position().reliability());
-    }
+    match_.pose = walls.leaveOpen(match_.pose, expected_);
+    match_.reliability = std::min(match_.reliability, walls.position().reliability());
 }
 
 VECTORLIB_BODY void MapBuilder::collectVisible(const Transformation2D &expected) {

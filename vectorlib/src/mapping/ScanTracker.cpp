@@ -176,7 +176,7 @@ VECTORLIB_BODY void ScanTracker::slide(const TimedScan &scan) {
     WallDirections walls;
     for (const EdgeRaw2D &edge : builder.edges())
         walls.add(pose.rotate(edge.segment.normal()), edge.segment.length());
-    if (walls.isEmpty() || walls.reliability() >= openReliability) // open is a bend
+    if (walls.isEmpty() || builder.isBent())
         return;
     const Vector2D<double> along = walls.weakest();
     const std::optional<double> off =

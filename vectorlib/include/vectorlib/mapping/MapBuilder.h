@@ -103,6 +103,8 @@ public:
         return settings.grow && report_.outcome == ScanReport::Outcome::Lost &&
                lost_ == settings.lostBeforeRestart;
     }
+    /// Whether walls that bend left the way about their centre open, for the last scan that was matched.
+    bool isBent() const { return isBent_; }
     const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to candidates() and edges().
     const Match &match() const { return match_; }
@@ -168,6 +170,7 @@ private:
     std::vector<EdgeRaw2D> previousEdges_;
     Transformation2D previousPose_;
     bool byScan_ = false; // expected
+    bool isBent_ = false;
     int passedOver_ = 0;  // scans since then
     Match match_;
     ScanReport report_;

@@ -35,8 +35,9 @@ public:
     }
     /// How much of what the walls tell of that position's weakest direction counts, in [0, 1].
     double kept() const {
-        const double share = WallDirections(xx_, xy_, yy_).weakestShare();
-        if (share < leastShare)
+        const WallDirections walls(xx_, xy_, yy_);
+        const double share = walls.weakestShare();
+        if (share < leastShare || walls.weight() < leastPoints)
             return 1;
         const double left = position().weakestShare();
         const auto between = [](double value, double none, double all) {
@@ -62,6 +63,7 @@ public:
 private:
     // Share of the walls that face a direction: with less it is open whatever the heading.
     static constexpr double leastShare = 0.03;
+    static constexpr double leastPoints = 80; // fewer tell no bend from noise
     // The same where the heading is free: between bent walls, and in rooms.
     static constexpr double unknownShare = 0.02, knownShare = 0.06;
     // What is left then of the share: between bent walls, and between straight ones.
