@@ -171,7 +171,7 @@ private:
     Transformation2D previousPose_;
     bool byScan_ = false; // expected
     bool isBent_ = false;
-    int passedOver_ = 0;  // scans since then
+    int passedOver_ = 0; // scans since then
     Match match_;
     ScanReport report_;
     int lost_ = 0;
