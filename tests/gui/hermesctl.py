@@ -93,7 +93,7 @@ class Hermesctl(ThermometerCase):
             self.assertNotIn("waiting", ctl(*waiting).stderr)
             shown = ctl(*waiting, "--json")  # a wait is no progress
             self.assertEqual([list(json.loads(line)) for line in shown.stderr.splitlines()], [["code", "hint", "message"]])
-        many = ["watch", self.address, "temperature", "--count", "250"]  # 100 a second
+        many = ["watch", self.address, "temperature", "--rate", "100", "--count", "250"]
         with tempfile.TemporaryDirectory() as folder:
             out = ["--out", os.path.join(folder, "messages"), "--force"]
             self.assertRegex(at_terminal(*many, *out), r"\r\x1b\[Kmessage \d+ of 250 \(\d+ %\), \d s left")

@@ -342,9 +342,10 @@ Result<QStringList> Fleet::remove(Robot *robot) {
     std::unique_ptr<Robot> removed = std::move(*place);
     robots_.erase(place);
     distribute(std::move(removed));
-    for (auto &link : links)
+    for (auto &link : links) {
+        connect(link.get(), &QObject::destroyed, this, &Fleet::touch); // told once more when they are gone
         link.release()->deleteLater();
-    changes_.start(); // told once more when they are gone
+    }
     return back;
 }
 

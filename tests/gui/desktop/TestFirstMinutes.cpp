@@ -33,9 +33,10 @@ private Q_SLOTS:
         const MapModel &model = open_->window.map().model();
         const Pose2D begin = *model.pose();
         click(middleOf(*open_->window.centralWidget())); // into the window
-        act("keydown w sleep 1.5 keyup w");
+        act("keydown w");
         QTRY_VERIFY_WITH_TIMEOUT(std::hypot(model.pose()->x - begin.x, model.pose()->y - begin.y) > 0.2,
                                  10000);
+        act("keyup w");
         QTRY_VERIFY(!open_->drive.isDriving());
         QVERIFY2(actions_ <= 3, saying(actions_));
     }
