@@ -84,7 +84,7 @@ VECTORLIB_BODY bool ScanLocator::goesByOdometry(MapBuilder &builder, TimedScan &
     if (located.isDisputed)
         open.dispute(along * along.dot(off));
     const Found other = findByOdometry(builder, scan, guess);
-    const bool isMoreKnown = other.score > 0 && knownWalls(builder).weight() > muchBetter * known.weight();
+    const bool isMoreKnown = other.score > 0 && knownWalls(builder).weight() > muchMore * known.weight();
     const bool isTaken = located.isDisputed || isMoreKnown;
     found = isTaken ? other : find(builder, scan, guess);
     return isTaken;

@@ -77,6 +77,7 @@ private:
                             errsByWay = 0.15; // deviations; metres, share
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
     static constexpr double muchBetter = 1.02; // a score, where the odometry tells otherwise
+    static constexpr double muchMore = 1.1;    // walls that are known for long
 
     // Where the sensor is thought to be, how it moves, and how sure that is.
     struct Guess {
