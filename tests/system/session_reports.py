@@ -76,7 +76,7 @@ class Reports(RecordedRobot):
         summary = json.loads(done.stdout)
         self.assertGreater(summary["scans"], 60)
         # A machine that stalls reads the wheels late: there the odometry has gaps.
-        self.assertGreater(summary["by_odometry"], 0.9 * (summary["scans"] - summary["skipped"]))
+        self.assertGreater(summary["by_odometry"], 0.6 * (summary["scans"] - summary["skipped"]))
         self.assertLess(self.farthest(self.poses(live), self.poses(out)), 0.01)
         for form, least in (("csv", 15), ("carmen", 1), ("mcap", 1), ("pcap", 1)):
             told = self.call("session.export", name="drive", format=form)
