@@ -354,6 +354,7 @@ def main():
     # From here on a signal to end becomes an exception, so that everything is stopped in order.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     work = tempfile.mkdtemp(prefix="hermes-demo-")
+    os.environ["XDG_STATE_HOME"] = work  # of a robot that is new each time: an earlier emergency stop is none of it
     has_failed = False
     try:
         results = os.path.join(work, "results")

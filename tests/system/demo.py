@@ -61,6 +61,10 @@ class DemoTest(unittest.TestCase):
 
     @unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")
     def test_drives_and_maps(self):
+        stops = os.path.join(os.environ["XDG_STATE_HOME"], "hermes", "estop")
+        os.makedirs(stops)
+        with open(os.path.join(stops, "of another robot"), "w", encoding="utf-8") as file:
+            file.write("emergency stop by somebody\nport 7410\n")  # which the demo does not heed
         begin = time.monotonic()
         status, out, err = self.finish(self.start(), 120)
         seconds = time.monotonic() - begin
