@@ -25,6 +25,9 @@ VECTORLIB_BODY const ScanReport &MapBuilder::find(PointSpan<float> given, const 
     expected_ = settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected);
     locate(expected_);
     track.settings = usual;
+    isBent_ = byScan_ && match_.accepted && matchPair.match().agreement.localizability().kept() < 1;
+    if (isBent_)
+        leaveOpen();
     const auto t3 = Clock::now();
     report_.segmentMs += milliseconds(t0, t1);
     report_.vectorizeMs += milliseconds(t1, t2);
@@ -120,19 +123,16 @@ VECTORLIB_BODY void MapBuilder::locate(const Transformation2D &expected) {
         collectVisible(expected);
         match_ = track(static_, *edges_, expected);
         report_.outcome = match_.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
-        if (match_.accepted) {
-            isBent_ = byScan_ && matchPair.match().agreement.localizability().kept() < 1;
-            if (isBent_)
-                leaveOpen();
+        if (match_.accepted)
             pose_ = match_.pose;
-        }
     }
     report_.pose = pose_.pose();
 }
 
 VECTORLIB_BODY void MapBuilder::leaveOpen() {
     const Localizability &walls = matchPair.match().agreement.localizability();
-    match_.pose = walls.leaveOpen(match_.pose, expected_);
+    match_.pose = pose_ = walls.leaveOpen(pose_, expected_);
+    report_.pose = pose_.pose();
     match_.reliability = std::min(match_.reliability, walls.position().reliability());
 }
 

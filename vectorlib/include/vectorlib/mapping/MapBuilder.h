@@ -103,7 +103,7 @@ public:
         return settings.grow && report_.outcome == ScanReport::Outcome::Lost &&
                lost_ == settings.lostBeforeRestart;
     }
-    /// Whether walls that bend left the way about their centre open, for the last scan that was matched.
+    /// Whether walls that bend left the way about their centre open for the last scan.
     bool isBent() const { return isBent_; }
     const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to candidates() and edges().
