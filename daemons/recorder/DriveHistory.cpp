@@ -1,7 +1,7 @@
 #include "daemons/recorder/DriveHistory.h"
 
 #include "daemons/recorder/HaltCause.h"
-#include "daemons/recorder/RobotDaemons.h"
+#include "daemons/recorder/SessionMember.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/messages/Motors.h"
 #include "protocol/wire/Fields.h"

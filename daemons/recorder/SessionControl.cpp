@@ -45,7 +45,7 @@ SessionControl::SessionControl(RobotDaemons &daemons, const SessionMember &own)
 }
 
 SessionMembers SessionControl::allMembers() const {
-    SessionMembers all = daemons_.loggers();
+    SessionMembers all = loggersOf(daemons_);
     all.all.insert(all.all.begin(), own_);
     return all;
 }
@@ -81,7 +81,7 @@ void SessionControl::start(const QString &name, const QStringList &what, const D
                           QString("\"%1\" is replayed; session.live ends that").arg(player_.session().name)));
     for (const QString &one : what)
         if (RobotDaemons::Daemon *const daemon = daemons_.find(one);
-            one != own_.name && (!daemon || !daemon->isLogger()))
+            one != own_.name && (!daemon || !isLogger(*daemon)))
             return done(invalidParams({{"what", one, "the name of a logger that answers"}},
                                       QString("what: no logger \"%1\" answers").arg(one)));
     phase_ = Phase::Starting;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "daemons/recorder/RobotDaemons.h"
 #include "daemons/recorder/SessionCommands.h"
+#include "daemons/recorder/SessionMember.h"
 #include "daemons/recorder/SessionPlayer.h"
 #include "protocol/messages/Sessions.h"
 

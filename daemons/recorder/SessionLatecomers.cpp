@@ -8,9 +8,9 @@ namespace hermes::recorder {
 /// A logger that is there now, for the first time or again.
 void SessionControl::greet(RobotDaemons::Daemon *daemon) {
     Q_EMIT changed();
-    if (!daemon->isLogger())
+    if (!isLogger(*daemon))
         return;
-    callAll({{daemon->member(), {}}}, "record.status", Client::defaultTimeout, this,
+    callAll({{memberOf(*daemon), {}}}, "record.status", Client::defaultTimeout, this,
             [this](const SessionReplies &replies) { join(replies.front()); });
 }
 

@@ -23,6 +23,40 @@ struct Round {
 
 } // namespace
 
+bool isLogger(const RobotDaemons::Daemon &daemon) {
+    return daemon.commands.contains("record.start");
+}
+
+SessionMember memberOf(const RobotDaemons::Daemon &logger) {
+    const auto send = [client = QPointer<Client>(logger.client.get())](
+                          const QString &method, const QJsonObject &params, const Client::Callback &done,
+                          std::chrono::milliseconds timeout) {
+        if (client && method == "record.list")
+            client->callForMuch(method, params, done, timeout);
+        else if (client)
+            client->call(method, params, done, timeout);
+    };
+    const auto has = [&logger](const char *command) { return logger.commands.contains(command); };
+    return {logger.name,
+            send,
+            has("mark"),
+            has("source.open"),
+            has("source.seek"),
+            has("source.speed"),
+            has("source.open until_gone"),
+            has("record.stop session")};
+}
+
+SessionMembers loggersOf(const RobotDaemons &daemons) {
+    SessionMembers members;
+    for (const auto &[address, daemon] : daemons.all())
+        if (daemon->isKnown && isLogger(*daemon))
+            members.all.push_back(memberOf(*daemon));
+    for (const RobotDaemons::Daemon *daemon : daemons.undescribed())
+        members.silent.append(daemon->address + ": it does not say what it can do");
+    return members;
+}
+
 bool isUnconfirmed(const Result<QJsonValue> &reply) {
     return !reply && (reply.error().is(ErrorCode::TimedOut) || reply.error().is(ErrorCode::Disconnected));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/client/Client.h"
+#include "common/client/RobotDaemons.h"
 #include "protocol/messages/Recordings.h"
 
 #include <QJsonObject>
@@ -29,6 +29,15 @@ struct SessionMembers {
     QStringList silent; ///< a line for each daemon that may be one, but does not say what it is
     std::chrono::milliseconds timeout = Client::defaultTimeout; ///< of a reply
 };
+
+/// What the log says after the name of a daemon whose connection has ended: reports know by it.
+constexpr const char *goneText = " has ended, or does not answer any more";
+
+bool isLogger(const RobotDaemons::Daemon &daemon);
+/// For a logger.
+SessionMember memberOf(const RobotDaemons::Daemon &logger);
+/// The loggers of a robot that are known; and who has been connected for a while and does not say what it is.
+SessionMembers loggersOf(const RobotDaemons &daemons);
 
 struct SessionCall {
     SessionMember member;

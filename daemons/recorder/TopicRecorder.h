@@ -1,8 +1,8 @@
 #pragma once
 
+#include "common/client/RobotDaemons.h"
 #include "common/schema/Field.h"
 #include "daemons/recorder/McapRecorder.h"
-#include "daemons/recorder/RobotDaemons.h"
 #include "daemons/recorder/TopicRing.h"
 
 namespace hermes::recorder {

@@ -1,17 +1,16 @@
 #pragma once
 
-#include "daemons/recorder/SessionMember.h"
+#include "common/client/Client.h"
 #include "protocol/messages/Daemons.h"
 
+#include <QJsonObject>
 #include <QSet>
 #include <QTimer>
 #include <map>
 #include <memory>
+#include <vector>
 
-namespace hermes::recorder {
-
-/// What the log says after the name of a daemon whose connection has ended: reports know by it.
-constexpr const char *goneText = " has ended, or does not answer any more";
+namespace hermes {
 
 /// The daemons of a robot, and the connections to them. They are those at given addresses and those that its
 /// supervisor names; one that says that it belongs to another robot is left alone.
@@ -29,10 +28,6 @@ public:
         QSet<QString> commands; ///< "record.stop", and "record.stop session" for each parameter
         std::vector<TopicDescription> topics;
         quint64 unreadable = 0; ///< messages that came and could not be read
-
-        /// For a logger.
-        SessionMember member() const;
-        bool isLogger() const { return commands.contains("record.start"); }
     };
 
     /// robot: the id of this robot; empty: none, and daemons of every robot belong to it.
@@ -48,9 +43,8 @@ public:
 
     /// By address, also those that are not known.
     const std::map<QString, std::unique_ptr<Daemon>> &all() const { return daemons_; }
-    /// The loggers among them that are known; and who has been connected for a while and does not say what it
-    /// is.
-    SessionMembers loggers() const;
+    /// Who has been connected for a while and does not say what it is.
+    std::vector<const Daemon *> undescribed() const;
     /// Null: none that is known has this name.
     Daemon *find(const QString &name) const;
     /// Who was known and does not answer.
@@ -60,8 +54,8 @@ public:
 
 Q_SIGNALS:
     /// It is known now; also when it was known before and its connection is a new one.
-    void came(hermes::recorder::RobotDaemons::Daemon *daemon);
-    void went(hermes::recorder::RobotDaemons::Daemon *daemon);
+    void came(hermes::RobotDaemons::Daemon *daemon);
+    void went(hermes::RobotDaemons::Daemon *daemon);
     /// What a daemon tells does not arrive; why, for people.
     void missed(const QString &line);
 
@@ -80,4 +74,4 @@ private:
     QSet<QString> others_; ///< addresses of who is connected, and no daemon of this robot
 };
 
-} // namespace hermes::recorder
+} // namespace hermes

@@ -1,4 +1,4 @@
-#include "daemons/recorder/RobotDaemons.h"
+#include "common/client/RobotDaemons.h"
 
 #include "common/Log.h"
 #include "common/Time.h"
@@ -11,7 +11,7 @@
 #include <QSysInfo>
 #include <algorithm>
 
-namespace hermes::recorder {
+namespace hermes {
 namespace {
 
 constexpr double timeout_s = 5;         // with who is connected and has not told who it is
@@ -34,26 +34,6 @@ bool isThisProgram(const QJsonObject &info) {
 }
 
 } // namespace
-
-SessionMember RobotDaemons::Daemon::member() const {
-    const auto send = [client = QPointer<Client>(client.get())](
-                          const QString &method, const QJsonObject &params, const Client::Callback &done,
-                          std::chrono::milliseconds timeout) {
-        if (client && method == "record.list")
-            client->callForMuch(method, params, done, timeout);
-        else if (client)
-            client->call(method, params, done, timeout);
-    };
-    const auto has = [this](const char *command) { return commands.contains(command); };
-    return {name,
-            send,
-            has("mark"),
-            has("source.open"),
-            has("source.seek"),
-            has("source.speed"),
-            has("source.open until_gone"),
-            has("record.stop session")};
-}
 
 void RobotDaemons::follow(const QStringList &addresses) {
     for (auto daemon = daemons_.begin(); daemon != daemons_.end();) {
@@ -186,16 +166,13 @@ void RobotDaemons::lose(Daemon &daemon) {
         Q_EMIT went(&daemon);
 }
 
-SessionMembers RobotDaemons::loggers() const {
-    SessionMembers members;
-    for (const auto &[address, daemon] : daemons_) {
-        if (daemon->isKnown && daemon->isLogger())
-            members.all.push_back(daemon->member());
-        else if (!daemon->isKnown && daemon->client->isConnected() && !others_.contains(address) &&
-                 monotonicNow() - daemon->connected > timeout_s)
-            members.silent.append(address + ": it does not say what it can do");
-    }
-    return members;
+std::vector<const RobotDaemons::Daemon *> RobotDaemons::undescribed() const {
+    std::vector<const Daemon *> found;
+    for (const auto &[address, daemon] : daemons_)
+        if (!daemon->isKnown && daemon->client->isConnected() && !others_.contains(address) &&
+            monotonicNow() - daemon->connected > timeout_s)
+            found.push_back(daemon.get());
+    return found;
 }
 
 RobotDaemons::Daemon *RobotDaemons::find(const QString &name) const {
@@ -213,4 +190,4 @@ QStringList RobotDaemons::silent() const {
     return names;
 }
 
-} // namespace hermes::recorder
+} // namespace hermes
