@@ -1,0 +1,87 @@
+#pragma once
+
+#include "common/client/RobotDaemons.h"
+#include "daemons/ros2/Mapping.h"
+#include "daemons/ros2/NodeGraph.h"
+
+#include <QElapsedTimer>
+#include <deque>
+
+namespace hermes::ros2 {
+
+/// Tells ROS what the daemons of the robot tell. A topic of Hermes is asked for only while somebody reads
+/// what is made of it; what is latched is always kept ready.
+class Bridge : public QObject {
+public:
+    struct Options {
+        ParticipantOptions network;
+        GraphForm graph = GraphForm::Auto;
+        QString space;       ///< "/robot1", or empty
+        QString framePrefix; ///< "robot1/", or empty
+    };
+
+    static Result<std::unique_ptr<Bridge>> open(const Options &options, RobotDaemons &daemons);
+    ~Bridge() override;
+
+    Participant &participant() { return *participant_; }
+    NodeGraph &graph() { return graph_; }
+    const RobotModel &robot() const { return robot_; }
+    /// "scan" becomes "rt/robot1/scan".
+    QString ddsTopic(const QString &name) const;
+    /// Readers of ours that are told in the graph.
+    void addReader(const Guid &reader);
+
+    /// How many topics there are, how many have readers, what was written and could not be.
+    struct Counts {
+        int topics = 0, read = 0;
+        quint64 written = 0, unreadable = 0, replayed = 0, dropped = 0;
+        QString lastProblem;
+    };
+    Counts counts() const;
+
+private:
+    /// A topic of ROS.
+    struct Outlet {
+        const Mapping *mapping;
+        QString name;   ///< "scan"
+        QString daemon; ///< whose; empty: all that have it
+        std::unique_ptr<Writer> writer;
+        std::unique_ptr<Translator> translator;
+        std::string last; ///< latched ones: what was written last
+        /// What it is subscribed to.
+        struct Source {
+            RobotDaemons::Daemon *daemon;
+            QString topic;
+            int handle = 0; ///< 0: not subscribed
+            quint64 dropped = 0;
+        };
+        std::deque<Source> sources;
+    };
+
+    Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Participant> participant);
+    void greet(RobotDaemons::Daemon *daemon);
+    void lose(RobotDaemons::Daemon *daemon);
+    void follow(const Mapping &mapping, RobotDaemons::Daemon *daemon);
+    Outlet *outletFor(const Mapping &mapping, const QString &daemon);
+    QString nameFor(const Mapping &mapping, const QString &daemon) const;
+    void readersChanged(Outlet &outlet);
+    void subscribe(Outlet &outlet, Outlet::Source &source);
+    void take(Outlet &outlet, Outlet::Source &source, const TopicUpdate &update);
+    void write(Outlet &outlet);
+    void refresh();
+    void tellGraph();
+
+    const Options options_;
+    RobotDaemons &daemons_;
+    std::unique_ptr<Participant> participant_;
+    NodeGraph graph_;
+    RobotModel robot_;
+    std::deque<Outlet> outlets_; // they stay where they are
+    std::vector<Guid> readers_;
+    std::map<RobotDaemons::Daemon *, int> settings_; ///< handles of the subscriptions
+    std::string cdr_;
+    Counts counts_;
+    QTimer second_;
+};
+
+} // namespace hermes::ros2
