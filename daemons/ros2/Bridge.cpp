@@ -65,10 +65,9 @@ Bridge::Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Pa
 Bridge::~Bridge() {
     for (const auto &[daemon, handle] : settings_)
         daemon->client->unsubscribe(handle);
-    for (const Outlet &outlet : outlets_)
-        for (const Outlet::Source &source : outlet.sources)
-            if (source.handle != 0)
-                source.daemon->client->unsubscribe(source.handle);
+    for (const Feed &feed : feeds_)
+        if (feed.handle != 0)
+            feed.daemon->client->unsubscribe(feed.handle);
 }
 
 QString Bridge::ddsTopic(const QString &name) const {
@@ -89,32 +88,30 @@ void Bridge::greet(RobotDaemons::Daemon *daemon) {
                 robot_.takeSettings(daemon->name, update.json().toObject());
             });
     for (const Mapping &mapping : mappings())
-        follow(mapping, daemon);
+        for (const QString &topic : mapping.topics)
+            if (hasTopic(*daemon, topic))
+                if (Outlet *const outlet = outletFor(mapping, mapping.isOfEach ? daemon->name : QString())) {
+                    Feed &feed = feedOf(daemon, topic);
+                    if (std::find(feed.outlets.begin(), feed.outlets.end(), outlet) == feed.outlets.end())
+                        feed.outlets.push_back(outlet);
+                }
+    for (Feed &feed : feeds_)
+        subscribeAsWanted(feed);
 }
 
 /// Its subscriptions stand: the client makes them again when it comes back.
 void Bridge::lose(RobotDaemons::Daemon *daemon) {
-    for (Outlet &outlet : outlets_)
-        for (const Outlet::Source &source : outlet.sources)
-            if (source.daemon == daemon)
-                outlet.translator->lose(daemon->name);
+    for (const Feed &feed : feeds_)
+        if (feed.daemon == daemon)
+            for (Outlet *const outlet : feed.outlets)
+                outlet->translator->lose(daemon->name);
 }
 
-void Bridge::follow(const Mapping &mapping, RobotDaemons::Daemon *daemon) {
-    for (const QString &topic : mapping.topics) {
-        if (!hasTopic(*daemon, topic))
-            continue;
-        Outlet *const outlet = outletFor(mapping, mapping.isOfEach ? daemon->name : QString());
-        if (!outlet)
-            return;
-        const auto isThis = [&](const Outlet::Source &one) {
-            return one.daemon == daemon && one.topic == topic;
-        };
-        if (std::any_of(outlet->sources.begin(), outlet->sources.end(), isThis))
-            continue;
-        outlet->sources.push_back({daemon, topic, 0, 0});
-        readersChanged(*outlet);
-    }
+Bridge::Feed &Bridge::feedOf(RobotDaemons::Daemon *daemon, const QString &topic) {
+    for (Feed &feed : feeds_)
+        if (feed.daemon == daemon && feed.topic == topic)
+            return feed;
+    return feeds_.emplace_back(Feed{daemon, topic, {}, 0, 0});
 }
 
 /// The first daemon that has it is known by the plain name, as long as this program runs.
@@ -133,7 +130,7 @@ Bridge::Outlet *Bridge::outletFor(const Mapping &mapping, const QString &daemon)
     if (outlets_.size() >= maxOutlets)
         return nullptr;
     const QString name = nameFor(mapping, daemon);
-    outlets_.push_back({&mapping, name, daemon, nullptr, mapping.make(), {}, {}});
+    outlets_.push_back({&mapping, name, daemon, nullptr, mapping.make(), {}});
     Outlet &outlet = outlets_.back();
     auto writer = participant_->write(ddsTopic(name), mapping.type, mapping.quality, hashOf(mapping),
                                       [this, &outlet] { readersChanged(outlet); });
@@ -151,46 +148,50 @@ Bridge::Outlet *Bridge::outletFor(const Mapping &mapping, const QString &daemon)
 void Bridge::readersChanged(Outlet &outlet) {
     if (!outlet.writer)
         return;
-    const bool isWanted = outlet.mapping->quality.isLatched || outlet.writer->readers() > 0;
-    for (Outlet::Source &source : outlet.sources) {
-        if (isWanted && source.handle == 0) {
-            subscribe(outlet, source);
-        } else if (!isWanted && source.handle != 0) {
-            source.daemon->client->unsubscribe(source.handle);
-            source.handle = 0;
-        }
-    }
-    if (outlet.mapping->quality.isLatched && !outlet.last.empty() && outlet.writer->readers() > 0)
+    for (Feed &feed : feeds_)
+        subscribeAsWanted(feed);
+    if (!outlet.last.empty() && outlet.writer->readers() > 0)
         outlet.writer->write(outlet.last);
 }
 
-void Bridge::subscribe(Outlet &outlet, Outlet::Source &source) {
-    source.dropped = 0;
-    source.handle = source.daemon->client->subscribe(
-        source.topic, {},
-        [this, &outlet, &source](const TopicUpdate &update) { take(outlet, source, update); });
+void Bridge::subscribeAsWanted(Feed &feed) {
+    const bool isWanted = std::any_of(feed.outlets.begin(), feed.outlets.end(), [](const Outlet *outlet) {
+        return outlet->mapping->quality.isLatched || outlet->writer->readers() > 0;
+    });
+    if (isWanted && feed.handle == 0) {
+        feed.dropped = 0;
+        feed.handle = feed.daemon->client->subscribe(
+            feed.topic, {}, [this, &feed](const TopicUpdate &update) { take(feed, update); });
+    } else if (!isWanted && feed.handle != 0) {
+        feed.daemon->client->unsubscribe(std::exchange(feed.handle, 0));
+    }
 }
 
-void Bridge::take(Outlet &outlet, Outlet::Source &source, const TopicUpdate &update) {
+void Bridge::take(Feed &feed, const TopicUpdate &update) {
     if (update.replayed) { // it says nothing of the robot of now
         ++counts_.replayed;
         return;
     }
-    counts_.dropped += update.dropped - std::min(update.dropped, source.dropped);
-    source.dropped = update.dropped;
-    QString problem;
-    if (outlet.translator->take(update, {source.daemon->name, update.stamp, robot_}, cdr_, problem))
-        write(outlet);
-    if (problem.isEmpty())
-        return;
-    ++counts_.unreadable;
-    counts_.lastProblem = source.daemon->name + '/' + update.topic + ": " + problem;
+    counts_.dropped += update.dropped - std::min(update.dropped, feed.dropped);
+    feed.dropped = update.dropped;
+    const Told told{feed.daemon->name, update.stamp, robot_};
+    for (Outlet *const outlet : feed.outlets) {
+        if (!outlet->mapping->quality.isLatched && outlet->writer->readers() == 0)
+            continue;
+        QString problem;
+        if (outlet->translator->take(update, told, cdr_, problem))
+            write(*outlet);
+        if (!problem.isEmpty()) {
+            ++counts_.unreadable;
+            counts_.lastProblem = feed.daemon->name + '/' + update.topic + ": " + problem;
+        }
+    }
 }
 
 void Bridge::write(Outlet &outlet) {
     outlet.writer->write(cdr_);
     ++counts_.written;
-    if (outlet.mapping->quality.isLatched)
+    if (outlet.mapping->quality.isLatched && outlet.mapping->quality.depth == 1)
         outlet.last = cdr_;
 }
 

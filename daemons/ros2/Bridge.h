@@ -47,26 +47,26 @@ private:
         QString daemon; ///< whose; empty: all that have it
         std::unique_ptr<Writer> writer;
         std::unique_ptr<Translator> translator;
-        std::string last; ///< latched ones: what was written last
-        /// What it is subscribed to.
-        struct Source {
-            RobotDaemons::Daemon *daemon;
-            QString topic;
-            int handle = 0; ///< 0: not subscribed
-            quint64 dropped = 0;
-        };
-        std::deque<Source> sources;
+        std::string last; ///< a latched state: what was written last
+    };
+    /// A topic of a daemon, and what is made of it.
+    struct Feed {
+        RobotDaemons::Daemon *daemon;
+        QString topic;
+        std::vector<Outlet *> outlets;
+        int handle = 0; ///< of the subscription; 0: there is none
+        quint64 dropped = 0;
     };
 
     Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Participant> participant);
     void greet(RobotDaemons::Daemon *daemon);
     void lose(RobotDaemons::Daemon *daemon);
-    void follow(const Mapping &mapping, RobotDaemons::Daemon *daemon);
+    Feed &feedOf(RobotDaemons::Daemon *daemon, const QString &topic);
     Outlet *outletFor(const Mapping &mapping, const QString &daemon);
     QString nameFor(const Mapping &mapping, const QString &daemon) const;
     void readersChanged(Outlet &outlet);
-    void subscribe(Outlet &outlet, Outlet::Source &source);
-    void take(Outlet &outlet, Outlet::Source &source, const TopicUpdate &update);
+    void subscribeAsWanted(Feed &feed);
+    void take(Feed &feed, const TopicUpdate &update);
     void write(Outlet &outlet);
     void refresh();
     void tellGraph();
@@ -76,7 +76,8 @@ private:
     std::unique_ptr<Participant> participant_;
     NodeGraph graph_;
     RobotModel robot_;
-    std::deque<Outlet> outlets_; // they stay where they are
+    std::deque<Outlet> outlets_; // they stay where they are, as do the feeds
+    std::deque<Feed> feeds_;
     std::vector<Guid> readers_;
     std::map<RobotDaemons::Daemon *, int> settings_; ///< handles of the subscriptions
     std::string cdr_;

@@ -67,11 +67,15 @@ bool GridOfMap::refresh(const RobotModel &robot, std::string &cdr) {
     const double begin = monotonicNow();
     if (begin < next_ || grid_.isEmpty() || !isNew())
         return false; // a map without cells is none for navigation
-    grid_.draw(out_);
+    ros::OccupancyGrid drawn;
+    grid_.draw(drawn);
+    next_ = monotonicNow() + (monotonicNow() - begin) / drawnShare;
+    if (drawn.data == out_.data && drawn.info.width == out_.info.width)
+        return false; // edges move by less than a cell all the time
+    out_ = std::move(drawn);
     out_.header = headerOf(stamp_, robot.mapFrame());
     out_.info.mapLoadTime = out_.header.stamp;
     ros::toCdr(out_, cdr);
-    next_ = monotonicNow() + (monotonicNow() - begin) / drawnShare;
     return true;
 }
 

@@ -64,13 +64,15 @@ Guid guidOf(int entity) {
 void logCyclone(void *, const dds_log_data_t *line) {
     static std::atomic<double> last{-logPause_s};
     static std::atomic<int> others{0};
+    const QString text = QString::fromUtf8(line->message, int(line->size)).trimmed();
+    if (text.contains("is not multicast-capable")) // the loopback is none, nor need it be
+        return;
     const double now = monotonicNow();
     double before = last;
     if (now - before < logPause_s || !last.compare_exchange_strong(before, now)) {
         ++others;
         return;
     }
-    const QString text = QString::fromUtf8(line->message, int(line->size)).trimmed();
     const int missing = others.exchange(0);
     logWarning("dds", missing == 0 ? text : QString("%1 (and %2 lines before)").arg(text).arg(missing));
 }
