@@ -67,9 +67,9 @@ bool JointsOf::operator()(const WheelsMessage &in, const Told &told, JointState 
     out.name.clear();
     out.position.clear();
     out.velocity.clear();
-    for (std::size_t i = 0; i < wheelCount; ++i)
+    for (std::size_t i = 0; i < WheelsMessage::count; ++i)
         if (const std::optional<WheelMessage> &wheel = in.*WheelsMessage::wheels()[i]) {
-            out.name.push_back(std::string(wheelNames[i]) + "_wheel_joint");
+            out.name.push_back(std::string(WheelsMessage::names[i]) + "_wheel_joint");
             out.position.push_back(wheel->angle);
             out.velocity.push_back(wheel->speed);
         }
@@ -120,9 +120,9 @@ void Transforms::takePose(const PoseMessage &pose, const Told &told) {
 /// The wheel's own turn is about its axis, y.
 void Transforms::takeWheels(const WheelsMessage &wheels, const Told &told) {
     for (const WheelPlace &place : told.robot.wheels())
-        for (std::size_t i = 0; i < wheelCount; ++i) {
+        for (std::size_t i = 0; i < WheelsMessage::count; ++i) {
             const std::optional<WheelMessage> &wheel = wheels.*WheelsMessage::wheels()[i];
-            if (!wheel || place.name != wheelNames[i])
+            if (!wheel || place.name != WheelsMessage::names[i])
                 continue;
             Transform transform = toTransform(place.pose);
             transform.translation.z = place.radius;

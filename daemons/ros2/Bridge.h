@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/client/RobotDaemons.h"
+#include "common/daemon/RobotDaemons.h"
 #include "common/ros/Mapping.h"
 #include "daemons/ros2/NodeGraph.h"
 
