@@ -9,6 +9,7 @@ namespace hermes::ros {
 namespace {
 
 constexpr double drawnShare = 0.1; // of one core
+constexpr double maxPause_s = 30;
 constexpr std::size_t maxVisited = 20000;
 
 } // namespace
@@ -63,13 +64,19 @@ void MapFollower::takePose(const PoseMessage &pose) {
     hasChanged_ = true;
 }
 
-bool GridOfMap::refresh(const RobotModel &robot, std::string &cdr) {
+bool GridOfMap::refresh(const RobotModel &robot, double now, std::string &cdr) {
+    const bool mustWait = now < next_ && now > next_ - maxPause_s; // a clock may be set
+    const bool isNone = grid_.isEmpty() && out_.data.empty(); // without cells it is no map for navigation
+    if (mustWait || isNone || !isNew())
+        return false;
     const double begin = monotonicNow();
-    if (begin < next_ || grid_.isEmpty() || !isNew())
-        return false; // a map without cells is none for navigation
     OccupancyGrid drawn;
     grid_.draw(drawn);
-    next_ = monotonicNow() + (monotonicNow() - begin) / drawnShare;
+    if (drawn.data.empty()) { // the map was forgotten: so are the cells
+        drawn.info = out_.info;
+        drawn.data.assign(out_.data.size(), -1);
+    }
+    next_ = now + std::min(maxPause_s, (monotonicNow() - begin) / drawnShare);
     if (drawn.data == out_.data && drawn.info.width == out_.info.width)
         return false; // edges move by less than a cell all the time
     out_ = std::move(drawn);
@@ -79,7 +86,7 @@ bool GridOfMap::refresh(const RobotModel &robot, std::string &cdr) {
     return true;
 }
 
-bool WallsOfMap::refresh(const RobotModel &robot, std::string &cdr) {
+bool WallsOfMap::refresh(const RobotModel &robot, double, std::string &cdr) {
     if (!isNew())
         return false;
     MarkerArray array;

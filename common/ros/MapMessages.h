@@ -36,17 +36,17 @@ private:
 /// The map as cells. Drawing it takes a tenth of the time at most.
 class GridOfMap : public MapFollower {
 public:
-    bool refresh(const RobotModel &robot, std::string &cdr) override;
+    bool refresh(const RobotModel &robot, double now, std::string &cdr) override;
 
 private:
     OccupancyGrid out_;
-    double next_ = 0; ///< of monotonicNow()
+    double next_ = 0; ///< not before, in seconds since the epoch
 };
 
 /// The map as lines.
 class WallsOfMap : public MapFollower {
 public:
-    bool refresh(const RobotModel &robot, std::string &cdr) override;
+    bool refresh(const RobotModel &robot, double now, std::string &cdr) override;
 };
 
 } // namespace hermes::ros

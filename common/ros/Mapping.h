@@ -30,8 +30,13 @@ public:
     /// Takes a message; true: cdr has the bytes that are to be written now. problem says what could not be
     /// read.
     virtual bool take(const TopicUpdate &update, const Told &told, std::string &cdr, QString &problem) = 0;
-    /// Called about once a second, and when somebody begins to read; the same.
-    virtual bool refresh(const RobotModel &, std::string &) { return false; }
+    /// Called about once a second; the same. now: seconds since the epoch.
+    virtual bool refresh(const RobotModel &robot, double now, std::string &cdr) {
+        Q_UNUSED(robot)
+        Q_UNUSED(now)
+        Q_UNUSED(cdr)
+        return false;
+    }
     /// Of a daemon whose connection has ended.
     virtual void lose(const QString &daemon) { Q_UNUSED(daemon) }
 };
@@ -39,14 +44,18 @@ public:
 /// A row of the table: topics of Hermes that become one of ROS.
 struct Mapping {
     QStringList topics;
-    QString rosTopic; ///< "scan"
-    std::string type; ///< "sensor_msgs/msg/LaserScan"
-    std::string hashedText;
+    QString rosTopic;       ///< "scan"
+    std::string type;       ///< "sensor_msgs/msg/LaserScan"
+    std::string definition; ///< of the type, as bags have it
+    QByteArray hash;        ///< of the type: "RIHS01_..."
     Quality quality;
     /// Each daemon has one of its own; the first is known by the plain name, others below their own. Else
     /// what all tell goes to one.
     bool isOfEach = true;
     std::function<std::unique_ptr<Translator>()> make;
+
+    /// The topic of a daemon: "scan", or "scanner/scan" of one that is not the first to have it.
+    QString nameOf(const QString &daemon, bool isFirst) const;
 };
 
 /// All of them.

@@ -4,6 +4,9 @@
 #include "common/ros/States.h"
 #include "protocol/ros/Definition.h"
 
+#include <QCryptographicHash>
+#include <QRegularExpression>
+
 namespace hermes::ros {
 namespace {
 
@@ -17,8 +20,15 @@ const Quality logged{true, true, 1000, 10};
 template <typename Out>
 Mapping row(const QStringList &topics, const char *rosTopic, const Quality &quality, bool isOfEach,
             std::function<std::unique_ptr<Translator>()> make) {
-    return {topics,   QLatin1String(rosTopic), typeOf<Out>(), hashedTextOf<Out>(), quality,
-            isOfEach, std::move(make)};
+    const QByteArray hashed = QByteArray::fromStdString(hashedTextOf<Out>());
+    return {topics,
+            QLatin1String(rosTopic),
+            typeOf<Out>(),
+            definitionOf<Out>(),
+            "RIHS01_" + QCryptographicHash::hash(hashed, QCryptographicHash::Sha256).toHex(),
+            quality,
+            isOfEach,
+            std::move(make)};
 }
 
 /// Messages of one topic, one by one; each daemon has a topic of its own.
@@ -35,6 +45,15 @@ Mapping whole(const QStringList &topics, const char *rosTopic, const Quality &qu
 }
 
 } // namespace
+
+/// ROS takes letters, digits and underscores, no digit first.
+QString Mapping::nameOf(const QString &daemon, bool isFirst) const {
+    if (isFirst)
+        return rosTopic;
+    QString space = daemon;
+    space.replace(QRegularExpression("[^A-Za-z0-9_]"), "_");
+    return (space.isEmpty() || space[0].isDigit() ? "_" + space : space) + '/' + rosTopic;
+}
 
 const std::vector<Mapping> &mappings() {
     static const std::vector<Mapping> all = {

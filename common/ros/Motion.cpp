@@ -1,7 +1,5 @@
 #include "common/ros/Motion.h"
 
-#include "common/Time.h"
-
 namespace hermes::ros {
 namespace {
 
@@ -138,7 +136,7 @@ void Transforms::add(const Header &parent, const std::string &child, const Trans
     out_.transforms.push_back({parent, child, transform});
 }
 
-bool FixedTransforms::refresh(const RobotModel &robot, std::string &cdr) {
+bool FixedTransforms::refresh(const RobotModel &robot, double now, std::string &cdr) {
     if (std::exchange(revision_, robot.revision()) == robot.revision())
         return false;
     TfMessage message;
@@ -146,7 +144,7 @@ bool FixedTransforms::refresh(const RobotModel &robot, std::string &cdr) {
         Transform transform = toTransform(mount.pose);
         transform.rotation = toQuaternion(mount);
         message.transforms.push_back(
-            {headerOf(stampNow(), robot.baseFrame()), robot.sensorFrame(daemon), transform});
+            {headerOf(now, robot.baseFrame()), robot.sensorFrame(daemon), transform});
     }
     toCdr(message, cdr);
     return !message.transforms.empty();

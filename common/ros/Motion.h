@@ -49,7 +49,7 @@ private:
 class FixedTransforms : public Translator {
 public:
     bool take(const TopicUpdate &, const Told &, std::string &, QString &) override { return false; }
-    bool refresh(const RobotModel &robot, std::string &cdr) override;
+    bool refresh(const RobotModel &robot, double now, std::string &cdr) override;
 
 private:
     int revision_ = -1;

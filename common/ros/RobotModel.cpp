@@ -18,7 +18,8 @@ Mount mountOf(const QJsonObject &sensor) {
 
 } // namespace
 
-void RobotModel::addScanner(const QString &daemon, int port) {
+void RobotModel::addScanner(const QString &daemon, const QString &address) {
+    const int port = portOf(address);
     const auto [scanner, isNew] = scanners_.emplace(daemon, port);
     if (isNew || std::exchange(scanner->second, port) != port)
         ++revision_;

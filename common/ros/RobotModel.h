@@ -39,8 +39,8 @@ public:
     /// Of a scanner: the daemon's name.
     std::string sensorFrame(const QString &daemon) const { return frame(daemon.toStdString()); }
 
-    /// A daemon that publishes scans, at this port.
-    void addScanner(const QString &daemon, int port);
+    /// A daemon that publishes scans, at this address.
+    void addScanner(const QString &daemon, const QString &address);
     /// The settings of the scan matcher and of the motor control; those of others say nothing here.
     void takeSettings(const QString &daemon, const QJsonObject &settings);
 

@@ -1,6 +1,7 @@
 #include "common/ros/Scans.h"
 
 #include "common/ros/Mapping.h"
+#include "protocol/velodyne/SensorModel.h"
 
 #include <cmath>
 #include <cstring>
@@ -22,6 +23,17 @@ std::size_t binsFor(std::size_t rays) {
         if (double(count) <= leastShare * double(rays))
             return count;
     return 90;
+}
+
+/// Of each laser of a sensor: how many look below it. Empty: the sensor is not known, its lasers count as
+/// they are.
+std::vector<std::uint16_t> ringsOf(const QString &model) {
+    std::vector<std::uint16_t> rings;
+    for (const velodyne::SensorModel *const one : velodyne::sensorModels())
+        if (model == QLatin1String(one->name))
+            for (int laser = 0; laser < one->lasers; ++laser)
+                rings.push_back(std::uint16_t(one->ring(laser)));
+    return rings;
 }
 
 } // namespace
@@ -75,13 +87,15 @@ bool CloudPoints::operator()(const CloudMessage &in, const Told &told, PointClou
     out.pointStep = step;
     out.rowStep = std::uint32_t(points) * step;
     out.data.resize(points * step);
+    const std::vector<std::uint16_t> rings = ringsOf(in.model);
     for (std::size_t i = 0; i < points; ++i) {
+        const std::uint16_t ring = in.laser[i] < rings.size() ? rings[in.laser[i]] : in.laser[i];
         const float values[] = {in.x[i], in.y[i], in.z[i], float(in.intensity[i])};
         // The points are in the order of measuring, and were thinned evenly.
         const float time = float(in.header.duration_s * double(i) / double(points));
         std::uint8_t *const to = out.data.data() + i * step;
         std::memcpy(to, values, sizeof values);
-        std::memcpy(to + 16, &in.laser[i], 2);
+        std::memcpy(to + 16, &ring, 2);
         std::memcpy(to + 18, &time, 4);
     }
     return true;

@@ -19,7 +19,8 @@ private:
     std::vector<bool> isSeen_; ///< of each ray: something came back from there once
 };
 
-/// Points with x, y, z, intensity, ring and time, as the Velodyne driver of ROS lays them out.
+/// Points with x, y, z, intensity, ring (0 is the lowest) and time, as the Velodyne driver of ROS lays them
+/// out.
 struct CloudPoints {
     bool operator()(const CloudMessage &in, const Told &told, PointCloud &out);
 };

@@ -1,7 +1,5 @@
 #include "common/ros/States.h"
 
-#include "common/Time.h"
-
 #include <cmath>
 
 namespace hermes::ros {
@@ -60,7 +58,7 @@ bool FixOf::operator()(const FixMessage &in, const Told &told, NavSatFix &out) {
     const FixValues &fix = in.values;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     out = {};
-    out.header = headerOf(told.stamp, told.robot.frame("gps"));
+    out.header = headerOf(told.stamp, told.robot.baseFrame());
     const bool isThere = fix.valid && fix.lat_deg && fix.lon_deg;
     const int quality = fix.quality.value_or(1);
     out.status.status = !isThere ? -1 : quality == 2 ? 1 : quality == 4 || quality == 5 ? 2 : 0;
@@ -106,9 +104,9 @@ bool Diagnostics::take(const TopicUpdate &update, const Told &told, std::string 
     return false;
 }
 
-bool Diagnostics::refresh(const RobotModel &, std::string &cdr) {
+bool Diagnostics::refresh(const RobotModel &, double now, std::string &cdr) {
     DiagnosticArray array;
-    array.header = headerOf(stampNow(), {});
+    array.header = headerOf(now, {});
     for (const auto &[daemon, items] : all_)
         array.status.insert(array.status.end(), items.begin(), items.end());
     toCdr(array, cdr);
@@ -126,7 +124,7 @@ void Diagnostics::lose(const QString &daemon) {
     found->second = {statusOf(daemon, gone)};
 }
 
-bool Description::refresh(const RobotModel &robot, std::string &cdr) {
+bool Description::refresh(const RobotModel &robot, double, std::string &cdr) {
     if (std::exchange(revision_, robot.revision()) == robot.revision())
         return false;
     toCdr(String{urdfOf(robot)}, cdr);

@@ -15,8 +15,8 @@ struct BatteryOf {
     bool operator()(const PowerMessage &in, const Told &told, BatteryState &out);
 };
 
-/// Where the GPS receiver is. Its height above the ellipsoid is not known (NaN): receivers tell that above
-/// the sea.
+/// Where the GPS receiver is, taken for the robot's place. Its height above the ellipsoid is not known (NaN):
+/// receivers tell that above the sea.
 struct FixOf {
     bool operator()(const FixMessage &in, const Told &told, NavSatFix &out);
 };
@@ -30,7 +30,7 @@ struct LogOf {
 class Diagnostics : public Translator {
 public:
     bool take(const TopicUpdate &update, const Told &told, std::string &cdr, QString &problem) override;
-    bool refresh(const RobotModel &, std::string &cdr) override;
+    bool refresh(const RobotModel &, double now, std::string &cdr) override;
     void lose(const QString &daemon) override;
 
 private:
@@ -41,7 +41,7 @@ private:
 class Description : public Translator {
 public:
     bool take(const TopicUpdate &, const Told &, std::string &, QString &) override { return false; }
-    bool refresh(const RobotModel &robot, std::string &cdr) override;
+    bool refresh(const RobotModel &robot, double now, std::string &cdr) override;
 
 private:
     int revision_ = -1;

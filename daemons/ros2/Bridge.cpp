@@ -1,10 +1,8 @@
 #include "daemons/ros2/Bridge.h"
 
 #include "common/Log.h"
+#include "common/Time.h"
 
-#include <QCryptographicHash>
-#include <QRegularExpression>
-#include <QUrl>
 #include <algorithm>
 
 namespace hermes::ros2 {
@@ -13,26 +11,9 @@ namespace {
 constexpr std::chrono::milliseconds period{1000}; // of refreshing
 constexpr int maxOutlets = 200;
 
-/// What ROS takes for a name: letters, digits and underscores, no digit first.
-QString rosName(const QString &name) {
-    QString made = name;
-    made.replace(QRegularExpression("[^A-Za-z0-9_]"), "_");
-    return made.isEmpty() || made[0].isDigit() ? '_' + made : made;
-}
-
 bool hasTopic(const RobotDaemons::Daemon &daemon, const QString &name) {
     return std::any_of(daemon.topics.begin(), daemon.topics.end(),
                        [&](const TopicDescription &topic) { return topic.name == name; });
-}
-
-QByteArray hashOf(const ros::Mapping &mapping) {
-    return "RIHS01_" +
-           QCryptographicHash::hash(QByteArray::fromStdString(mapping.hashedText), QCryptographicHash::Sha256)
-               .toHex();
-}
-
-int portOf(const RobotDaemons::Daemon &daemon) {
-    return QUrl(daemon.address.contains("//") ? daemon.address : "tcp://" + daemon.address).port(0);
 }
 
 } // namespace
@@ -81,7 +62,7 @@ void Bridge::addReader(const Guid &reader) {
 
 void Bridge::greet(RobotDaemons::Daemon *daemon) {
     if (hasTopic(*daemon, "scan2d"))
-        robot_.addScanner(daemon->name, portOf(*daemon));
+        robot_.addScanner(daemon->name, daemon->address);
     if (settings_.count(daemon) == 0 && hasTopic(*daemon, "settings"))
         settings_[daemon] =
             daemon->client->subscribe("settings", {}, [this, daemon](const TopicUpdate &update) {
@@ -114,25 +95,18 @@ Bridge::Feed &Bridge::feedOf(RobotDaemons::Daemon *daemon, const QString &topic)
     return feeds_.emplace_back(Feed{daemon, topic, {}, 0, 0});
 }
 
-/// The first daemon that has it is known by the plain name, as long as this program runs.
-QString Bridge::nameFor(const ros::Mapping &mapping, const QString &daemon) const {
-    const auto isTaken = [&](const Outlet &one) {
-        return one.name == mapping.rosTopic && !one.daemon.isEmpty();
-    };
-    return std::any_of(outlets_.begin(), outlets_.end(), isTaken) ? rosName(daemon) + '/' + mapping.rosTopic
-                                                                  : mapping.rosTopic;
-}
-
 Bridge::Outlet *Bridge::outletFor(const ros::Mapping &mapping, const QString &daemon) {
     for (Outlet &outlet : outlets_)
         if (outlet.mapping == &mapping && outlet.daemon == daemon)
             return &outlet;
     if (outlets_.size() >= maxOutlets)
         return nullptr;
-    const QString name = nameFor(mapping, daemon);
+    const bool isFirst = std::none_of(outlets_.begin(), outlets_.end(),
+                                      [&](const Outlet &one) { return one.name == mapping.rosTopic; });
+    const QString name = mapping.nameOf(daemon, isFirst || daemon.isEmpty());
     outlets_.push_back({&mapping, name, daemon, nullptr, mapping.make(), {}});
     Outlet &outlet = outlets_.back();
-    auto writer = participant_->write(ddsTopic(name), mapping.type, mapping.quality, hashOf(mapping),
+    auto writer = participant_->write(ddsTopic(name), mapping.type, mapping.quality, mapping.hash,
                                       [this, &outlet] { readersChanged(outlet); });
     if (!writer) {
         logError("ros", writer.error().message);
@@ -197,7 +171,7 @@ void Bridge::write(Outlet &outlet) {
 
 void Bridge::refresh() {
     for (Outlet &outlet : outlets_)
-        if (outlet.translator->refresh(robot_, cdr_))
+        if (outlet.translator->refresh(robot_, stampNow(), cdr_))
             write(outlet);
 }
 

@@ -63,7 +63,6 @@ private:
     void lose(RobotDaemons::Daemon *daemon);
     Feed &feedOf(RobotDaemons::Daemon *daemon, const QString &topic);
     Outlet *outletFor(const ros::Mapping &mapping, const QString &daemon);
-    QString nameFor(const ros::Mapping &mapping, const QString &daemon) const;
     void readersChanged(Outlet &outlet);
     void subscribeAsWanted(Feed &feed);
     void take(Feed &feed, const TopicUpdate &update);

@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/Time.h"
 #include "daemons/ros2/RawType.h"
+#include "daemons/ros2/SocketGuard.h"
 #include "protocol/ros/Definition.h"
 
 #include <QRegularExpression>
@@ -121,6 +122,7 @@ Result<std::unique_ptr<Participant>> Participant::open(const ParticipantOptions 
     dds_set_log_sink(logCyclone, nullptr);
     dds_set_trace_sink(logCyclone, nullptr);
     std::unique_ptr<Participant> made(new Participant);
+    const SocketGuard guard(options.networks);
     const QString what = QString("the DDS domain %1").arg(options.domain);
     made->domain_ = dds_create_domain(dds_domainid_t(options.domain), configuration->toUtf8().constData());
     if (made->domain_ < 0)
@@ -130,6 +132,8 @@ Result<std::unique_ptr<Participant>> Participant::open(const ParticipantOptions 
     if (made->entity_ < 0)
         return failure(what + " cannot be joined", made->entity_);
     made->guid_ = guidOf(made->entity_);
+    if (const Result<void> guarded = guard.guardNewSockets(); !guarded) // nobody is read as yet
+        return guarded.error();
     return made;
 }
 
@@ -227,7 +231,7 @@ void Reader::take() {
         for (int i = 0; i < count; ++i) {
             if (infos[i].valid_data)
                 callback_({bytesOf(samples[i]), writerOf(infos[i].publication_handle),
-                           double(infos[i].source_timestamp) * 1e-9});
+                           double(infos[i].source_timestamp) * 1e-9, 0});
             releaseRawSample(samples[i]);
         }
     }

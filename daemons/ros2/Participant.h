@@ -62,6 +62,7 @@ public:
         std::string_view cdr; ///< with its encapsulation
         Guid writer{};
         double stamp = 0; ///< when it was written by the clock of who wrote it, seconds since the epoch
+        double age_s = 0; ///< how old it was then, where it tells that
     };
     using Callback = std::function<void(const Sample &)>;
 

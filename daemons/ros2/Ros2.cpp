@@ -71,8 +71,8 @@ void Ros2::declareSettings() {
                  "byte", 1024, 63000);
     table
         .define("graph", "auto",
-                "Form in which the node is told, so that `ros2 node list` shows it: humble, jazzy (from Iron "
-                "on), none; auto: that of the other nodes, nothing until one is there")
+                "Form of the node for `ros2 node list`: humble, or jazzy from Iron on; auto: that of "
+                "other nodes, once there is one")
         .choices(graphForms);
     table.group("Commands", Applies::OnRestart);
     table.define("commands", false,
@@ -174,18 +174,23 @@ bool Ros2::mayCommand(const char *topic, const Guid &writer) {
 
 QString Ros2::nodeOf(const Guid &writer) const {
     const QString node = bridge_->graph().nodeOf(writer);
-    return node.isEmpty() ? "a node without a name" : node;
+    return node.isEmpty() ? "a ROS node without a name" : "ROS " + node;
 }
 
 void Ros2::takeTwist(const ros::Twist &twist, const Reader::Sample &sample) {
     if (mayCommand("cmd_vel", sample.writer))
         velocity_->take({twist.linear.x, twist.linear.y, twist.angular.z}, sample.writer, sample.stamp,
-                        nodeOf(sample.writer));
+                        sample.age_s, nodeOf(sample.writer));
 }
 
-/// Its own stamp is often 0; that of DDS is always there.
+/// Its stamp is the time when it was made; often it is 0, which tells nothing.
 void Ros2::takeTwistStamped(const ros::TwistStamped &twist, const Reader::Sample &sample) {
-    takeTwist(twist.twist, sample);
+    const ros::Time made = twist.header.stamp;
+    const double age_s =
+        made.sec == 0 && made.nanosec == 0 ? 0 : sample.stamp - (made.sec + made.nanosec * 1e-9);
+    Reader::Sample stamped = sample;
+    stamped.age_s = age_s;
+    takeTwist(twist.twist, stamped);
 }
 
 void Ros2::takePose(const ros::PoseWithCovarianceStamped &pose, const Reader::Sample &sample) {
@@ -210,7 +215,7 @@ void Ros2::takePose(const ros::PoseWithCovarianceStamped &pose, const Reader::Sa
 void Ros2::takeStop(const ros::Bool &stop, const Reader::Sample &sample) {
     if (!stop.data)
         return;
-    const QString who = "ROS " + nodeOf(sample.writer);
+    const QString who = nodeOf(sample.writer);
     if (Client *const client = motorControl(daemons_))
         client->call(
             "motor.estop", {{"client", who.left(100)}},

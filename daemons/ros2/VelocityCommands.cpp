@@ -34,10 +34,10 @@ Client *motorControl(const RobotDaemons &daemons) {
     return nullptr;
 }
 
-void VelocityCommands::take(const Twist2D &velocity, const Guid &writer, double written_s,
+void VelocityCommands::take(const Twist2D &velocity, const Guid &writer, double written_s, double age_s,
                             const QString &node) {
-    double age_s = 0;
-    if (isLate(writer, written_s, age_s) ||
+    const double late_s = age_s + delayOf(writer, written_s);
+    if (!(std::abs(late_s) <= maxAge_s) ||
         !(std::isfinite(velocity.vx) && std::isfinite(velocity.vy) && std::isfinite(velocity.omega))) {
         ++counts_.late;
         return;
@@ -52,7 +52,7 @@ void VelocityCommands::take(const Twist2D &velocity, const Guid &writer, double 
     last_ = now;
     node_ = node;
     ++counts_.taken;
-    newest_ = {velocity, stampNow() - age_s};
+    newest_ = {velocity, stampNow() - std::max(0.0, late_s)};
     if (hasPaused) {
         state_ = State::Idle; // the lease has ended meanwhile
         refusal_.clear();
@@ -65,18 +65,17 @@ void VelocityCommands::take(const Twist2D &velocity, const Guid &writer, double 
         ++counts_.refused;
 }
 
-/// The clocks of two hosts differ: the fastest commands tell by how much.
-bool VelocityCommands::isLate(const Guid &writer, double written_s, double &age_s) {
+/// How long it was on the way. The clocks of two hosts differ: the fastest commands tell by how much.
+double VelocityCommands::delayOf(const Guid &writer, double written_s) {
     gaps_.look();
     if (gaps_.sinceLast() < afterGap_s)
-        return true;
+        return std::numeric_limits<double>::infinity(); // it was sent while this program stood still
     if (clocks_.size() >= maxWriters && clocks_.count(writer) == 0)
         clocks_.clear();
     ClockOffset &clock = clocks_[writer];
     const double now = stampNow();
     clock.add(written_s, now, 0);
-    age_s = std::max(0.0, now + clock.seconds() - written_s);
-    return age_s > maxAge_s;
+    return std::max(0.0, now + clock.seconds() - written_s);
 }
 
 void VelocityCommands::acquire() {
@@ -84,7 +83,7 @@ void VelocityCommands::acquire() {
     if (!client)
         return refuse("no motor control answers");
     state_ = State::Acquiring;
-    const QJsonObject params{{"client", QString("ROS " + node_).left(100)}, {"timeout_s", lease_s}};
+    const QJsonObject params{{"client", node_.left(100)}, {"timeout_s", lease_s}};
     const auto answered = [this](const Result<QJsonValue> &result) {
         if (state_ != State::Acquiring)
             return;

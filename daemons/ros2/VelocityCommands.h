@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/client/ClockOffset.h"
-#include "common/daemon/RobotDaemons.h"
 #include "common/daemon/GapWatch.h"
+#include "common/daemon/RobotDaemons.h"
 #include "daemons/ros2/Participant.h"
 #include "protocol/messages/Motion.h"
 
@@ -20,9 +20,10 @@ public:
         : daemons_(daemons)
         , gaps_(gaps) {}
 
-    /// velocity: in the robot's frame. written_s: when the sample was written, by the writer's clock. node:
-    /// for people, "/teleop".
-    void take(const Twist2D &velocity, const Guid &writer, double written_s, const QString &node);
+    /// velocity: in the robot's frame. written_s: when the sample was written, by the writer's clock. age_s:
+    /// how old it was then. node: for people, "ROS /teleop".
+    void take(const Twist2D &velocity, const Guid &writer, double written_s, double age_s,
+              const QString &node);
 
     struct Counts {
         quint64 taken = 0;
@@ -46,7 +47,7 @@ private:
         double stamp; ///< when it was made, by this host's clock
     };
 
-    bool isLate(const Guid &writer, double written_s, double &age_s);
+    double delayOf(const Guid &writer, double written_s);
     void acquire();
     void drive(const Command &command);
     void refuse(const QString &why);

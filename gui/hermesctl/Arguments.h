@@ -28,6 +28,7 @@ struct Arguments {
     QString recorder = "recorder"; ///< who records and replays sessions
     QStringList without, topics;
     QString format;
+    QString profile;
     QString scanner, world, kinematics = "mecanum"; ///< of a simulated robot
     double at_s = 0, from_s = 0;
     bool detach = false;

@@ -172,7 +172,7 @@ private Q_SLOTS:
 
     void poseIsThatOfTheRobot() {
         ros::RobotModel robot("");
-        robot.addScanner("velodynelogger", 7420);
+        robot.addScanner("velodynelogger", "127.0.0.1:7420");
         robot.takeSettings(
             "scanmatcher",
             {{"source", QJsonObject{{"address", "127.0.0.1:7420"}}},
@@ -199,12 +199,12 @@ private Q_SLOTS:
         QVERIFY(out.pose.covariance[0] > 1e4);
         ros::FixedTransforms fixed;
         std::string cdr;
-        QVERIFY(fixed.refresh(robot, cdr));
+        QVERIFY(fixed.refresh(robot, 5, cdr));
         const auto frames = ros::fromCdr<ros::TfMessage>(cdr);
         QVERIFY(frames);
         QCOMPARE(frames->transforms.size(), std::size_t(1));
         QVERIFY(std::abs(frames->transforms[0].transform.rotation.x - std::sqrt(0.5)) < 1e-9);
-        QVERIFY(!fixed.refresh(robot, cdr)); // nothing has changed
+        QVERIFY(!fixed.refresh(robot, 5, cdr)); // nothing has changed
     }
 
     void theDescriptionIsXmlWithAJointForEachWheel_data() {
@@ -217,7 +217,7 @@ private Q_SLOTS:
     void theDescriptionIsXmlWithAJointForEachWheel() {
         FETCH(QString, layout, int, wheels);
         ros::RobotModel robot("<&\"/");
-        robot.addScanner("a&b", 1);
+        robot.addScanner("a&b", "127.0.0.1:1");
         robot.takeSettings("motorcontrol", {{"frame", QJsonObject{{"layout", layout}}}});
         QXmlStreamReader xml(QByteArray::fromStdString(ros::urdfOf(robot)));
         int joints = 0;

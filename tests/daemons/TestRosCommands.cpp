@@ -22,7 +22,8 @@ class TestRosCommands : public QObject, MotorFixture {
         commands_ = std::make_unique<VelocityCommands>(*robot_, daemon_->server().gaps());
     }
     void send(double vx, const Guid &writer = teleop, double age_s = 0) {
-        commands_->take({vx, 0, 0}, writer, stampNow() - age_s, writer == teleop ? "/teleop" : "/navigation");
+        commands_->take({vx, 0, 0}, writer, stampNow() - age_s, 0,
+                        writer == teleop ? "ROS /teleop" : "ROS /navigation");
     }
     /// Sends at 20 Hz until it is so.
     template <typename Condition>
@@ -132,7 +133,9 @@ private Q_SLOTS:
             send(0.5, teleop, clock + 0.5 + i);
         QCOMPARE(commands_->counts().late, quint64(5));
         QCOMPARE(commands_->counts().taken, quint64(1));
-        commands_->take({qQNaN(), 0, 0}, teleop, stampNow(), "/teleop");
+        commands_->take({qQNaN(), 0, 0}, teleop, stampNow(), 0, "ROS /teleop");
+        for (const double made : {60.0, -60.0}) // ago, by its own stamp
+            commands_->take({0.5, 0, 0}, teleop, stampNow(), made, "ROS /teleop");
         QCOMPARE(commands_->counts().taken, quint64(1));
     }
 };
