@@ -1,0 +1,341 @@
+#!/usr/bin/env python3
+"""hermes-ros2 as a node of ROS 2 sees it that is of another vendor: each message of a robot that drives round is what Hermes' own topic says
+at the same time, and frames and maps are those that ROS expects."""
+import math
+import struct
+import unittest
+import xml.etree.ElementTree
+
+from recorded_robot import Driver
+from ros2_robot import MOUNT, SMALL, Ros2Case, apart, compose, inverse, plane, pose_of, skip_without_programs
+from ros2_support import stamp_of
+from support import wait_for
+
+WHEELS = ("front_left", "front_right", "rear_left", "rear_right")
+PLANAR = (0, 1, 5, 6, 7, 11, 30, 31, 35)  # where x, y and heading are in a covariance of x, y, z and three angles
+CELL_FREE, CELL_WALL, CELL_UNKNOWN = 0, 100, -1
+
+
+def static_frames(peer):
+    """Of each frame that is fixed: its transform."""
+    peer.read("/tf_static", "tf2_msgs/TFMessage", transient_local=True, depth=1)
+    return {one["child_frame_id"]: one for one in peer.wait("/tf_static", lambda message: message["transforms"])["transforms"]}
+
+
+def moves(parent, child):
+    """What gives the transforms between two frames in a list of TFMessages."""
+    return lambda messages: [one for message in messages for one in message["transforms"]
+                             if (one["header"]["frame_id"], one["child_frame_id"]) == (parent, child)]
+
+
+def place(transform):
+    return plane(transform["transform"]["translation"], transform["transform"]["rotation"])
+
+
+class Messages(Ros2Case):
+    """Of a robot that drives in a circle."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        driver = Driver(cls.robot.ports["motorcontrol"], "anna", vx=0.15, omega=0.3)
+        cls.addClassCleanup(driver.end)
+        wait_for("a drive", lambda: cls.robot.motors.call("motor.state")["twist"]["vx"] > 0.1)
+
+    def test_a_peer_hears_another(self):
+        """What is wrong with the other tests' own means shows here."""
+        one, other = self.peer(), self.peer()
+        other.read("/a", "sensor_msgs/PointCloud2", depth=1)
+        one.write("/a", "sensor_msgs/PointCloud2", depth=1)
+        one.wait_for_match("/a", "writer")
+        cloud = {"header": {"frame_id": "b"}, "data": bytes(range(256)) * 5000}
+        one.send("/a", cloud, count=100, hz=10)
+        self.assertEqual(other.wait("/a")["data"], cloud["data"])
+
+    def test_scan(self):
+        both, peer = self.follow("velodynelogger", "scan2d", "/scan", "sensor_msgs/LaserScan")
+        first = both[0][0]
+        kinds = {(len(ros["ranges"]), ros["angle_min"], ros["angle_max"], ros["angle_increment"], ros["header"]["frame_id"]) for ros, _ in both}
+        self.assertEqual(len(kinds), 1, f"the bins change: {kinds}")
+        self.assertGreater(first["angle_increment"], 0)
+        span = (len(first["ranges"]) - 1) * first["angle_increment"]
+        self.assert_near(first["angle_max"], first["angle_min"] + span, "angle_max", 1e-5)
+        self.assertLess(span, 2 * math.pi)  # no direction is there twice
+        self.assertIn(first["header"]["frame_id"], static_frames(peer))
+        for ros, data in both[:5]:
+            self.assertEqual(ros["time_increment"], 0)
+            self.assert_near(ros["scan_time"], 0.1, "scan_time", 0.02)  # the simulated head turns ten times a second
+            self.assertIn(len(ros["intensities"]), (0, len(ros["ranges"])))
+            self.compare_scan(ros, data)
+
+    def compare_scan(self, ros, data):
+        """A bin has the range of a point in its direction, or nothing came back from there."""
+        bins, step = len(ros["ranges"]), ros["angle_increment"]
+        points = {}
+        for x, y, intensity in zip(data["x"], data["y"], data["intensity"]):
+            points.setdefault(round((math.atan2(y, x) - ros["angle_min"]) / step) % bins, []).append((math.hypot(x, y), intensity))
+        near = lambda i: [point for k in (i - 1, i, i + 1) for point in points.get(k % bins, [])]  # noqa: E731
+        for i, found in enumerate(ros["ranges"]):
+            if found != math.inf:
+                self.assertTrue(ros["range_min"] <= found <= ros["range_max"], found)
+                fitting = [point for point in near(i) if abs(point[0] - found) < SMALL]
+                self.assertTrue(fitting, f"bin {i} has {found}, near it are {near(i)}")
+                if ros["intensities"]:
+                    self.assertIn(ros["intensities"][i], [intensity for _, intensity in fitting])
+        taken = sum(1 for i in points if any(ros["ranges"][k % bins] != math.inf for k in (i - 1, i, i + 1)))
+        self.assertEqual(taken, len(points))
+        empty = sum(1 for i, found in enumerate(ros["ranges"]) if found == math.inf and i in points)
+        self.assertLess(empty, 0.02 * bins, "bins in whose middle a point is are empty")
+
+    def test_points(self):
+        both, peer = self.follow("velodynelogger", "cloud", "/points", "sensor_msgs/PointCloud2", count=3, depth=1)
+        self.assertIn(both[0][0]["header"]["frame_id"], static_frames(peer))
+        for ros, data in both[:2]:
+            fields = [(field["name"], field["offset"], field["datatype"], field["count"]) for field in ros["fields"]]
+            self.assertEqual(fields[:5], [("x", 0, 7, 1), ("y", 4, 7, 1), ("z", 8, 7, 1), ("intensity", 12, 7, 1), ("ring", 16, 4, 1)])
+            self.assertEqual((ros["is_bigendian"], ros["height"] * ros["width"]), (False, len(data["x"])))
+            self.assertEqual((ros["row_step"], len(ros["data"])), (ros["width"] * ros["point_step"], ros["height"] * ros["row_step"]))
+            found = [struct.unpack_from("<4fH", ros["data"], i * ros["point_step"]) for i in range(len(data["x"]))]
+            for (x, y, z, intensity, _), *point in zip(found, data["x"], data["y"], data["z"], data["intensity"]):
+                self.assertLess(max(abs(a - b) / max(1, abs(b)) for a, b in zip((x, y, z, intensity), point)), SMALL, point)
+            self.compare_rings(found, data["laser"])
+
+    def compare_rings(self, found, lasers):
+        """Each laser has a ring of its own; they are counted from the lowest to the highest."""
+        self.assertEqual(len({(point[4], laser) for point, laser in zip(found, lasers)}), len(set(lasers)))
+        rings = {}
+        for x, y, z, _, ring in found:
+            rings.setdefault(ring, []).append(math.atan2(z, math.hypot(x, y)))
+        heights = [sorted(rings[ring])[len(rings[ring]) // 2] for ring in sorted(rings)]
+        self.assertEqual(heights, sorted(heights), "rings are not in the order of their elevations")
+
+    def test_odometry(self):
+        both, _ = self.follow("motorcontrol", "odometry", "/odom", "nav_msgs/Odometry", count=50)
+        for ros, data in both:
+            self.assertEqual((ros["header"]["frame_id"], ros["child_frame_id"]), ("odom", "base_link"))
+            pose, twist = ros["pose"]["pose"], ros["twist"]["twist"]
+            self.assertLess(apart(plane(pose["position"], pose["orientation"]), pose_of(data["pose"])), SMALL)
+            for i, value in zip(PLANAR, data["covariance"]):
+                self.assert_near(ros["pose"]["covariance"][i], value, f"covariance[{i}]")
+            for name, value in zip(("vx", "vy", "omega"), (twist["linear"]["x"], twist["linear"]["y"], twist["angular"]["z"])):
+                self.assert_near(value, data["twist"][name], name)
+            self.assertEqual([twist["linear"]["z"], twist["angular"]["x"], twist["angular"]["y"], pose["position"]["z"]], [0] * 4)
+
+    def test_frames_of_wheels_and_matcher(self):
+        both, _ = self.follow("motorcontrol", "odometry", "/tf", "tf2_msgs/TFMessage", 50, moves("odom", "base_link"), depth=100)
+        for ros, data in both:
+            self.assertLess(apart(place(ros), pose_of(data["pose"])), SMALL)
+        both, _ = self.follow("scanmatcher", "pose", "/tf", "tf2_msgs/TFMessage", 10, moves("map", "odom"), depth=100)
+        for ros, data in both:
+            self.assertLess(apart(place(ros), pose_of(data["map_to_odometry"])), SMALL)
+
+    def test_frames_form_a_tree(self):
+        """map, odom, base_link, sensors (REP 105); what they lead to is where the matcher says that the sensor is."""
+        both, peer = self.follow("scanmatcher", "pose", "/tf", "tf2_msgs/TFMessage", 20, moves("map", "odom"), depth=100)
+        fixed, parents = static_frames(peer), {}
+        self.assertFalse({"map", "odom", "base_link"} & fixed.keys())
+        for one in moves("map", "odom")(peer.messages("/tf")) + moves("odom", "base_link")(peer.messages("/tf")) + list(fixed.values()):
+            self.assertEqual(parents.setdefault(one["child_frame_id"], one["header"]["frame_id"]), one["header"]["frame_id"])
+        told = {(one["header"]["frame_id"], one["child_frame_id"]) for message in peer.messages("/tf") for one in message["transforms"]}
+        self.assertEqual(told, {("map", "odom"), ("odom", "base_link")})
+        for child in fixed:
+            at, steps = child, 0
+            while at != "base_link":
+                at, steps = parents[at], steps + 1
+                self.assertLess(steps, 10, f"{child} does not lead to base_link: {parents}")
+        wheels = [(stamp_of(one), place(one)) for one in moves("odom", "base_link")(peer.messages("/tf"))]
+        mount = place(fixed[self.scan_frame(peer)])
+        self.assertLess(apart(mount, MOUNT), SMALL)
+        checked = 0
+        for ros, data in both:
+            before = [one for one in wheels if one[0] <= stamp_of(ros)]
+            if before and stamp_of(ros) - before[-1][0] < 0.1:
+                found = compose(compose(place(ros), before[-1][1]), mount)
+                self.assertLess(apart(found, pose_of(data)), 0.03, (found, data))  # it has moved since
+                checked += 1
+        self.assertGreater(checked, 5)
+
+    @staticmethod
+    def scan_frame(peer):
+        peer.read("/scan", "sensor_msgs/LaserScan")
+        return peer.wait("/scan")["header"]["frame_id"]
+
+    def test_pose(self):
+        """That of the robot, not of the sensor."""
+        both, _ = self.follow("scanmatcher", "pose", "/pose", "geometry_msgs/PoseWithCovarianceStamped")
+        for ros, data in both:
+            self.assertEqual(ros["header"]["frame_id"], "map")
+            pose, found = ros["pose"]["pose"], [ros["pose"]["covariance"][i] for i in PLANAR]
+            at = plane(pose["position"], pose["orientation"])
+            self.assertLess(apart(at, compose(pose_of(data), inverse(MOUNT))), SMALL)
+            if data["covariance"]:
+                for value, expected in zip(found, self.moved(data["covariance"], at, pose_of(data))):
+                    self.assert_near(value, expected, "covariance", SMALL)
+
+    @staticmethod
+    def moved(covariance, to, origin):
+        """The covariance of the pose `to` that is fixed to `origin`, whose covariance this is."""
+        jacobian = [[1, 0, -(to[1] - origin[1])], [0, 1, to[0] - origin[0]], [0, 0, 1]]
+        rows = [covariance[3 * i:3 * i + 3] for i in range(3)]
+        half = [[sum(jacobian[i][k] * rows[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+        return [sum(half[i][k] * jacobian[j][k] for k in range(3)) for i in range(3) for j in range(3)]
+
+    def test_battery(self):
+        both, _ = self.follow("motorcontrol", "power", "/battery", "sensor_msgs/BatteryState", 5)
+        for ros, data in both:
+            volts, battery = [one["battery_v"] for one in data["controllers"]], data["battery"]
+            self.assertTrue(min(volts) - 1e-5 <= ros["voltage"] <= max(volts) + 1e-5, (ros, volts))
+            for found, expected in ((ros["percentage"], battery.get("charge")), (ros["current"], battery.get("current_a"))):
+                if expected is None:
+                    self.assertTrue(math.isnan(found))
+                else:
+                    self.assert_near(abs(found), expected, "battery", 1e-5)
+            self.assertFalse(ros["current"] > 0, "the current of a battery that is discharged is negative")
+            self.assertTrue(math.isnan(ros["temperature"]) and ros["present"], ros)
+
+    def test_fix(self):
+        both, peer = self.follow("seriallogger", "fix", "/fix", "sensor_msgs/NavSatFix", 3)
+        self.assertIn(both[0][0]["header"]["frame_id"], {"base_link", *static_frames(peer)})
+        for ros, data in both:
+            self.assert_near(ros["latitude"], data["lat_deg"], "latitude", 1e-9)
+            self.assert_near(ros["longitude"], data["lon_deg"], "longitude", 1e-9)
+            self.assertTrue(math.isnan(ros["altitude"]) or abs(ros["altitude"] - data["alt"]) < SMALL, ros)
+            self.assertEqual((ros["status"]["status"] >= 0, ros["status"]["service"] & 1), (data["valid"], 1))
+            self.assertLessEqual(ros["position_covariance_type"], 3)
+
+    def test_joints_are_those_of_the_description(self):
+        both, peer = self.follow("motorcontrol", "wheels", "/joint_states", "sensor_msgs/JointState", 20)
+        peer.read("/robot_description", "std_msgs/String", transient_local=True, depth=1)
+        robot = xml.etree.ElementTree.fromstring(peer.wait("/robot_description")["data"])
+        self.assertEqual(robot.tag, "robot")
+        joints = {joint.get("name"): joint for joint in robot.findall("joint")}
+        links = {link.get("name") for link in robot.findall("link")}
+        self.assertIn("base_link", links)
+        for joint in joints.values():
+            self.assertLessEqual({joint.find("parent").get("link"), joint.find("child").get("link")}, links)
+        for ros, data in both:
+            self.assertEqual({len(ros["position"]), len(ros["velocity"])}, {len(ros["name"])})
+            self.assertEqual(len(ros["name"]), sum(wheel in data for wheel in WHEELS))
+            for name, position, velocity in zip(ros["name"], ros["position"], ros["velocity"]):
+                self.assertEqual(joints[name].get("type"), "continuous")
+                (wheel,) = [wheel for wheel in WHEELS if wheel in name]
+                self.assert_near(position, data[wheel]["angle"], name)
+                self.assert_near(velocity, data[wheel]["speed"], name)
+
+
+class Maps(Ros2Case):
+    """Of a robot that stands in a map that does not grow."""
+
+    def test_map(self):
+        self.robot.matcher.call("matcher.start", mode="localization")
+        edges, peer, late = self.edges(), self.peer(), self.peer()
+        self.assertGreater(len(edges), 4)
+        peer.read("/map", "nav_msgs/OccupancyGrid", transient_local=True, depth=1)
+        peer.read("/map_walls", "visualization_msgs/MarkerArray", transient_local=True, depth=1)
+        peer.until("the edges as walls", lambda: same_walls(peer.messages("/map_walls"), edges))
+        wrong = lambda: [Cells(grid).complaint(edges, self.sensor()) for grid in peer.messages("/map")[-1:]]  # noqa: E731
+        try:
+            wait_for("the edges as cells", lambda: wrong() == [None], 20)
+        except AssertionError as error:
+            raise AssertionError(f"{error}: {wrong()}") from None
+        late.read("/map", "nav_msgs/OccupancyGrid")  # volatile, as RViz asks by default
+        self.assertEqual(late.wait("/map")["data"], peer.messages("/map")[-1]["data"])
+        self.assertEqual(peer.messages("/map")[-1]["header"]["frame_id"], "map")
+        self.robot.matcher.call("map.clear")
+        peer.until("no walls", lambda: same_walls(peer.messages("/map_walls"), []))
+        peer.until("no cells", lambda: CELL_WALL not in peer.messages("/map")[-1]["data"])
+
+    def edges(self):
+        return [(edge["x1"], edge["y1"], edge["x2"], edge["y2"]) for edge in self.robot.matcher.call("map.get")["edges"]]
+
+    def sensor(self):
+        stream = self.robot.processes["scanmatcher"].connect()
+        try:
+            return pose_of(next(stream.subscribe("pose"))["data"])
+        finally:
+            stream.close()
+
+
+def same_walls(arrays, edges):
+    """What the markers show together are these edges: those of a name and number replace one another, and all can be deleted."""
+    shown = {}
+    for marker in [marker for array in arrays for marker in array["markers"]]:
+        if marker["action"] == 3:
+            shown.clear()
+        elif marker["action"] == 2:
+            shown.pop((marker["ns"], marker["id"]), None)
+        else:
+            assert (marker["type"], marker["header"]["frame_id"]) == (5, "map") and marker["scale"]["x"] > 0 and marker["color"]["a"] > 0
+            shown[marker["ns"], marker["id"]] = marker["points"]
+    points = [point for part in shown.values() for point in part]
+    found = sorted((a["x"], a["y"], b["x"], b["y"]) for a, b in zip(points[::2], points[1::2]))
+    return len(found) == len(edges) and all(max(abs(a - b) for a, b in zip(*two)) < SMALL for two in zip(found, sorted(edges)))
+
+
+class Cells:
+    """An occupancy grid beside the edges of which it was made."""
+
+    def __init__(self, grid):
+        info = grid["info"]
+        self.data, self.size, self.width, self.height = grid["data"], info["resolution"], info["width"], info["height"]
+        self.origin = plane(info["origin"]["position"], info["origin"]["orientation"])
+
+    def cell(self, x, y):
+        x, y, _ = compose(inverse(self.origin), (x, y, 0))
+        return math.floor(x / self.size), math.floor(y / self.size)
+
+    def middle(self, column, row):
+        return compose(self.origin, ((column + 0.5) * self.size, (row + 0.5) * self.size, 0))[:2]
+
+    def at(self, column, row):
+        is_inside = 0 <= column < self.width and 0 <= row < self.height
+        return self.data[row * self.width + column] if is_inside else CELL_UNKNOWN
+
+    def complaint(self, edges, sensor):
+        """What is wrong with it, or None."""
+        if len(self.data) != self.width * self.height or not set(self.data) <= {CELL_FREE, CELL_WALL, CELL_UNKNOWN}:
+            return f"{len(self.data)} cells of {self.width} x {self.height}: {set(self.data)}"
+        around = [(i, k) for i in (-1, 0, 1) for k in (-1, 0, 1)]
+        drawn, bare = set(), []
+        for x1, y1, x2, y2 in edges:
+            steps = 1 + int(2 * math.hypot(x2 - x1, y2 - y1) / self.size)
+            for share in (k / steps for k in range(steps + 1)):
+                column, row = self.cell(x1 + share * (x2 - x1), y1 + share * (y2 - y1))
+                drawn.add((column, row))
+                if not any(self.at(column + i, row + k) == CELL_WALL for i, k in around):
+                    bare.append((x1, y1, x2, y2))
+        near = {(column + i, row + k) for column, row in drawn for i, k in around}
+        walls = {(i % self.width, i // self.width) for i, value in enumerate(self.data) if value == CELL_WALL}
+        if bare or walls - near:
+            return f"no cells of a wall at {bare[:3]}; {len(walls - near)} cells far from each edge: {sorted(walls - near)[:3]}"
+        return self.wrongly_seen(edges, sensor, near)
+
+    def wrongly_seen(self, edges, sensor, near):
+        """What a sensor that stands has seen is free, what lies behind a wall is unknown."""
+        hidden, seen, wrong_hidden, wrong_seen = 0, 0, [], []
+        for column in range(0, self.width, 3):
+            for row in range(0, self.height, 3):
+                if (column, row) in near:
+                    continue
+                if any(crosses(sensor[:2], self.middle(column, row), edge) for edge in edges):
+                    hidden += 1
+                    wrong_hidden += [(column, row)] * (self.at(column, row) != CELL_UNKNOWN)
+                else:
+                    seen += 1
+                    wrong_seen += [(column, row)] * (self.at(column, row) != CELL_FREE)
+        if len(wrong_hidden) > 0.02 * hidden or len(wrong_seen) > 0.1 * seen:  # edges have gaps between them
+            return (f"{len(wrong_hidden)} of {hidden} cells behind walls are not unknown, {len(wrong_seen)} of {seen} seen ones are not free: "
+                    f"{wrong_hidden[:3]} {wrong_seen[:3]}")
+        return None
+
+
+def crosses(a, b, edge):
+    """Whether the way from a to b leads through an edge."""
+    side = lambda p, q, r: (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])  # noqa: E731
+    c, d = edge[:2], edge[2:]
+    return (side(a, b, c) > 0) != (side(a, b, d) > 0) and (side(c, d, a) > 0) != (side(c, d, b) > 0)
+
+
+if __name__ == "__main__":
+    skip_without_programs()
+    unittest.main(verbosity=2)
