@@ -143,12 +143,13 @@ class Messages(Ros2Case):
             while at != "base_link":
                 at, steps = parents[at], steps + 1
                 self.assertLess(steps, 10, f"{child} does not lead to base_link: {parents}")
-        wheels = [(stamp_of(one), place(one)) for one in moves("odom", "base_link")(peer.messages("/tf"))]
+        wheels = lambda: [(stamp_of(one), place(one)) for one in moves("odom", "base_link")(peer.messages("/tf"))]  # noqa: E731
+        peer.until("the wheels up to then", lambda: wheels()[-1:] > [(stamp_of(both[-1][0]),)])
         mount = place(fixed[self.scan_frame(peer)])
         self.assertLess(apart(mount, MOUNT), SMALL)
         checked = 0
         for ros, data in both:
-            before = [one for one in wheels if one[0] <= stamp_of(ros)]
+            before = [one for one in wheels() if one[0] <= stamp_of(ros)]
             if before and stamp_of(ros) - before[-1][0] < 0.1:
                 found = compose(compose(place(ros), before[-1][1]), mount)
                 self.assertLess(apart(found, pose_of(data)), 0.03, (found, data))  # it has moved since

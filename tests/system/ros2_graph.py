@@ -104,17 +104,16 @@ class Graph(Ros2Case):
     def test_diagnostics(self):
         peer = self.peer()
         peer.read("/diagnostics", "diagnostic_msgs/DiagnosticArray", depth=100)
-        health = {(name, item["name"]): item for name, daemon in self.robot.daemons.items() for item in daemon.call("daemon.status")["health"]}
-        shown = lambda: {status["name"]: status for message in peer.messages("/diagnostics") for status in message["status"]}  # noqa: E731
+        told = lambda: {(status["name"], status["level"]) for message in peer.messages("/diagnostics") for status in message["status"]}  # noqa: E731
 
-        def fitting(name, item):
-            return [status for key, status in shown().items() if name in key and item["name"] in key
-                    and status["level"] == LEVELS[item["level"]] and status["message"]]
-        missing = lambda: [key for key, item in health.items() if not fitting(key[0], item)]  # noqa: E731
+        def missing():
+            """Health items that were not told as they are now."""
+            return [(name, item) for name, daemon in self.robot.daemons.items() for item in daemon.call("daemon.status")["health"]
+                    if not any(name in key and item["name"] in key and level == LEVELS[item["level"]] for key, level in told())]
         try:
             wait_for("all health items", lambda: not missing(), 20)
         except AssertionError as error:
-            raise AssertionError(f"{error}: without {missing()}, found {sorted(shown())}") from None
+            raise AssertionError(f"{error}: without {missing()}, found {sorted(told())}") from None
 
     def test_log(self):
         peer = self.peer()

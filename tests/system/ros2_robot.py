@@ -85,6 +85,8 @@ class Robot:
         return fastest_wheel(self.simulator) < 0.02
 
     def stop(self):
+        for daemon in self.daemons.values():
+            daemon.close()
         for process in reversed(list(self.processes.values())):
             process.stop()
 
@@ -151,7 +153,9 @@ class Ros2Case(unittest.TestCase):
             "daemons": cls.robot.addresses(), "domain": domain, **{name: json.dumps(value) if isinstance(value, (bool, list)) else value
                                                                    for name, value in settings.items()}})
         cls.addClassCleanup(process.stop)
-        return process, process.connect()
+        daemon = process.connect()
+        cls.addClassCleanup(daemon.close)
+        return process, daemon
 
     def peer(self, domain=None, *arguments):
         """A node of ROS 2; ended after the test."""

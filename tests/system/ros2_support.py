@@ -176,12 +176,12 @@ class Peer:
     def kill(self):
         """As a program that crashes: nobody is told."""
         self.process.kill()
-        self.process.wait()
-        self.thread.join(10)
+        self.close()
 
     def close(self):
         """Ends it in order."""
-        if self.process.poll() is None:
+        if not self.process.stdin.closed:
             self.process.stdin.close()
             self.process.wait(20 * PATIENCE)
-        self.thread.join(10)
+            self.thread.join()
+            self.process.stdout.close()
