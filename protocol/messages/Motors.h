@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/wire/FieldsOf.h"
+#include "protocol/messages/Motion.h"
 
 #include <QMap>
 #include <QString>
@@ -62,11 +62,37 @@ struct PowerMessage {
     BatteryState battery;
 };
 
+constexpr int wheelCount = 4;
+/// In the order of the messages.
+constexpr std::array<const char *, wheelCount> wheelNames{"front_left", "front_right", "rear_left",
+                                                          "rear_right"};
+
+/// A wheel of the topic `wheels`: rad/s, angle in rad.
+struct WheelMessage {
+    double target = 0, setPoint = 0, speed = 0, angle = 0;
+};
+
+/// The topic `wheels`, with those that the layout has.
+struct WheelsMessage {
+    std::optional<WheelMessage> frontLeft, frontRight, rearLeft, rearRight;
+    std::optional<double> steering; ///< rad
+    double slip = 0;
+    Twist2D target; ///< of the robot
+
+    /// In the order of Wheel.
+    static constexpr std::array<std::optional<WheelMessage> WheelsMessage::*, wheelCount> wheels() {
+        return {&WheelsMessage::frontLeft, &WheelsMessage::frontRight, &WheelsMessage::rearLeft,
+                &WheelsMessage::rearRight};
+    }
+};
+
 Fields<LeaseState> fieldsOf(Of<LeaseState>);
 Fields<MotionHold> fieldsOf(Of<MotionHold>);
 Fields<StandConfirmation> fieldsOf(Of<StandConfirmation>);
 Fields<ControllerPower> fieldsOf(Of<ControllerPower>);
 Fields<BatteryState> fieldsOf(Of<BatteryState>);
 Fields<PowerMessage> fieldsOf(Of<PowerMessage>);
+Fields<WheelMessage> fieldsOf(Of<WheelMessage>);
+Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>);
 
 } // namespace hermes

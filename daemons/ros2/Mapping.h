@@ -1,0 +1,69 @@
+#pragma once
+
+#include "common/client/Client.h"
+#include "daemons/ros2/Participant.h"
+#include "daemons/ros2/RobotModel.h"
+#include "protocol/ros/Cdr.h"
+#include "protocol/wire/Fields.h"
+
+namespace hermes::ros2 {
+
+/// What goes with a message of Hermes.
+struct Told {
+    const QString &daemon; ///< that told it
+    double stamp = 0;      ///< when it was true, seconds since the epoch
+    const RobotModel &robot;
+};
+
+/// Makes the messages of one ROS topic.
+class Translator {
+public:
+    virtual ~Translator() = default;
+
+    /// Takes a message; true: cdr has the bytes that are to be written now. problem says what could not be
+    /// read.
+    virtual bool take(const TopicUpdate &update, const Told &told, std::string &cdr, QString &problem) = 0;
+    /// Called about once a second, and when somebody begins to read; the same.
+    virtual bool refresh(const RobotModel &, std::string &) { return false; }
+    /// Of a daemon whose connection has ended.
+    virtual void lose(const QString &daemon) { Q_UNUSED(daemon) }
+};
+
+/// A row of the table: topics of Hermes that become one of ROS.
+struct Mapping {
+    QStringList topics;
+    QString rosTopic; ///< "scan"
+    std::string type; ///< "sensor_msgs/msg/LaserScan"
+    std::string hashedText;
+    Quality quality;
+    /// Each daemon has one of its own; the first is known by the plain name, others below their own. Else
+    /// what all tell goes to one.
+    bool isOfEach = true;
+    std::function<std::unique_ptr<Translator>()> make;
+};
+
+/// All of them.
+const std::vector<Mapping> &mappings();
+
+/// Makes each message of the type In, by convert, one of the type Out. convert is a function object that may
+/// keep what it needs; false: none is to be written.
+template <typename In, typename Out, typename Convert>
+class Each : public Translator {
+public:
+    bool take(const TopicUpdate &update, const Told &told, std::string &cdr, QString &problem) override {
+        ReadReport report;
+        const std::optional<In> in = readMessage<In>(update.data, report);
+        if (!in)
+            problem = report.text();
+        if (!in || !convert_(*in, told, out_))
+            return false;
+        ros::toCdr(out_, cdr);
+        return true;
+    }
+
+private:
+    Convert convert_;
+    Out out_; // its memory is used again
+};
+
+} // namespace hermes::ros2

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "daemons/ros2/RobotModel.h"
+#include "protocol/messages/Turns.h"
+#include "protocol/ros/Messages.h"
+
+namespace hermes::ros2 {
+
+struct Told;
+
+/// A revolution as a scan with the same rays each time, as slam_toolbox wants it. A direction in which
+/// nothing came back is +inf; one that nothing is known of (it was lost, or the scanner may not look there)
+/// is NaN.
+class ScanBins {
+public:
+    bool operator()(const ScanMessage &in, const Told &told, ros::LaserScan &out);
+
+private:
+    std::vector<bool> isSeen_; ///< of each ray: something came back from there once
+};
+
+/// Points with x, y, z, intensity, ring and time, as the Velodyne driver of ROS lays them out.
+struct CloudPoints {
+    bool operator()(const CloudMessage &in, const Told &told, ros::PointCloud &out);
+};
+
+} // namespace hermes::ros2

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "daemons/ros2/Mapping.h"
+#include "protocol/messages/Daemons.h"
+#include "protocol/messages/Fixes.h"
+#include "protocol/messages/Motors.h"
+#include "protocol/ros/Messages.h"
+
+#include <map>
+
+namespace hermes::ros2 {
+
+/// The robot's battery: the mean voltage of the controllers that answer, and what the gauge knows.
+struct BatteryOf {
+    bool operator()(const PowerMessage &in, const Told &told, ros::BatteryState &out);
+};
+
+/// Where the GPS receiver is. Its height above the ellipsoid is not known (NaN): receivers tell that above
+/// the sea.
+struct FixOf {
+    bool operator()(const FixMessage &in, const Told &told, ros::NavSatFix &out);
+};
+
+/// Lines of the log.
+struct LogOf {
+    bool operator()(const LogMessage &in, const Told &told, ros::Log &out);
+};
+
+/// The health of every daemon, all of it once a second. A daemon that does not answer any more is stale.
+class Diagnostics : public Translator {
+public:
+    bool take(const TopicUpdate &update, const Told &told, std::string &cdr, QString &problem) override;
+    bool refresh(const RobotModel &, std::string &cdr) override;
+    void lose(const QString &daemon) override;
+
+private:
+    std::map<QString, std::vector<ros::DiagnosticStatus>> all_;
+};
+
+/// The robot as a text in URDF: its body, wheels and sensors.
+class Description : public Translator {
+public:
+    bool take(const TopicUpdate &, const Told &, std::string &, QString &) override { return false; }
+    bool refresh(const RobotModel &robot, std::string &cdr) override;
+
+private:
+    int revision_ = -1;
+};
+
+std::string urdfOf(const RobotModel &robot);
+
+} // namespace hermes::ros2
