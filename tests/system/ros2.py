@@ -7,7 +7,7 @@ import unittest
 import xml.etree.ElementTree
 
 from recorded_robot import Driver
-from ros2_robot import MOUNT, SMALL, Ros2Case, apart, compose, inverse, plane, pose_of, skip_without_programs
+from ros2_robot import MOUNT, SMALL, Heard, Ros2Case, apart, compose, inverse, plane, pose_of, skip_without_programs
 from ros2_support import stamp_of
 from support import wait_for
 
@@ -122,39 +122,62 @@ class Messages(Ros2Case):
             self.assertEqual([twist["linear"]["z"], twist["angular"]["x"], twist["angular"]["y"], pose["position"]["z"]], [0] * 4)
 
     def test_frames_of_wheels_and_matcher(self):
-        both, _ = self.follow("motorcontrol", "odometry", "/tf", "tf2_msgs/TFMessage", 50, moves("odom", "base_link"), depth=100)
+        both, peer = self.follow("motorcontrol", "odometry", "/tf", "tf2_msgs/TFMessage", 50, moves("odom", "base_link"), depth=100)
         for ros, data in both:
             self.assertLess(apart(place(ros), pose_of(data["pose"])), SMALL)
-        both, _ = self.follow("scanmatcher", "pose", "/tf", "tf2_msgs/TFMessage", 10, moves("map", "odom"), depth=100)
-        for ros, data in both:
-            self.assertLess(apart(place(ros), pose_of(data["map_to_odometry"])), SMALL)
+        poses = Heard(self.robot.ports["scanmatcher"], "pose")
+        self.addCleanup(poses.close)
+        wait_for("a pose", lambda: poses.messages)
+        wait_for("poses that come after it", lambda count=len(peer.samples_of("/tf")): len(peer.samples_of("/tf")) > count + 50)
+        told = [pose_of(one["data"]["map_to_odometry"]) for one in poses.messages[:]]
+        shown = [place(one) for one in moves("map", "odom")(peer.messages("/tf")) if stamp_of(one) > poses.messages[0]["stamp"] + 0.3]
+        self.assertGreater(len(set(shown)), 3)
+        for one in told[2:-3]:
+            self.assertLess(min(apart(one, other) for other in shown), SMALL, "a correction that is not shown")
 
     def test_frames_form_a_tree(self):
         """map, odom, base_link, sensors (REP 105); what they lead to is where the matcher says that the sensor is."""
-        both, peer = self.follow("scanmatcher", "pose", "/tf", "tf2_msgs/TFMessage", 20, moves("map", "odom"), depth=100)
+        heard, peer = Heard(self.robot.ports["scanmatcher"], "pose"), self.peer()
+        self.addCleanup(heard.close)
+        peer.read("/tf", "tf2_msgs/TFMessage", depth=100)
+        last = lambda parent, child: max(map(stamp_of, moves(parent, child)(peer.messages("/tf"))), default=0)  # noqa: E731
+        wait_for("20 poses", lambda: len(heard.messages) > 20)
+        until = heard.messages[20]["stamp"]
+        wait_for("the frames up to then", lambda: last("map", "odom") > until + 0.2 and last("odom", "base_link") > until + 0.2)
         fixed, parents = static_frames(peer), {}
         self.assertFalse({"map", "odom", "base_link"} & fixed.keys())
-        for one in moves("map", "odom")(peer.messages("/tf")) + moves("odom", "base_link")(peer.messages("/tf")) + list(fixed.values()):
+        moving = [one for message in peer.messages("/tf") for one in message["transforms"]]
+        for one in moving + list(fixed.values()):
             self.assertEqual(parents.setdefault(one["child_frame_id"], one["header"]["frame_id"]), one["header"]["frame_id"])
-        told = {(one["header"]["frame_id"], one["child_frame_id"]) for message in peer.messages("/tf") for one in message["transforms"]}
-        self.assertEqual(told, {("map", "odom"), ("odom", "base_link")})
-        for child in fixed:
+        self.assertEqual((parents.pop("odom"), parents.pop("base_link")), ("map", "odom"))
+        self.assertFalse({one["child_frame_id"] for one in moving} & fixed.keys())
+        for child in parents:
             at, steps = child, 0
             while at != "base_link":
                 at, steps = parents[at], steps + 1
                 self.assertLess(steps, 10, f"{child} does not lead to base_link: {parents}")
-        wheels = lambda: [(stamp_of(one), place(one)) for one in moves("odom", "base_link")(peer.messages("/tf"))]  # noqa: E731
-        peer.until("the wheels up to then", lambda: wheels()[-1:] > [(stamp_of(both[-1][0]),)])
         mount = place(fixed[self.scan_frame(peer)])
         self.assertLess(apart(mount, MOUNT), SMALL)
+        self.compare_chain(moving, mount, heard.messages[:20])
+
+    def compare_chain(self, moving, mount, poses):
+        def at(parent, child, stamp):
+            """The transform then, between the two beside it, as tf2 finds it."""
+            them = sorted(((stamp_of(one), place(one)) for one in moves(parent, child)([{"transforms": moving}])), key=lambda one: one[0])
+            before, after = ([one for one in them if (one[0] <= stamp) == is_before] for is_before in (True, False))
+            if not before or not after:
+                return None
+            (t, a), (u, b) = before[-1], after[0]
+            share = (stamp - t) / (u - t)
+            return tuple(x + share * math.remainder(y - x, 2 * math.pi) for x, y in zip(a, b))
         checked = 0
-        for ros, data in both:
-            before = [one for one in wheels() if one[0] <= stamp_of(ros)]
-            if before and stamp_of(ros) - before[-1][0] < 0.1:
-                found = compose(compose(place(ros), before[-1][1]), mount)
-                self.assertLess(apart(found, pose_of(data)), 0.03, (found, data))  # it has moved since
+        for pose in poses:
+            links = [at("map", "odom", pose["stamp"]), at("odom", "base_link", pose["stamp"])]
+            if all(links):
+                found = compose(compose(*links), mount)
+                self.assertLess(apart(found, pose_of(pose["data"])), 0.03, (found, pose))
                 checked += 1
-        self.assertGreater(checked, 5)
+        self.assertGreater(checked, 10)
 
     @staticmethod
     def scan_frame(peer):
@@ -288,6 +311,11 @@ class Cells:
     def middle(self, column, row):
         return compose(self.origin, ((column + 0.5) * self.size, (row + 0.5) * self.size, 0))[:2]
 
+    def behind(self, sensor, column, row):
+        """A place far behind a cell."""
+        x, y = self.middle(column, row)
+        return sensor[0] + 100 * (x - sensor[0]), sensor[1] + 100 * (y - sensor[1])
+
     def at(self, column, row):
         is_inside = 0 <= column < self.width and 0 <= row < self.height
         return self.data[row * self.width + column] if is_inside else CELL_UNKNOWN
@@ -312,7 +340,7 @@ class Cells:
         return self.wrongly_seen(edges, sensor, near)
 
     def wrongly_seen(self, edges, sensor, near):
-        """What a sensor that stands has seen is free, what lies behind a wall is unknown."""
+        """What lies between a sensor that stands and a wall is free, what lies behind a wall is unknown."""
         hidden, seen, wrong_hidden, wrong_seen = 0, 0, [], []
         for column in range(0, self.width, 3):
             for row in range(0, self.height, 3):
@@ -321,7 +349,7 @@ class Cells:
                 if any(crosses(sensor[:2], self.middle(column, row), edge) for edge in edges):
                     hidden += 1
                     wrong_hidden += [(column, row)] * (self.at(column, row) != CELL_UNKNOWN)
-                else:
+                elif any(crosses(self.middle(column, row), self.behind(sensor, column, row), edge) for edge in edges):
                     seen += 1
                     wrong_seen += [(column, row)] * (self.at(column, row) != CELL_FREE)
         if len(wrong_hidden) > 0.02 * hidden or len(wrong_seen) > 0.1 * seen:  # edges have gaps between them

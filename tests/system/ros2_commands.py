@@ -13,12 +13,19 @@ from support import PATIENCE, Daemon, release, wait_for
 TWIST, STAMPED = "geometry_msgs/Twist", "geometry_msgs/TwistStamped"
 
 
+# So large that the robot meets no wall.
+HALL = {"name": "hall", "poses": [[0, 0, 0]], "edges": [[-12, -9, 12, -9], [12, -9, 12, 9], [12, 9, -12, 9], [-12, 9, -12, -9]]}
+GRAPH, GRAPH_TYPE = "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
+
+
 def twist(vx=0.0, vy=0.0, omega=0.0):
     return {"linear": {"x": vx, "y": vy, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": omega}}
 
 
 class CommandCase(Ros2Case):
     """What tests of commands share; each begins with a robot that stands and that nobody drives."""
+
+    WORLD = HALL
 
     def setUp(self):
         self.motors = self.robot.motors
@@ -70,6 +77,24 @@ class Commands(CommandCase):
         print(f"stands {time.monotonic() - began:.2f} s after the publisher was killed; the control was held by {holder}")
         self.assertLess(time.monotonic() - began, 1.0 * PATIENCE)
         wait_for("the end of the control", lambda: not self.motors.call("control.state")["held"])
+
+    def test_name_of_who_drives(self):
+        """The graph tells which node a writer is of."""
+        peer, other = self.driver(twist(0.1)), self.peer()
+        mine = lambda: [guid for guid, one in other.listed()["writers"].items() if one["topic"] == "rt/cmd_vel" and guid[:24] == peer.guid[:24]]  # noqa: E731
+        writer = bytes.fromhex(wait_for("the writer", mine)[0])
+        peer.open("write", GRAPH, GRAPH_TYPE, transient_local=True, depth=1)
+        node = {"node_namespace": "/", "node_name": "teleop_keyboard", "writer_gid_seq": [{"data": writer}]}
+        peer.send(GRAPH, ros_cdr.encode("rmw_dds_common/ParticipantEntitiesInfo",
+                                        {"gid": {"data": bytes.fromhex(peer.guid)}, "node_entities_info_seq": [node]}))
+        self.wait_for_drive(0.1)
+        item = lambda: next(one for one in self.daemon.call("daemon.status")["health"] if one["name"] == "commands")["message"]  # noqa: E731
+        wait_for("its name", lambda: "teleop_keyboard" in item())
+        peer.stop("/cmd_vel")
+        wait_for("the end of the control", lambda: not self.motors.call("control.state")["held"])
+        peer.send("/cmd_vel", twist(-0.1), count=0, hz=20)
+        wait_for("its name", lambda: "teleop_keyboard" in (self.motors.call("control.state")["holder"] or ""))
+        peer.close()
 
     def test_silent_publisher(self):
         peer = self.driver(twist(0.0, 0.15))

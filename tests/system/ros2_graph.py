@@ -68,6 +68,9 @@ class Graph(Ros2Case):
             self.assertEqual(peer.samples_of(GRAPH), [])  # nobody has told yet which form they read
             gid = bytes.fromhex(peer.guid) + bytes(size - 16)
             peer.open("write", GRAPH, GRAPH_TYPE, transient_local=True, depth=1)
+            peer.wait_for_match(GRAPH, "writer", 2)  # the peer's own reader, too
+            for noise in (b"", ros_cdr.LITTLE, gid, ros_cdr.LITTLE + gid + b"\xff" * 4, ros_cdr.LITTLE + bytes(5000), b"\0\1\0\0" + b"\xff" * 99):
+                peer.send(GRAPH, noise, count=3, hz=100)
             peer.send(GRAPH, ros_cdr.encode(package + "/ParticipantEntitiesInfo", {"gid": {"data": gid}, "node_entities_info_seq": [
                 {"node_namespace": "/", "node_name": "rviz"}]}))
             self.compare_graph(peer, size, release)

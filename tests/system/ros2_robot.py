@@ -10,7 +10,7 @@ import threading
 import unittest
 
 from ros2_support import PEER, Peer, free_domain, stamp_of, wire_name
-from support import BINARIES, WORLD, Daemon, Process, fastest_wheel, free_port, wait_for
+from support import BINARIES, WORLD, Daemon, Process, fastest_wheel, free_port, put, wait_for
 
 PROGRAM = os.path.join(BINARIES, "hermes-ros2")
 MOUNT = (0.12, -0.05, 0.05)  # of the lidar, as the scan matcher is told; the simulator's is in the middle
@@ -55,14 +55,14 @@ def pose_of(data):
 class Robot:
     """The daemons of a robot."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, world=WORLD):
         self.folder = folder
         lidar, position = free_port(0, socket.SOCK_DGRAM), free_port(0, socket.SOCK_DGRAM)
         line, gps = os.path.join(folder, "motors"), os.path.join(folder, "gps")
         self.ports = {name: free_port(0) for name in ("simulator", "motorcontrol", "velodynelogger", "seriallogger", "scanmatcher")}
         serial = f"serial://{line}?baud=115200"
         settings = {
-            "simulator": {"world": WORLD, "lidar.port": lidar, "lidar.position_port": position, "motors.link": line, "gps.link": gps},
+            "simulator": {"world": world, "lidar.port": lidar, "lidar.position_port": position, "motors.link": line, "gps.link": gps},
             "velodynelogger": {"source.port": lidar, "source.address": "127.0.0.1", "source.position_port": position},
             "seriallogger": {"ports": json.dumps([{"name": "gps", "url": f"serial://{gps}?baud=9600", "view": "nmea"}])},
             "motorcontrol": {"controllers.1.url": serial, "controllers.2.url": serial},
@@ -133,15 +133,16 @@ class Heard(threading.Thread):
 
 
 class Ros2Case(unittest.TestCase):
-    """Tests beside one robot; the daemon's settings are the class's SETTINGS."""
+    """Tests beside one robot; the daemon's settings are the class's SETTINGS, and the robot's world is its WORLD."""
 
     SETTINGS = {}
+    WORLD = WORLD
 
     @classmethod
     def setUpClass(cls):
         folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, folder)
-        cls.robot = Robot(folder)
+        cls.robot = Robot(folder, cls.WORLD if isinstance(cls.WORLD, str) else put(os.path.join(folder, "world.json"), cls.WORLD))
         cls.addClassCleanup(cls.robot.stop)
         cls.domain = free_domain()
         cls.process, cls.daemon = cls.ros2(cls.domain, **cls.SETTINGS)
