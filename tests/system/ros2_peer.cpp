@@ -1,6 +1,6 @@
-// Stands for any node of ROS 2 with rmw_fastrtps, on the loopback interface: writes and reads topics of Fast
-// DDS as bytes, known by the names of their types alone, and lists what it discovers. Requests and answers
-// are lines of JSON (tests/system/ros2_support.py):
+// Stands for any node of ROS 2 with rmw_fastrtps, on one network (the loopback interface): writes and reads
+// topics of Fast DDS as bytes, known by the names of their types alone, and lists what it discovers. Requests
+// and answers are lines of JSON (tests/system/ros2_support.py):
 //
 //   {"op": "read", "topic": "rt/scan", "type": "sensor_msgs::msg::dds_::LaserScan_", "reliable": true,
 //    "transient_local": false, "depth": 5, "quiet": false}   each sample is a line; quiet: they are counted
@@ -31,22 +31,24 @@ namespace {
 
 class Peer {
 public:
-    Peer(std::uint32_t domain, const std::string &userData, std::vector<std::string> quiet)
+    Peer(std::uint32_t domain, const std::string &own, const std::string &others, const std::string &userData,
+         std::vector<std::string> quiet)
         : quiet_(std::move(quiet)) {
         dds::DomainParticipantQos qos;
         qos.name("ros2_peer");
         qos.user_data().data_vec(Bytes(userData.begin(), userData.end()));
         qos.transport().use_builtin_transports = false;
-        auto loopback = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-        loopback->interfaceWhiteList = {"127.0.0.1"};
-        loopback->sendBufferSize = loopback->receiveBufferSize = 4 << 20;
-        loopback->maxInitialPeersRange = 32; // participants of this host that are looked for
-        qos.transport().user_transports.push_back(loopback);
-        rtps::Locator_t host;
-        rtps::IPLocator::setIPv4(host, 127, 0, 0, 1);
+        auto transport = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+        transport->interfaceWhiteList = {own};
+        transport->sendBufferSize = transport->receiveBufferSize = 4 << 20;
+        transport->maxInitialPeersRange = 32; // participants of a host that are looked for
+        qos.transport().user_transports.push_back(transport);
+        rtps::Locator_t here, there;
+        rtps::IPLocator::setIPv4(here, own);
+        rtps::IPLocator::setIPv4(there, others);
         auto &builtin = qos.wire_protocol().builtin;
-        builtin.initialPeersList.push_back(host);              // port 0: those that the domain gives
-        builtin.metatrafficUnicastLocatorList.push_back(host); // and none of multicast
+        builtin.initialPeersList.push_back(there);             // port 0: those that the domain gives
+        builtin.metatrafficUnicastLocatorList.push_back(here); // and none of multicast
         builtin.discovery_config.leaseDuration_announcementperiod = {1, 0};
         participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
             domain, qos, &discovered_, dds::StatusMask::none());
@@ -170,23 +172,24 @@ private:
 
 /// Until the end of the input.
 static int run(const std::vector<std::string> &arguments) {
-    std::uint32_t domain = 0;
-    std::string userData = "enclave=/;";
+    std::map<std::string, std::string> options = {
+        {"--domain", "0"}, {"--own", "127.0.0.1"}, {"--others", "127.0.0.1"}, {"--user-data", "enclave=/;"}};
     std::vector<std::string> quiet;
     for (std::size_t i = 0; i < arguments.size(); i += 2) {
         if (i + 1 == arguments.size())
             throw std::runtime_error(arguments[i] + ": a value is missing");
-        if (arguments[i] == "--domain")
-            domain = std::uint32_t(std::stoul(arguments[i + 1]));
-        else if (arguments[i] == "--user-data")
-            userData = arguments[i + 1];
-        else if (arguments[i] == "--quiet")
+        if (arguments[i] == "--quiet")
             quiet.push_back(arguments[i + 1]);
+        else if (options.count(arguments[i]))
+            options[arguments[i]] = arguments[i + 1];
         else
-            throw std::runtime_error("expected --domain N, --user-data TEXT or --quiet TOPIC, found " +
-                                     arguments[i]);
+            throw std::runtime_error(
+                "expected --domain N, --own ADDRESS, --others ADDRESS, --user-data TEXT or "
+                "--quiet TOPIC, found " +
+                arguments[i]);
     }
-    Peer peer(domain, userData, quiet);
+    Peer peer(std::uint32_t(std::stoul(options["--domain"])), options["--own"], options["--others"],
+              options["--user-data"], quiet);
     tell({{"ready", peer.guid()}});
     for (std::string line; std::getline(std::cin, line);) {
         try {

@@ -158,9 +158,9 @@ class Ros2Case(unittest.TestCase):
         cls.addClassCleanup(daemon.close)
         return process, daemon
 
-    def peer(self, domain=None, *arguments):
+    def peer(self, domain=None, *arguments, within=()):
         """A node of ROS 2; ended after the test."""
-        peer = Peer(self.domain if domain is None else domain, *arguments)
+        peer = Peer(self.domain if domain is None else domain, *arguments, within=within)
         self.addCleanup(peer.close)
         return peer
 

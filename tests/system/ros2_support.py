@@ -48,11 +48,11 @@ class PeerError(Exception):
 
 
 class Peer:
-    """A running ros2_peer; to be used in a with statement."""
+    """A running ros2_peer; to be used in a with statement. `within` are words before its own, which start it elsewhere."""
 
-    def __init__(self, domain, *arguments):
+    def __init__(self, domain, *arguments, within=()):
         parent = os.getpid()
-        self.process = subprocess.Popen([PEER, "--domain", str(domain), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self.process = subprocess.Popen([*within, PEER, "--domain", str(domain), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         text=True, preexec_fn=lambda: die_with(parent))
         self.types, self.samples = {}, collections.defaultdict(list)
         self.matches, self.incompatible, self.errors = collections.Counter(), [], []
