@@ -25,7 +25,7 @@ bool hasTopic(const RobotDaemons::Daemon &daemon, const QString &name) {
                        [&](const TopicDescription &topic) { return topic.name == name; });
 }
 
-QByteArray hashOf(const Mapping &mapping) {
+QByteArray hashOf(const ros::Mapping &mapping) {
     return "RIHS01_" +
            QCryptographicHash::hash(QByteArray::fromStdString(mapping.hashedText), QCryptographicHash::Sha256)
                .toHex();
@@ -54,7 +54,7 @@ Bridge::Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Pa
     connect(&daemons, &RobotDaemons::went, this, &Bridge::lose);
     connect(&second_, &QTimer::timeout, this, &Bridge::refresh);
     second_.start(period);
-    for (const Mapping &mapping : mappings())
+    for (const ros::Mapping &mapping : ros::mappings())
         if (!mapping.isOfEach)
             outletFor(mapping, {});
     for (const auto &[address, daemon] : daemons.all())
@@ -87,7 +87,7 @@ void Bridge::greet(RobotDaemons::Daemon *daemon) {
             daemon->client->subscribe("settings", {}, [this, daemon](const TopicUpdate &update) {
                 robot_.takeSettings(daemon->name, update.json().toObject());
             });
-    for (const Mapping &mapping : mappings())
+    for (const ros::Mapping &mapping : ros::mappings())
         for (const QString &topic : mapping.topics)
             if (hasTopic(*daemon, topic))
                 if (Outlet *const outlet = outletFor(mapping, mapping.isOfEach ? daemon->name : QString())) {
@@ -115,7 +115,7 @@ Bridge::Feed &Bridge::feedOf(RobotDaemons::Daemon *daemon, const QString &topic)
 }
 
 /// The first daemon that has it is known by the plain name, as long as this program runs.
-QString Bridge::nameFor(const Mapping &mapping, const QString &daemon) const {
+QString Bridge::nameFor(const ros::Mapping &mapping, const QString &daemon) const {
     const auto isTaken = [&](const Outlet &one) {
         return one.name == mapping.rosTopic && !one.daemon.isEmpty();
     };
@@ -123,7 +123,7 @@ QString Bridge::nameFor(const Mapping &mapping, const QString &daemon) const {
                                                                   : mapping.rosTopic;
 }
 
-Bridge::Outlet *Bridge::outletFor(const Mapping &mapping, const QString &daemon) {
+Bridge::Outlet *Bridge::outletFor(const ros::Mapping &mapping, const QString &daemon) {
     for (Outlet &outlet : outlets_)
         if (outlet.mapping == &mapping && outlet.daemon == daemon)
             return &outlet;
@@ -174,7 +174,7 @@ void Bridge::take(Feed &feed, const TopicUpdate &update) {
     }
     counts_.dropped += update.dropped - std::min(update.dropped, feed.dropped);
     feed.dropped = update.dropped;
-    const Told told{feed.daemon->name, update.stamp, robot_};
+    const ros::Told told{feed.daemon->name, update.stamp, robot_};
     for (Outlet *const outlet : feed.outlets) {
         if (!outlet->mapping->quality.isLatched && outlet->writer->readers() == 0)
             continue;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/client/RobotDaemons.h"
-#include "daemons/ros2/Mapping.h"
+#include "common/daemon/RobotDaemons.h"
+#include "common/ros/Mapping.h"
 #include "daemons/ros2/NodeGraph.h"
 
 #include <QElapsedTimer>
@@ -25,7 +25,7 @@ public:
 
     Participant &participant() { return *participant_; }
     NodeGraph &graph() { return graph_; }
-    const RobotModel &robot() const { return robot_; }
+    const ros::RobotModel &robot() const { return robot_; }
     /// "scan" becomes "rt/robot1/scan".
     QString ddsTopic(const QString &name) const;
     /// Readers of ours that are told in the graph.
@@ -42,11 +42,11 @@ public:
 private:
     /// A topic of ROS.
     struct Outlet {
-        const Mapping *mapping;
+        const ros::Mapping *mapping;
         QString name;   ///< "scan"
         QString daemon; ///< whose; empty: all that have it
         std::unique_ptr<Writer> writer;
-        std::unique_ptr<Translator> translator;
+        std::unique_ptr<ros::Translator> translator;
         std::string last; ///< a latched state: what was written last
     };
     /// A topic of a daemon, and what is made of it.
@@ -62,8 +62,8 @@ private:
     void greet(RobotDaemons::Daemon *daemon);
     void lose(RobotDaemons::Daemon *daemon);
     Feed &feedOf(RobotDaemons::Daemon *daemon, const QString &topic);
-    Outlet *outletFor(const Mapping &mapping, const QString &daemon);
-    QString nameFor(const Mapping &mapping, const QString &daemon) const;
+    Outlet *outletFor(const ros::Mapping &mapping, const QString &daemon);
+    QString nameFor(const ros::Mapping &mapping, const QString &daemon) const;
     void readersChanged(Outlet &outlet);
     void subscribeAsWanted(Feed &feed);
     void take(Feed &feed, const TopicUpdate &update);
@@ -75,7 +75,7 @@ private:
     RobotDaemons &daemons_;
     std::unique_ptr<Participant> participant_;
     NodeGraph graph_;
-    RobotModel robot_;
+    ros::RobotModel robot_;
     std::deque<Outlet> outlets_; // they stay where they are, as do the feeds
     std::deque<Feed> feeds_;
     std::vector<Guid> readers_;

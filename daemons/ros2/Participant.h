@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "common/ros/Mapping.h"
 
 #include <QObject>
 #include <QStringList>
@@ -19,13 +20,7 @@ namespace hermes::ros2 {
 /// Of an endpoint or participant, as on the wire.
 using Guid = std::array<std::uint8_t, 16>;
 
-/// What a writer offers, or a reader asks for.
-struct Quality {
-    bool isReliable = true;
-    bool isLatched = false; ///< "transient local": who comes later gets what was written last
-    int depth = 5;          ///< samples that are kept; 0: all, up to 1,000
-    double lifespan_s = 0;  ///< after which a sample is void; 0: never
-};
+using ros::Quality;
 
 struct ParticipantOptions {
     int domain = 0;

@@ -198,7 +198,7 @@ void Ros2::takePose(const ros::PoseWithCovarianceStamped &pose, const Reader::Sa
         return;
     }
     const ros::Pose &at = pose.pose.pose;
-    const Mount mount = bridge_->robot().matchedMount().value_or(Mount());
+    const ros::Mount mount = bridge_->robot().matchedMount().value_or(ros::Mount());
     const Pose2D sensor = Pose2D{at.position.x, at.position.y, headingOf(at.orientation)} * mount.pose;
     if (!(std::isfinite(sensor.x) && std::isfinite(sensor.y) && std::isfinite(sensor.theta)))
         return logWarning("ros", "initialpose is no finite pose");

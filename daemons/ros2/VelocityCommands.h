@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/client/ClockOffset.h"
-#include "common/client/RobotDaemons.h"
+#include "common/daemon/RobotDaemons.h"
 #include "common/daemon/GapWatch.h"
 #include "daemons/ros2/Participant.h"
 #include "protocol/messages/Motion.h"

@@ -74,8 +74,8 @@ Fields<WheelMessage> fieldsOf(Of<WheelMessage>) {
 
 Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>) {
     Fields<WheelsMessage> fields;
-    for (std::size_t i = 0; i < wheelCount; ++i)
-        fields.add(wheelNames[i], WheelsMessage::wheels()[i],
+    for (std::size_t i = 0; i < WheelsMessage::count; ++i)
+        fields.add(WheelsMessage::names[i], WheelsMessage::wheels()[i],
                    "Positive turns drive the robot forward; of omni wheels counter-clockwise");
     return fields
         .add("steering", &WheelsMessage::steering, "Of a steered axle, to the left, as commanded", "rad")

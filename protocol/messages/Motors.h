@@ -62,11 +62,6 @@ struct PowerMessage {
     BatteryState battery;
 };
 
-constexpr int wheelCount = 4;
-/// In the order of the messages.
-constexpr std::array<const char *, wheelCount> wheelNames{"front_left", "front_right", "rear_left",
-                                                          "rear_right"};
-
 /// A wheel of the topic `wheels`: rad/s, angle in rad.
 struct WheelMessage {
     double target = 0, setPoint = 0, speed = 0, angle = 0;
@@ -74,13 +69,17 @@ struct WheelMessage {
 
 /// The topic `wheels`, with those that the layout has.
 struct WheelsMessage {
+    static constexpr int count = 4;
+    static constexpr std::array<const char *, count> names{"front_left", "front_right", "rear_left",
+                                                           "rear_right"};
+
     std::optional<WheelMessage> frontLeft, frontRight, rearLeft, rearRight;
     std::optional<double> steering; ///< rad
     double slip = 0;
     Twist2D target; ///< of the robot
 
-    /// In the order of Wheel.
-    static constexpr std::array<std::optional<WheelMessage> WheelsMessage::*, wheelCount> wheels() {
+    /// In the order of their names.
+    static constexpr std::array<std::optional<WheelMessage> WheelsMessage::*, count> wheels() {
         return {&WheelsMessage::frontLeft, &WheelsMessage::frontRight, &WheelsMessage::rearLeft,
                 &WheelsMessage::rearRight};
     }

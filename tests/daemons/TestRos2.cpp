@@ -1,8 +1,8 @@
-#include "daemons/ros2/MapGrid.h"
-#include "daemons/ros2/Motion.h"
+#include "common/ros/MapGrid.h"
+#include "common/ros/Motion.h"
+#include "common/ros/Scans.h"
+#include "common/ros/States.h"
 #include "daemons/ros2/NodeGraph.h"
-#include "daemons/ros2/Scans.h"
-#include "daemons/ros2/States.h"
 #include "tests/support/Rows.h"
 #include "tests/support/Seed.h"
 
@@ -44,7 +44,7 @@ MapEdgeMessage edge(qint64 id, double x1, double y1, double x2, double y2) {
 }
 
 /// A room of 4 m by 3 m about the origin.
-void addRoom(MapGrid &grid) {
+void addRoom(ros::MapGrid &grid) {
     grid.set(edge(1, -2, -1.5, 2, -1.5));
     grid.set(edge(2, 2, -1.5, 2, 1.5));
     grid.set(edge(3, 2, 1.5, -2, 1.5));
@@ -81,8 +81,8 @@ private Q_SLOTS:
     }
     void scansHaveTheSameRaysEachTime() {
         FETCH(int, rays, int, bins);
-        ScanBins convert;
-        RobotModel robot("r1/");
+        ros::ScanBins convert;
+        ros::RobotModel robot("r1/");
         ros::LaserScan scan;
         for (const int changed : {rays, rays + 3, rays / 2 + 1}) {
             QVERIFY(convert(revolution(changed, 2), {scanner, 5, robot}, scan));
@@ -95,9 +95,9 @@ private Q_SLOTS:
     }
 
     void nothingComesBackOnlyFromWhereSomethingDidOnce() {
-        ScanBins convert;
-        const RobotModel robot("");
-        const Told told{scanner, 5, robot};
+        ros::ScanBins convert;
+        const ros::RobotModel robot("");
+        const ros::Told told{scanner, 5, robot};
         ros::LaserScan scan;
         QVERIFY(convert(revolution(2172, 2, 1), told, scan));
         const auto at = [&](double angle) {
@@ -119,7 +119,7 @@ private Q_SLOTS:
     }
 
     void aMapIsUnknownWhereNobodySaw() {
-        MapGrid grid(0.05);
+        ros::MapGrid grid(0.05);
         addRoom(grid);
         grid.set(edge(5, 0.5, -1.5, 0.5, 0)); // a screen
         grid.addPlace(-1, -1);
@@ -142,7 +142,7 @@ private Q_SLOTS:
         std::mt19937 bits(newSeed());
         std::uniform_real_distribution<double> side(1, 6), turn(0, M_PI);
         for (int round = 0; round < 20; ++round) {
-            MapGrid grid(0.05);
+            ros::MapGrid grid(0.05);
             const double a = side(bits), b = side(bits), angle = turn(bits);
             const double c = std::cos(angle), s = std::sin(angle);
             const std::array<std::array<double, 2>, 4> corners{{{-a, -b}, {a, -b}, {a, b}, {-a, b}}};
@@ -171,7 +171,7 @@ private Q_SLOTS:
     }
 
     void poseIsThatOfTheRobot() {
-        RobotModel robot("");
+        ros::RobotModel robot("");
         robot.addScanner("velodynelogger", 7420);
         robot.takeSettings(
             "scanmatcher",
@@ -182,7 +182,7 @@ private Q_SLOTS:
         pose.outcome = "matched";
         pose.trust = 0.9;
         pose.covariance = Covariance{0.01, 0, 0, 0, 0.02, 0, 0, 0, 0.04};
-        MapPose convert;
+        ros::MapPose convert;
         ros::PoseWithCovarianceStamped out;
         QVERIFY(convert(pose, {scanner, 5, robot}, out));
         // The robot looks along x; its centre is half a metre behind the sensor.
@@ -197,7 +197,7 @@ private Q_SLOTS:
         pose.trust = 0.1;
         QVERIFY(convert(pose, {scanner, 5, robot}, out));
         QVERIFY(out.pose.covariance[0] > 1e4);
-        FixedTransforms fixed;
+        ros::FixedTransforms fixed;
         std::string cdr;
         QVERIFY(fixed.refresh(robot, cdr));
         const auto frames = ros::fromCdr<ros::TfMessage>(cdr);
@@ -216,10 +216,10 @@ private Q_SLOTS:
     }
     void theDescriptionIsXmlWithAJointForEachWheel() {
         FETCH(QString, layout, int, wheels);
-        RobotModel robot("<&\"/");
+        ros::RobotModel robot("<&\"/");
         robot.addScanner("a&b", 1);
         robot.takeSettings("motorcontrol", {{"frame", QJsonObject{{"layout", layout}}}});
-        QXmlStreamReader xml(QByteArray::fromStdString(urdfOf(robot)));
+        QXmlStreamReader xml(QByteArray::fromStdString(ros::urdfOf(robot)));
         int joints = 0;
         while (!xml.atEnd())
             if (xml.readNext() == QXmlStreamReader::StartElement && xml.name() == "joint")

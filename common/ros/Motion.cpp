@@ -1,8 +1,8 @@
-#include "daemons/ros2/Motion.h"
+#include "common/ros/Motion.h"
 
 #include "common/Time.h"
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 constexpr double maxPoseAge_s = 2; // of the matcher's last pose, for which the odometry stands in
@@ -12,8 +12,8 @@ constexpr double doubtHeadingVariance = 0.1;            // rad^2
 // Of x, y and the heading among six coordinates.
 constexpr std::array<std::size_t, 9> planar{0, 1, 5, 6, 7, 11, 30, 31, 35};
 
-ros::Covariance6 toCovariance(const Covariance &covariance) {
-    ros::Covariance6 all{};
+Covariance6 toCovariance(const Covariance &covariance) {
+    Covariance6 all{};
     for (std::size_t i = 0; i < planar.size(); ++i)
         all[planar[i]] = covariance[i];
     return all;
@@ -39,7 +39,7 @@ Pose2D baseOf(const Pose2D &sensor, const RobotModel &robot) {
 
 } // namespace
 
-bool OdometryOf::operator()(const OdometryMessage &in, const Told &told, ros::Odometry &out) {
+bool OdometryOf::operator()(const OdometryMessage &in, const Told &told, Odometry &out) {
     out.header = headerOf(told.stamp, told.robot.odometryFrame());
     out.childFrameId = told.robot.baseFrame();
     out.pose = {toPose(in.pose), toCovariance(in.covariance)};
@@ -47,7 +47,7 @@ bool OdometryOf::operator()(const OdometryMessage &in, const Told &told, ros::Od
     return true;
 }
 
-bool MapPose::operator()(const PoseMessage &in, const Told &told, ros::PoseWithCovarianceStamped &out) {
+bool MapPose::operator()(const PoseMessage &in, const Told &told, PoseWithCovarianceStamped &out) {
     const Pose2D base = baseOf(in.pose, told.robot);
     Covariance covariance{openVariance, 0, 0, 0, openVariance, 0, 0, 0, doubtHeadingVariance};
     if (in.covariance)
@@ -62,14 +62,14 @@ bool MapPose::operator()(const PoseMessage &in, const Told &told, ros::PoseWithC
     return true;
 }
 
-bool JointsOf::operator()(const WheelsMessage &in, const Told &told, ros::JointState &out) {
+bool JointsOf::operator()(const WheelsMessage &in, const Told &told, JointState &out) {
     out.header = headerOf(told.stamp, {});
     out.name.clear();
     out.position.clear();
     out.velocity.clear();
-    for (std::size_t i = 0; i < wheelCount; ++i)
+    for (std::size_t i = 0; i < WheelsMessage::count; ++i)
         if (const std::optional<WheelMessage> &wheel = in.*WheelsMessage::wheels()[i]) {
-            out.name.push_back(std::string(wheelNames[i]) + "_wheel_joint");
+            out.name.push_back(std::string(WheelsMessage::names[i]) + "_wheel_joint");
             out.position.push_back(wheel->angle);
             out.velocity.push_back(wheel->speed);
         }
@@ -92,7 +92,7 @@ bool Transforms::take(const TopicUpdate &update, const Told &told, std::string &
         problem = report.text();
     if (out_.transforms.empty())
         return false;
-    ros::toCdr(out_, cdr);
+    toCdr(out_, cdr);
     return true;
 }
 
@@ -120,11 +120,11 @@ void Transforms::takePose(const PoseMessage &pose, const Told &told) {
 /// The wheel's own turn is about its axis, y.
 void Transforms::takeWheels(const WheelsMessage &wheels, const Told &told) {
     for (const WheelPlace &place : told.robot.wheels())
-        for (std::size_t i = 0; i < wheelCount; ++i) {
+        for (std::size_t i = 0; i < WheelsMessage::count; ++i) {
             const std::optional<WheelMessage> &wheel = wheels.*WheelsMessage::wheels()[i];
-            if (!wheel || place.name != wheelNames[i])
+            if (!wheel || place.name != WheelsMessage::names[i])
                 continue;
-            ros::Transform transform = toTransform(place.pose);
+            Transform transform = toTransform(place.pose);
             transform.translation.z = place.radius;
             const double s = std::sin(place.pose.theta / 2), c = std::cos(place.pose.theta / 2);
             const double t = std::sin(wheel->angle / 2), u = std::cos(wheel->angle / 2);
@@ -134,22 +134,22 @@ void Transforms::takeWheels(const WheelsMessage &wheels, const Told &told) {
         }
 }
 
-void Transforms::add(const ros::Header &parent, const std::string &child, const ros::Transform &transform) {
+void Transforms::add(const Header &parent, const std::string &child, const Transform &transform) {
     out_.transforms.push_back({parent, child, transform});
 }
 
 bool FixedTransforms::refresh(const RobotModel &robot, std::string &cdr) {
     if (std::exchange(revision_, robot.revision()) == robot.revision())
         return false;
-    ros::TfMessage message;
+    TfMessage message;
     for (const auto &[daemon, mount] : robot.mounts()) {
-        ros::Transform transform = toTransform(mount.pose);
+        Transform transform = toTransform(mount.pose);
         transform.rotation = toQuaternion(mount);
         message.transforms.push_back(
             {headerOf(stampNow(), robot.baseFrame()), robot.sensorFrame(daemon), transform});
     }
-    ros::toCdr(message, cdr);
+    toCdr(message, cdr);
     return !message.transforms.empty();
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -1,20 +1,17 @@
-#include "daemons/ros2/States.h"
+#include "common/ros/States.h"
 
 #include "common/Time.h"
 
 #include <cmath>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 constexpr double deviationPerDilution = 5; // m: of a usual receiver, for each unit of its HDOP
 
-ros::Octet levelOf(const QString &level) {
-    using S = ros::DiagnosticStatus;
-    return ros::Octet(level == "ok"      ? S::Ok
-                      : level == "warn"  ? S::Warn
-                      : level == "error" ? S::Error
-                                         : S::Stale);
+Octet levelOf(const QString &level) {
+    using S = DiagnosticStatus;
+    return Octet(level == "ok" ? S::Ok : level == "warn" ? S::Warn : level == "error" ? S::Error : S::Stale);
 }
 
 std::string textOf(const QJsonValue &value) {
@@ -24,8 +21,8 @@ std::string textOf(const QJsonValue &value) {
     return whole.mid(1, whole.size() - 2).toStdString();
 }
 
-ros::DiagnosticStatus statusOf(const QString &daemon, const HealthItem &item) {
-    ros::DiagnosticStatus status;
+DiagnosticStatus statusOf(const QString &daemon, const HealthItem &item) {
+    DiagnosticStatus status;
     status.level = levelOf(item.level);
     status.name = (daemon + ": " + item.name).toStdString();
     status.message = item.message.toStdString();
@@ -37,7 +34,7 @@ ros::DiagnosticStatus statusOf(const QString &daemon, const HealthItem &item) {
 
 } // namespace
 
-bool BatteryOf::operator()(const PowerMessage &in, const Told &told, ros::BatteryState &out) {
+bool BatteryOf::operator()(const PowerMessage &in, const Told &told, BatteryState &out) {
     out = {};
     out.header = headerOf(told.stamp, told.robot.baseFrame());
     double volts = 0;
@@ -59,7 +56,7 @@ bool BatteryOf::operator()(const PowerMessage &in, const Told &told, ros::Batter
     return true;
 }
 
-bool FixOf::operator()(const FixMessage &in, const Told &told, ros::NavSatFix &out) {
+bool FixOf::operator()(const FixMessage &in, const Told &told, NavSatFix &out) {
     const FixValues &fix = in.values;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     out = {};
@@ -78,8 +75,8 @@ bool FixOf::operator()(const FixMessage &in, const Told &told, ros::NavSatFix &o
     return true;
 }
 
-bool LogOf::operator()(const LogMessage &in, const Told &told, ros::Log &out) {
-    using L = ros::Log;
+bool LogOf::operator()(const LogMessage &in, const Told &told, Log &out) {
+    using L = Log;
     out.stamp = toTime(in.stamp);
     out.level = in.level == "error"     ? L::Error
                 : in.level == "warning" ? L::Warn
@@ -97,7 +94,7 @@ bool Diagnostics::take(const TopicUpdate &update, const Told &told, std::string 
         problem = report.text();
         return false;
     }
-    std::vector<ros::DiagnosticStatus> &own = all_[told.daemon];
+    std::vector<DiagnosticStatus> &own = all_[told.daemon];
     own.clear();
     for (const HealthItem &item : status->health)
         own.push_back(statusOf(told.daemon, item));
@@ -110,11 +107,11 @@ bool Diagnostics::take(const TopicUpdate &update, const Told &told, std::string 
 }
 
 bool Diagnostics::refresh(const RobotModel &, std::string &cdr) {
-    ros::DiagnosticArray array;
+    DiagnosticArray array;
     array.header = headerOf(stampNow(), {});
     for (const auto &[daemon, items] : all_)
         array.status.insert(array.status.end(), items.begin(), items.end());
-    ros::toCdr(array, cdr);
+    toCdr(array, cdr);
     return !array.status.empty();
 }
 
@@ -132,8 +129,8 @@ void Diagnostics::lose(const QString &daemon) {
 bool Description::refresh(const RobotModel &robot, std::string &cdr) {
     if (std::exchange(revision_, robot.revision()) == robot.revision())
         return false;
-    ros::toCdr(ros::String{urdfOf(robot)}, cdr);
+    toCdr(String{urdfOf(robot)}, cdr);
     return true;
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

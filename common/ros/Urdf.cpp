@@ -1,9 +1,9 @@
-#include "daemons/ros2/States.h"
+#include "common/ros/States.h"
 
 #include <QString>
 #include <cmath>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 constexpr double bodyHeight = 0.15, sensorHeight = 0.25, wheelWidth = 0.06,
@@ -64,4 +64,4 @@ std::string urdfOf(const RobotModel &robot) {
     return (text + "</robot>\n").toStdString();
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -1,11 +1,11 @@
-#include "daemons/ros2/MapMessages.h"
+#include "common/ros/MapMessages.h"
 
 #include "common/Time.h"
-#include "daemons/ros2/Motion.h"
+#include "common/ros/Motion.h"
 
 #include <cmath>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 constexpr double drawnShare = 0.1; // of one core
@@ -67,7 +67,7 @@ bool GridOfMap::refresh(const RobotModel &robot, std::string &cdr) {
     const double begin = monotonicNow();
     if (begin < next_ || grid_.isEmpty() || !isNew())
         return false; // a map without cells is none for navigation
-    ros::OccupancyGrid drawn;
+    OccupancyGrid drawn;
     grid_.draw(drawn);
     next_ = monotonicNow() + (monotonicNow() - begin) / drawnShare;
     if (drawn.data == out_.data && drawn.info.width == out_.info.width)
@@ -75,19 +75,19 @@ bool GridOfMap::refresh(const RobotModel &robot, std::string &cdr) {
     out_ = std::move(drawn);
     out_.header = headerOf(stamp_, robot.mapFrame());
     out_.info.mapLoadTime = out_.header.stamp;
-    ros::toCdr(out_, cdr);
+    toCdr(out_, cdr);
     return true;
 }
 
 bool WallsOfMap::refresh(const RobotModel &robot, std::string &cdr) {
     if (!isNew())
         return false;
-    ros::MarkerArray array;
+    MarkerArray array;
     array.markers.resize(1);
     grid_.draw(array.markers[0]);
     array.markers[0].header = headerOf(stamp_, robot.mapFrame());
-    ros::toCdr(array, cdr);
+    toCdr(array, cdr);
     return true;
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 
 /// Where a sensor is on the robot.
 struct Mount {
@@ -69,12 +69,12 @@ private:
     int revision_ = 0;
 };
 
-ros::Time toTime(double stamp);
-ros::Header headerOf(double stamp, const std::string &frame);
+Time toTime(double stamp);
+Header headerOf(double stamp, const std::string &frame);
 /// In the plane, at this heading.
-ros::Quaternion toQuaternion(double theta);
-ros::Quaternion toQuaternion(const Mount &mount);
-ros::Pose toPose(const Pose2D &pose);
-ros::Transform toTransform(const Pose2D &pose);
+Quaternion toQuaternion(double theta);
+Quaternion toQuaternion(const Mount &mount);
+Pose toPose(const Pose2D &pose);
+Transform toTransform(const Pose2D &pose);
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

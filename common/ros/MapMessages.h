@@ -1,12 +1,12 @@
 #pragma once
 
-#include "daemons/ros2/MapGrid.h"
-#include "daemons/ros2/Mapping.h"
+#include "common/ros/MapGrid.h"
+#include "common/ros/Mapping.h"
 #include "protocol/messages/Matching.h"
 
 #include <set>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 
 /// The map, kept from its changes; of which something is drawn at most once a second, and only when it
 /// changed.
@@ -39,7 +39,7 @@ public:
     bool refresh(const RobotModel &robot, std::string &cdr) override;
 
 private:
-    ros::OccupancyGrid out_;
+    OccupancyGrid out_;
     double next_ = 0; ///< of monotonicNow()
 };
 
@@ -49,4 +49,4 @@ public:
     bool refresh(const RobotModel &robot, std::string &cdr) override;
 };
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -1,10 +1,10 @@
-#include "daemons/ros2/MapGrid.h"
+#include "common/ros/MapGrid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 constexpr std::int8_t unknownCell = -1, freeCell = 0, wallCell = 100;
@@ -88,7 +88,7 @@ void MapGrid::remove(qint64 id) {
     edges_.erase(id);
 }
 
-void MapGrid::draw(ros::OccupancyGrid &grid) const {
+void MapGrid::draw(OccupancyGrid &grid) const {
     grid.info = {};
     grid.data.clear();
     grid.info.resolution = float(cell_);
@@ -122,9 +122,9 @@ void MapGrid::draw(ros::OccupancyGrid &grid) const {
         drawing.lookFrom((place.x - x0) / cell, (place.y - y0) / cell, reach / cell);
 }
 
-void MapGrid::draw(ros::Marker &marker) const {
+void MapGrid::draw(Marker &marker) const {
     marker.space = "walls";
-    marker.type = ros::Marker::LineList;
+    marker.type = Marker::LineList;
     marker.scale = {lineWidth, 0, 0};
     marker.color = {0.9f, 0.9f, 0.2f, 1};
     marker.points.clear();
@@ -134,4 +134,4 @@ void MapGrid::draw(ros::Marker &marker) const {
     }
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "daemons/ros2/RobotModel.h"
+#include "common/ros/RobotModel.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/ros/Messages.h"
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 
 struct Told;
 
@@ -13,7 +13,7 @@ struct Told;
 /// is NaN.
 class ScanBins {
 public:
-    bool operator()(const ScanMessage &in, const Told &told, ros::LaserScan &out);
+    bool operator()(const ScanMessage &in, const Told &told, LaserScan &out);
 
 private:
     std::vector<bool> isSeen_; ///< of each ray: something came back from there once
@@ -21,7 +21,7 @@ private:
 
 /// Points with x, y, z, intensity, ring and time, as the Velodyne driver of ROS lays them out.
 struct CloudPoints {
-    bool operator()(const CloudMessage &in, const Told &told, ros::PointCloud &out);
+    bool operator()(const CloudMessage &in, const Told &told, PointCloud &out);
 };
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

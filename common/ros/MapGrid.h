@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 
 /// The vector map as cells. A cell that an edge touches is occupied. A cell is free when it was seen through:
 /// it lies between a place where the sensor was and the first wall in some direction. All others are unknown.
@@ -28,9 +28,9 @@ public:
     void addPlace(double x, double y) { places_.push_back({x, y}); }
 
     /// All cells; header and time are the caller's.
-    void draw(ros::OccupancyGrid &grid) const;
+    void draw(OccupancyGrid &grid) const;
     /// The edges as lines.
-    void draw(ros::Marker &marker) const;
+    void draw(Marker &marker) const;
 
     static constexpr double reach = 30; ///< m: nothing is seen through beyond
 
@@ -45,4 +45,4 @@ private:
     std::vector<Place> places_;
 };
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/ros2/Mapping.h"
+#include "common/ros/Mapping.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/messages/Fixes.h"
 #include "protocol/messages/Motors.h"
@@ -8,22 +8,22 @@
 
 #include <map>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 
 /// The robot's battery: the mean voltage of the controllers that answer, and what the gauge knows.
 struct BatteryOf {
-    bool operator()(const PowerMessage &in, const Told &told, ros::BatteryState &out);
+    bool operator()(const PowerMessage &in, const Told &told, BatteryState &out);
 };
 
 /// Where the GPS receiver is. Its height above the ellipsoid is not known (NaN): receivers tell that above
 /// the sea.
 struct FixOf {
-    bool operator()(const FixMessage &in, const Told &told, ros::NavSatFix &out);
+    bool operator()(const FixMessage &in, const Told &told, NavSatFix &out);
 };
 
 /// Lines of the log.
 struct LogOf {
-    bool operator()(const LogMessage &in, const Told &told, ros::Log &out);
+    bool operator()(const LogMessage &in, const Told &told, Log &out);
 };
 
 /// The health of every daemon, all of it once a second. A daemon that does not answer any more is stale.
@@ -34,7 +34,7 @@ public:
     void lose(const QString &daemon) override;
 
 private:
-    std::map<QString, std::vector<ros::DiagnosticStatus>> all_;
+    std::map<QString, std::vector<DiagnosticStatus>> all_;
 };
 
 /// The robot as a text in URDF: its body, wheels and sensors.
@@ -49,4 +49,4 @@ private:
 
 std::string urdfOf(const RobotModel &robot);
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

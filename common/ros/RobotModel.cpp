@@ -1,9 +1,9 @@
-#include "daemons/ros2/RobotModel.h"
+#include "common/ros/RobotModel.h"
 
 #include <QUrl>
 #include <cmath>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 /// Of "HOST:PORT" or a URL; 0: none.
@@ -83,34 +83,34 @@ std::optional<Mount> RobotModel::matchedMount() const {
     return matched_.empty() ? std::nullopt : std::optional(matched_.front().mount);
 }
 
-ros::Time toTime(double stamp) {
+Time toTime(double stamp) {
     const double seconds = std::floor(stamp);
-    ros::Time time;
+    Time time;
     time.sec = std::int32_t(std::max(-2147483648.0, std::min(2147483647.0, seconds)));
     time.nanosec = std::min(999999999u, std::uint32_t(std::lround((stamp - seconds) * 1e9)));
     return time;
 }
 
-ros::Header headerOf(double stamp, const std::string &frame) {
+Header headerOf(double stamp, const std::string &frame) {
     return {toTime(stamp), frame};
 }
 
-ros::Quaternion toQuaternion(double theta) {
+Quaternion toQuaternion(double theta) {
     return {0, 0, std::sin(theta / 2), std::cos(theta / 2)};
 }
 
 /// Upside down: turned by half a revolution about its own x axis.
-ros::Quaternion toQuaternion(const Mount &mount) {
+Quaternion toQuaternion(const Mount &mount) {
     const double s = std::sin(mount.pose.theta / 2), c = std::cos(mount.pose.theta / 2);
-    return mount.isUpsideDown ? ros::Quaternion{c, s, 0, 0} : ros::Quaternion{0, 0, s, c};
+    return mount.isUpsideDown ? Quaternion{c, s, 0, 0} : Quaternion{0, 0, s, c};
 }
 
-ros::Pose toPose(const Pose2D &pose) {
+Pose toPose(const Pose2D &pose) {
     return {{pose.x, pose.y, 0}, toQuaternion(pose.theta)};
 }
 
-ros::Transform toTransform(const Pose2D &pose) {
+Transform toTransform(const Pose2D &pose) {
     return {{pose.x, pose.y, 0}, toQuaternion(pose.theta)};
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

@@ -1,12 +1,19 @@
 #pragma once
 
 #include "common/client/Client.h"
-#include "daemons/ros2/Participant.h"
-#include "daemons/ros2/RobotModel.h"
+#include "common/ros/RobotModel.h"
 #include "protocol/ros/Cdr.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes::ros2 {
+namespace hermes::ros {
+
+/// What a writer of DDS offers, or a reader asks for.
+struct Quality {
+    bool isReliable = true;
+    bool isLatched = false; ///< "transient local": who comes later gets what was written last
+    int depth = 5;          ///< samples that are kept; 0: all, up to 1,000
+    double lifespan_s = 0;  ///< after which a sample is void; 0: never
+};
 
 /// What goes with a message of Hermes.
 struct Told {
@@ -57,7 +64,7 @@ public:
             problem = report.text();
         if (!in || !convert_(*in, told, out_))
             return false;
-        ros::toCdr(out_, cdr);
+        toCdr(out_, cdr);
         return true;
     }
 
@@ -66,4 +73,4 @@ private:
     Out out_; // its memory is used again
 };
 
-} // namespace hermes::ros2
+} // namespace hermes::ros

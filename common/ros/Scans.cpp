@@ -1,11 +1,11 @@
-#include "daemons/ros2/Scans.h"
+#include "common/ros/Scans.h"
 
-#include "daemons/ros2/Mapping.h"
+#include "common/ros/Mapping.h"
 
 #include <cmath>
 #include <cstring>
 
-namespace hermes::ros2 {
+namespace hermes::ros {
 namespace {
 
 constexpr float leastRange = 0.05f, greatestRange = 130; // m: no scanner that Hermes knows sees farther
@@ -26,7 +26,7 @@ std::size_t binsFor(std::size_t rays) {
 
 } // namespace
 
-bool ScanBins::operator()(const ScanMessage &in, const Told &told, ros::LaserScan &out) {
+bool ScanBins::operator()(const ScanMessage &in, const Told &told, LaserScan &out) {
     const std::size_t points = std::min({in.x.size(), in.y.size(), in.intensity.size()});
     if (isSeen_.empty()) {
         if (in.header.partial || points == 0)
@@ -63,8 +63,8 @@ bool ScanBins::operator()(const ScanMessage &in, const Told &told, ros::LaserSca
     return true;
 }
 
-bool CloudPoints::operator()(const CloudMessage &in, const Told &told, ros::PointCloud &out) {
-    using F = ros::PointField;
+bool CloudPoints::operator()(const CloudMessage &in, const Told &told, PointCloud &out) {
+    using F = PointField;
     const std::size_t points =
         std::min({in.x.size(), in.y.size(), in.z.size(), in.laser.size(), in.intensity.size()});
     out.header = headerOf(in.header.stamp, told.robot.sensorFrame(told.daemon));
@@ -87,4 +87,4 @@ bool CloudPoints::operator()(const CloudMessage &in, const Told &told, ros::Poin
     return true;
 }
 
-} // namespace hermes::ros2
+} // namespace hermes::ros
