@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
 """hermes-ros2 among nodes of ROS 2: its types and their hashes, qualities of service, its name in the graph in the form that the others have,
 health and log, and a name space."""
+import random
+import signal
+import socket
+import struct
+import time
 import unittest
 
 from ros2_robot import Ros2Case, skip_without_programs
-from ros2_support import free_domain, ros_cdr, wire_name
-from support import release, wait_for
+from ros2_support import free_domain, ros_cdr, stamp_of, wire_name
+from support import PATIENCE, release, wait_for
 
 GRAPH, GRAPH_TYPE = "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 LEVELS = {"ok": 0, "warn": 1, "error": 2, "stale": 3}
@@ -145,6 +150,61 @@ class Graph(Ros2Case):
         common = {wire_name(topic) for topic in ("/tf", "/tf_static", "/diagnostics", "/rosout")}  # ROS has them once, whoever writes
         self.assertEqual([topic for topic in topics - common if not topic.startswith("rt/robot1/")], [])
         process.stop()
+
+    def test_reader_that_hangs_holds_up_nobody(self):
+        """It asks for reliability, and falls silent."""
+        hung, other = self.peer(), self.peer()
+        for peer in (hung, other):
+            peer.read("/scan", "sensor_msgs/LaserScan")
+            peer.wait_for_count("/scan", 3)
+        hung.process.send_signal(signal.SIGSTOP)
+        try:
+            count = len(other.samples_of("/scan"))
+            other.wait_for_count("/scan", count + 40)  # four seconds
+        finally:
+            hung.process.send_signal(signal.SIGCONT)
+        stamps = [stamp_of(message) for message in other.messages("/scan")[count:]]
+        self.assertLess(max(b - a for a, b in zip(stamps, stamps[1:])), 0.15, "scans are missing")
+        hung.wait("/scan", lambda message: stamp_of(message) > stamps[-1])
+
+    def test_daemon_that_dies_comes_back(self):
+        peer = self.peer()
+        peer.read("/scan", "sensor_msgs/LaserScan")
+        peer.wait_for_count("/scan", 3)
+        self.robot.processes["velodynelogger"].process.kill()
+        self.robot.processes["velodynelogger"].process.wait()
+        count = len(peer.samples_of("/scan"))
+        self.robot.start("velodynelogger")
+        peer.wait_for_count("/scan", count + 10)
+
+    def test_noise_on_its_ports(self):
+        """Datagrams that mean nothing end nothing, and fill no log."""
+        noise, sender = random.Random(1), socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        with sender, open(self.process.log_name, encoding="utf-8") as log:
+            before = len(log.readlines())
+            for _ in range(10000):
+                body = noise.randbytes(noise.randrange(1, 120))
+                head = b"RTPS\2\1\1\x0f" + noise.randbytes(12) + struct.pack("<BBH", noise.choice((7, 9, 21, 22)), 5, len(body))
+                sender.sendto(head + body, ("127.0.0.1", 7400 + 250 * self.domain + 10 + noise.randrange(4)))
+            peer = self.peer()
+            peer.read("/odom", "nav_msgs/Odometry")
+            peer.wait_for_count("/odom", 20)
+            self.assertLess(len(log.readlines()), 100, before)
+        with open(f"/proc/{self.process.process.pid}/status", encoding="ascii") as status:
+            (resident,) = [int(line.split()[1]) for line in status if line.startswith("VmRSS")]
+        self.assertLess(resident, 150000)  # kB
+
+    def test_end(self):
+        domain = free_domain()
+        process, _ = self.ros2(domain)
+        peer = self.peer(domain)
+        wait_for("the daemon", lambda: peer.writers_of("/odom"))
+        peer.read("/odom", "nav_msgs/Odometry")
+        peer.wait_for_count("/odom", 3)
+        began = time.monotonic()
+        self.assertEqual(process.stop(), 0)
+        self.assertLess(time.monotonic() - began, 2 * PATIENCE)
+
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ class Robot:
         line, gps = os.path.join(folder, "motors"), os.path.join(folder, "gps")
         self.ports = {name: free_port(0) for name in ("simulator", "motorcontrol", "velodynelogger", "seriallogger", "scanmatcher")}
         serial = f"serial://{line}?baud=115200"
-        settings = {
+        self.settings = {
             "simulator": {"world": world, "lidar.port": lidar, "lidar.position_port": position, "motors.link": line, "gps.link": gps},
             "velodynelogger": {"source.port": lidar, "source.address": "127.0.0.1", "source.position_port": position},
             "seriallogger": {"ports": json.dumps([{"name": "gps", "url": f"serial://{gps}?baud=9600", "view": "nmea"}])},
@@ -70,12 +70,18 @@ class Robot:
                             "odometry.address": f"127.0.0.1:{self.ports['motorcontrol']}", "sensor.x_m": MOUNT[0],
                             "sensor.y_m": MOUNT[1], "sensor.theta_rad": MOUNT[2]}}
         self.processes, self.daemons = {}, {}
-        for name, values in settings.items():
-            self.processes[name] = Process(BINARIES, name, self.ports[name], folder, values)
-            self.daemons[name] = self.processes[name].connect()
+        for name in self.settings:
+            self.start(name)
         self.motors, self.simulator, self.matcher = (self.daemons[name] for name in ("motorcontrol", "simulator", "scanmatcher"))
         wait_for("poses", lambda: self.matcher.call("matcher.state")["matched"] > 3)
         wait_for("the wheels", lambda: self.motors.call("motor.state")["ready"])
+
+    def start(self, name):
+        """Also again, after it was killed."""
+        self.processes[name] = Process(BINARIES, name, self.ports[name], self.folder, self.settings[name])
+        if name in self.daemons:
+            self.daemons[name].close()
+        self.daemons[name] = self.processes[name].connect()
 
     def addresses(self):
         """As the setting `daemons` of the daemon takes them."""
