@@ -129,7 +129,7 @@ class Graph(Ros2Case):
         peer.wait_for_match("/rosout", "reader")
         motors = self.robot.motors
         motors.call("motor.estop")
-        records = lambda: [one for one in motors.call("log.tail", count=20) if one["level"] == "warning"]  # noqa: E731
+        records = lambda: [one for one in motors.call("log.tail", count=20) if one["level"] in ("warning", "error")]  # noqa: E731
         record = wait_for("a warning", records)[-1]
         found = peer.wait("/rosout", lambda message: record["text"] in message["msg"])
         self.assertEqual(found["level"], LOG_LEVELS[record["level"]])
