@@ -90,7 +90,7 @@ class Graph(Ros2Case):
         listed, prefix = peer.listed(), bytes(message["gid"]["data"])[:12].hex()
         for side, gids in (("writers", node["writer_gid_seq"]), ("readers", node["reader_gid_seq"])):
             told = {bytes(gid["data"])[:16].hex() for gid in gids if not any(gid["data"][16:size])}
-            there = {guid for guid, one in listed[side].items() if guid.startswith(prefix) and one["topic"].startswith("rt/")}
+            there = {guid for guid, one in listed[side].items() if guid.startswith(prefix) and one["topic"][:3] in ("rt/", "rq/", "rr/")}
             self.assertEqual(told, there, side)
         self.assertIn(message["gid"]["data"][:16].hex(), listed["participants"])
 
