@@ -2,6 +2,7 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
+#include "protocol/ros/Messages.h"
 
 #include <algorithm>
 
@@ -35,6 +36,9 @@ Bridge::Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Pa
     connect(&daemons, &RobotDaemons::went, this, &Bridge::lose);
     connect(&second_, &QTimer::timeout, this, &Bridge::refresh);
     second_.start(period);
+    if (options.tellsReplays)
+        if (auto clock = participant_->write("rt/clock", ros::typeOf<ros::Clock>(), {false, false, 1}))
+            clock_ = clock.take();
     for (const ros::Mapping &mapping : ros::mappings())
         if (!mapping.isOfEach)
             outletFor(mapping, {});
@@ -147,10 +151,14 @@ void Bridge::subscribeAsWanted(Feed &feed) {
 }
 
 void Bridge::take(Feed &feed, const TopicUpdate &update) {
-    if (update.replayed) { // it says nothing of the robot of now
-        ++counts_.replayed;
+    const bool isReplayed =
+        update.replayed || update.data["replayed"].boolean(); // by who replays it, or has it
+    if (isReplayed != options_.tellsReplays) {                // what was is never mixed with what is
+        ++counts_.leftOut;
         return;
     }
+    if (clock_)
+        tellTime(update.stamp);
     counts_.dropped += update.dropped - std::min(update.dropped, feed.dropped);
     feed.dropped = update.dropped;
     const ros::Told told{feed.daemon->name, update.stamp, robot_};
@@ -165,6 +173,15 @@ void Bridge::take(Feed &feed, const TopicUpdate &update) {
             counts_.lastProblem = feed.daemon->name + '/' + update.topic + ": " + problem;
         }
     }
+}
+
+/// Of what is replayed: nodes with use_sim_time live by it. It goes back when the replay does.
+void Bridge::tellTime(double stamp) {
+    constexpr double step_s = 0.01, late_s = 0.5; // topics come a little out of order
+    if (stamp < toldTime_ + step_s && stamp > toldTime_ - late_s)
+        return;
+    toldTime_ = stamp;
+    clock_->write(ros::toCdr(ros::Clock{ros::toTime(stamp)}));
 }
 
 void Bridge::write(Outlet &outlet) {
@@ -182,6 +199,8 @@ void Bridge::refresh() {
 
 void Bridge::tellGraph() {
     std::vector<Guid> writers = writers_;
+    if (clock_)
+        writers.push_back(clock_->guid());
     for (const Outlet &outlet : outlets_)
         if (outlet.writer)
             writers.push_back(outlet.writer->guid());

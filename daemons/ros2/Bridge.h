@@ -16,8 +16,9 @@ public:
     struct Options {
         ParticipantOptions network;
         GraphForm graph = GraphForm::Auto;
-        QString space;       ///< "/robot1", or empty
-        QString framePrefix; ///< "robot1/", or empty
+        QString space;             ///< "/robot1", or empty
+        QString framePrefix;       ///< "robot1/", or empty
+        bool tellsReplays = false; ///< what is replayed and nothing else, with /clock; else all but that
     };
 
     static Result<std::unique_ptr<Bridge>> open(const Options &options, RobotDaemons &daemons);
@@ -37,7 +38,7 @@ public:
     /// How many topics there are, how many have readers, what was written and could not be.
     struct Counts {
         int topics = 0, read = 0;
-        quint64 written = 0, unreadable = 0, replayed = 0, dropped = 0;
+        quint64 written = 0, unreadable = 0, leftOut = 0, dropped = 0;
         QString lastProblem;
     };
     Counts counts() const;
@@ -70,6 +71,7 @@ private:
     void subscribeAsWanted(Feed &feed);
     void take(Feed &feed, const TopicUpdate &update);
     void write(Outlet &outlet);
+    void tellTime(double stamp);
     void refresh();
     void tellGraph();
 
@@ -82,6 +84,8 @@ private:
     std::deque<Feed> feeds_;
     std::vector<Guid> readers_, writers_;            ///< of others
     std::map<RobotDaemons::Daemon *, int> settings_; ///< handles of the subscriptions
+    std::unique_ptr<Writer> clock_;                  ///< of replays
+    double toldTime_ = 0;                            ///< its last stamp
     std::string cdr_;
     Counts counts_;
     QTimer second_;

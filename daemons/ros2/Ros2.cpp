@@ -58,6 +58,10 @@ void Ros2::declareSettings() {
         .with("pattern", "^$|^[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$");
     table.define("frame_prefix", "", "Of all frames, for several robots: robot1/")
         .with("pattern", "^[A-Za-z0-9_/]{0,100}$");
+    table.define("replays", false,
+                 "Tells what the robot's daemons replay, and nothing else, with /clock: for a second "
+                 "hermes-ros2 with a domain "
+                 "or namespace of its own");
     table.group("Network", Applies::OnRestart);
     table.define("domain", 0, "ROS_DOMAIN_ID: only nodes with the same one see each other", "", 0, 232);
     table.defineList("networks",
@@ -97,6 +101,7 @@ Bridge::Options Ros2::options() {
     const QString space = settings().text("namespace");
     options.space = space.isEmpty() ? QString() : '/' + space;
     options.framePrefix = settings().text("frame_prefix");
+    options.tellsReplays = settings().flag("replays");
     return options;
 }
 
@@ -173,7 +178,7 @@ Result<void> Ros2::listenToRos() {
 }
 
 bool Ros2::mayCommand(const char *topic, const Guid &writer) {
-    if (settings().flag("commands"))
+    if (settings().flag("commands") && !settings().flag("replays"))
         return true;
     if (forbidden_++ == 0)
         logWarning("ros", QString("%1 of %2 is refused: the setting \"commands\" is false")
@@ -299,7 +304,7 @@ void Ros2::updateHealth() {
                   {"read", counts.read},
                   {"written", double(counts.written)},
                   {"unreadable", double(counts.unreadable + unreadable_)},
-                  {"replayed", double(counts.replayed)},
+                  {"left_out", double(counts.leftOut)},
                   {"dropped", double(counts.dropped)}});
     const bool mayCommand = settings().flag("commands");
     const VelocityCommands::Counts &taken = velocity_->counts();
