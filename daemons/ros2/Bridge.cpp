@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds period{1000}; // of refreshing
 constexpr int maxOutlets = 200;
+constexpr double matcherWait_s = 3;
 
 bool hasTopic(const RobotDaemons::Daemon &daemon, const QString &name) {
     return std::any_of(daemon.topics.begin(), daemon.topics.end(),
@@ -75,7 +76,31 @@ void Bridge::greet(RobotDaemons::Daemon *daemon) {
         settings_[daemon] =
             daemon->client->subscribe("settings", {}, [this, daemon](const TopicUpdate &update) {
                 robot_.takeSettings(daemon->name, update.json().toObject());
+                receive();
             });
+    newcomers_.push_back({daemon, monotonicNow()});
+    receive();
+}
+
+/// Of several scanners the one that is matched has the plain names, whoever came first: the matcher is waited
+/// for, a little while.
+void Bridge::receive() {
+    std::stable_partition(newcomers_.begin(), newcomers_.end(), [this](const Newcomer &one) {
+        return robot_.isMatched(one.daemon->name).value_or(false);
+    });
+    const bool hasScan = std::any_of(outlets_.begin(), outlets_.end(),
+                                     [](const Outlet &outlet) { return outlet.name == "scan"; });
+    for (auto one = newcomers_.begin(); one != newcomers_.end();) {
+        const bool isMatched = robot_.isMatched(one->daemon->name).value_or(false);
+        const bool mustWait = hasTopic(*one->daemon, "scan2d") && !isMatched && !hasScan &&
+                              monotonicNow() - one->since < matcherWait_s;
+        if (!mustWait)
+            attach(one->daemon);
+        one = mustWait ? one + 1 : newcomers_.erase(one);
+    }
+}
+
+void Bridge::attach(RobotDaemons::Daemon *daemon) {
     for (const ros::Mapping &mapping : ros::mappings())
         for (const QString &topic : mapping.topics)
             if (hasTopic(*daemon, topic))
@@ -192,6 +217,7 @@ void Bridge::write(Outlet &outlet) {
 }
 
 void Bridge::refresh() {
+    receive();
     for (Outlet &outlet : outlets_)
         if (outlet.translator->refresh(robot_, stampNow(), cdr_))
             write(outlet);

@@ -64,6 +64,8 @@ private:
 
     Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Participant> participant);
     void greet(RobotDaemons::Daemon *daemon);
+    void receive();
+    void attach(RobotDaemons::Daemon *daemon);
     void lose(RobotDaemons::Daemon *daemon);
     Feed &feedOf(RobotDaemons::Daemon *daemon, const QString &topic);
     Outlet *outletFor(const ros::Mapping &mapping, const QString &daemon);
@@ -82,6 +84,11 @@ private:
     ros::RobotModel robot_;
     std::deque<Outlet> outlets_; // they stay where they are, as do the feeds
     std::deque<Feed> feeds_;
+    struct Newcomer {
+        RobotDaemons::Daemon *daemon;
+        double since; ///< of monotonicNow()
+    };
+    std::deque<Newcomer> newcomers_;                 ///< that have no topics yet
     std::vector<Guid> readers_, writers_;            ///< of others
     std::map<RobotDaemons::Daemon *, int> settings_; ///< handles of the subscriptions
     std::unique_ptr<Writer> clock_;                  ///< of replays

@@ -153,6 +153,8 @@ Result<std::unique_ptr<Participant>> Participant::open(const ParticipantOptions 
     dds_set_trace_sink(logCyclone, nullptr);
     std::unique_ptr<Participant> made(new Participant);
     const SocketGuard guard(options.networks);
+    if (const Result<void> known = guard.check(); !known)
+        return known.error();
     const QString what = QString("the DDS domain %1").arg(options.domain);
     made->domain_ = dds_create_domain(dds_domainid_t(options.domain), configuration->toUtf8().constData());
     if (made->domain_ < 0)

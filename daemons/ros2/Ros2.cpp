@@ -5,16 +5,18 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
 #include "common/settings/SettingsTable.h"
-#include "protocol/ros/Cdr.h"
+#include "protocol/ros/Definition.h"
 
+#include <QHostInfo>
 #include <cmath>
 
 namespace hermes::ros2 {
 namespace {
 
-constexpr std::chrono::milliseconds healthPeriod{1000};
-const Quality commands{false, false, 1}; // matches whoever offers at least that
-const Quality stops{true, false, 10};
+constexpr std::chrono::milliseconds healthPeriod{1000}, pollPeriod{100};
+constexpr int maxWaits = 50;           // for a map
+const Quality newest{false, false, 1}; // matches whoever offers at least that
+const Quality repeated{true, false, 10};
 
 const QStringList graphForms{"auto", "humble", "jazzy", "none"};
 
@@ -117,6 +119,7 @@ Result<void> Ros2::start() {
     if (const Result<void> serving = serve(); !serving)
         return serving;
     follow();
+    lookForPeers();
     looks_.start(healthPeriod);
     setState(DaemonState::Running);
     updateHealth();
@@ -131,6 +134,16 @@ void Ros2::stop() {
     velocity_.reset();
     bridge_.reset();
     daemons_.follow({});
+}
+
+void Ros2::lookForPeers() {
+    for (const QString &peer : options().network.peers)
+        QHostInfo::lookupHost(peer, this, [this, peer](const QHostInfo &found) {
+            if (found.error() != QHostInfo::NoError)
+                health().set("peers", HealthLevel::Warn,
+                             QString("%1: %2; it is asked for again at the next start")
+                                 .arg(peer, found.errorString()));
+        });
 }
 
 void Ros2::follow() {
@@ -148,19 +161,18 @@ void Ros2::follow() {
 }
 
 template <typename M>
-Result<void> Ros2::read(const char *topic,
+Result<void> Ros2::read(const char *topic, const Quality &quality,
                         void (Ros2::*take)(const M &message, const Reader::Sample &sample)) {
     const QString name = bridge_->ddsTopic(QLatin1String(topic));
-    const bool isStop = std::is_same_v<M, ros::Bool>;
-    auto reader = bridge_->participant().read(
-        name, ros::typeOf<M>(), isStop ? stops : commands, [this, take, name](const Reader::Sample &sample) {
-            if (const auto message = ros::fromCdr<M>(sample.cdr)) {
-                (this->*take)(*message, sample);
-            } else {
-                ++unreadable_;
-                lastUnreadable_ = name + ": " + QString::fromStdString(message.error());
-            }
-        });
+    const auto received = [this, take, name](const Reader::Sample &sample) {
+        if (const auto message = ros::fromCdr<M>(sample.cdr))
+            return (this->*take)(*message, sample);
+        else
+            lastUnreadable_ = name + ": " + QString::fromStdString(message.error());
+        ++unreadable_;
+    };
+    auto reader = bridge_->participant().read(name, ros::typeOf<M>(), quality, received,
+                                              "typehash=" + ros::typeHash(ros::hashedTextOf<M>()) + ';');
     if (!reader)
         return reader.error();
     bridge_->addEndpoints({(*reader)->guid()}, {});
@@ -168,10 +180,12 @@ Result<void> Ros2::read(const char *topic,
     return {};
 }
 
+/// A stop counts from writers of both kinds: one that repeats what is lost, and one that does not.
 Result<void> Ros2::listenToRos() {
     for (const Result<void> &made :
-         {read("cmd_vel", &Ros2::takeTwist), read("cmd_vel", &Ros2::takeTwistStamped),
-          read("initialpose", &Ros2::takePose), read("emergency_stop", &Ros2::takeStop)})
+         {read("cmd_vel", newest, &Ros2::takeTwist), read("cmd_vel", newest, &Ros2::takeTwistStamped),
+          read("initialpose", newest, &Ros2::takePose), read("emergency_stop", newest, &Ros2::takeStop),
+          read("emergency_stop", repeated, &Ros2::takeStop)})
         if (!made)
             return made;
     return {};
@@ -260,7 +274,8 @@ Result<void> Ros2::serveTrigger(const char *name, const QString &command, const 
             if (!isFree && !mayCommand(name, {}))
                 return answer({false, "refused: the setting \"commands\" of hermes-ros2 is false"});
             call(command, params, [answer](const Result<QJsonValue> &result) {
-                answer({result.ok(), result ? std::string() : result.error().message.toStdString()});
+                const QString text = result ? (*result)["path"].toString() : result.error().message;
+                answer({result.ok(), text.toStdString()});
             });
         });
     if (!made)
@@ -278,13 +293,20 @@ Result<void> Ros2::serve() {
             return made;
     auto map =
         GetMap::open(*bridge_, "get_map", [this](const ros::GetMapRequest &, const GetMap::Answer &answer) {
-            const auto grid = ros::fromCdr<ros::OccupancyGrid>(bridge_->latched("map"));
-            answer({grid ? *grid : ros::OccupancyGrid()});
+            answerMap(answer, maxWaits);
         });
     if (!map)
         return map.error();
     getMap_ = map.take();
     return {};
+}
+
+/// At the start there is none for a moment.
+void Ros2::answerMap(const GetMap::Answer &answer, int waits) {
+    const auto grid = ros::fromCdr<ros::OccupancyGrid>(bridge_ ? bridge_->latched("map") : std::string());
+    if (grid || waits == 0)
+        return answer({grid ? *grid : ros::OccupancyGrid()});
+    QTimer::singleShot(pollPeriod, this, [this, answer, waits] { answerMap(answer, waits - 1); });
 }
 
 void Ros2::updateHealth() {
