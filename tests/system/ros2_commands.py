@@ -51,7 +51,11 @@ class CommandCase(Ros2Case):
         def is_driving():
             now = self.true_twist()
             return abs(now["vx"] - vx) < 0.02 and abs(now["omega"] - omega) < 0.05
-        wait_for(f"a drive with {vx} m/s", is_driving, 20)
+        try:
+            wait_for(f"a drive with {vx} m/s", is_driving, 20)
+        except AssertionError as error:
+            state = self.motors.call("motor.state")
+            raise AssertionError(f"{error}: {state['halted']}; {state['control']}, target {state['target']}") from None
 
     def moved(self, cycles=100):
         """How far the wheels bring the robot in so many cycles of the motor control, two seconds: x, y, heading."""
