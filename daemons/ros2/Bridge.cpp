@@ -51,12 +51,16 @@ Bridge::~Bridge() {
             feed.daemon->client->unsubscribe(feed.handle);
 }
 
+/// ROS has one log and one topic of diagnostics, and one of frames where their names tell the robots apart.
 QString Bridge::ddsTopic(const QString &name) const {
-    return "rt" + options_.space + '/' + name;
+    const bool isOfAll = name == "rosout" || name == "diagnostics" ||
+                         (name.startsWith("tf") && !options_.framePrefix.isEmpty());
+    return (isOfAll ? QString("rt/") : "rt" + options_.space + '/') + name;
 }
 
-void Bridge::addReader(const Guid &reader) {
-    readers_.push_back(reader);
+void Bridge::addEndpoints(const std::vector<Guid> &readers, const std::vector<Guid> &writers) {
+    readers_.insert(readers_.end(), readers.begin(), readers.end());
+    writers_.insert(writers_.end(), writers.begin(), writers.end());
     tellGraph();
 }
 
@@ -106,8 +110,9 @@ Bridge::Outlet *Bridge::outletFor(const ros::Mapping &mapping, const QString &da
     const QString name = mapping.nameOf(daemon, isFirst || daemon.isEmpty());
     outlets_.push_back({&mapping, name, daemon, nullptr, mapping.make(), {}});
     Outlet &outlet = outlets_.back();
-    auto writer = participant_->write(ddsTopic(name), mapping.type, mapping.quality, mapping.hash,
-                                      [this, &outlet] { readersChanged(outlet); });
+    auto writer =
+        participant_->write(ddsTopic(name), mapping.type, mapping.quality, "typehash=" + mapping.hash + ';',
+                            [this, &outlet] { readersChanged(outlet); });
     if (!writer) {
         logError("ros", writer.error().message);
         outlets_.pop_back();
@@ -176,11 +181,18 @@ void Bridge::refresh() {
 }
 
 void Bridge::tellGraph() {
-    std::vector<Guid> writers;
+    std::vector<Guid> writers = writers_;
     for (const Outlet &outlet : outlets_)
         if (outlet.writer)
             writers.push_back(outlet.writer->guid());
     graph_.setEndpoints(readers_, writers);
+}
+
+std::string Bridge::latched(const QString &topic) const {
+    for (const Outlet &outlet : outlets_)
+        if (outlet.name == topic)
+            return outlet.last;
+    return {};
 }
 
 Bridge::Counts Bridge::counts() const {

@@ -28,8 +28,11 @@ public:
     const ros::RobotModel &robot() const { return robot_; }
     /// "scan" becomes "rt/robot1/scan".
     QString ddsTopic(const QString &name) const;
-    /// Readers of ours that are told in the graph.
-    void addReader(const Guid &reader);
+    /// Of whoever else has them: they are told in the graph.
+    void addEndpoints(const std::vector<Guid> &readers, const std::vector<Guid> &writers);
+    const QString &space() const { return options_.space; } ///< "/robot1", or empty
+    /// What a latched topic holds, as CDR; empty: nothing yet.
+    std::string latched(const QString &topic) const;
 
     /// How many topics there are, how many have readers, what was written and could not be.
     struct Counts {
@@ -77,7 +80,7 @@ private:
     ros::RobotModel robot_;
     std::deque<Outlet> outlets_; // they stay where they are, as do the feeds
     std::deque<Feed> feeds_;
-    std::vector<Guid> readers_;
+    std::vector<Guid> readers_, writers_;            ///< of others
     std::map<RobotDaemons::Daemon *, int> settings_; ///< handles of the subscriptions
     std::string cdr_;
     Counts counts_;

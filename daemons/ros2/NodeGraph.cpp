@@ -92,8 +92,8 @@ void NodeGraph::tell() {
     if (form_ != GraphForm::Humble && form_ != GraphForm::Jazzy)
         return;
     if (!writer_) {
-        auto writer = participant_.write(discoveryTopic, ros::typeOf<ros::ParticipantEntities<16>>(),
-                                         {true, true, 1}, {}, {});
+        auto writer =
+            participant_.write(discoveryTopic, ros::typeOf<ros::ParticipantEntities<16>>(), {true, true, 1});
         if (!writer)
             return logWarning("graph", writer.error().message);
         writer_ = writer.take();

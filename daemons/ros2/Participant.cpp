@@ -150,7 +150,7 @@ Result<int> Participant::topic(const QString &name, const std::string &type, dds
 }
 
 Result<std::unique_ptr<Writer>> Participant::write(const QString &name, const std::string &type,
-                                                   const Quality &quality, const QByteArray &hash,
+                                                   const Quality &quality, const QByteArray &userData,
                                                    std::function<void()> matched) {
     std::unique_ptr<Writer> made(new Writer);
     ddsi_sertype *sertype = nullptr;
@@ -168,7 +168,7 @@ Result<std::unique_ptr<Writer>> Participant::write(const QString &name, const st
             if (writer->matched_)
                 QMetaObject::invokeMethod(writer->context_, writer->matched_, Qt::QueuedConnection);
         });
-    const Qos qos = qosOf(quality, hash.isEmpty() ? QByteArray() : "typehash=" + hash + ';');
+    const Qos qos = qosOf(quality, userData);
     made->entity_ = dds_create_writer(entity_, made->topic_, qos.get(), listener.get());
     if (made->entity_ < 0)
         return failure("a writer of " + name, made->entity_);
@@ -177,7 +177,8 @@ Result<std::unique_ptr<Writer>> Participant::write(const QString &name, const st
 }
 
 Result<std::unique_ptr<Reader>> Participant::read(const QString &name, const std::string &type,
-                                                  const Quality &quality, Reader::Callback callback) {
+                                                  const Quality &quality, Reader::Callback callback,
+                                                  const QByteArray &userData) {
     std::unique_ptr<Reader> made(new Reader);
     ddsi_sertype *sertype = nullptr;
     made->topic_ = *topic(name, type, sertype);
@@ -192,7 +193,7 @@ Result<std::unique_ptr<Reader>> Participant::read(const QString &name, const std
             QMetaObject::invokeMethod(
                 reader->context_.get(), [reader] { reader->take(); }, Qt::QueuedConnection);
     });
-    const Qos qos = qosOf(quality, {});
+    const Qos qos = qosOf(quality, userData);
     made->entity_ = dds_create_reader(entity_, made->topic_, qos.get(), listener.get());
     if (made->entity_ < 0)
         return failure("a reader of " + name, made->entity_);
@@ -229,22 +230,31 @@ void Reader::take() {
         if (count <= 0)
             return;
         for (int i = 0; i < count; ++i) {
-            if (infos[i].valid_data)
-                callback_({bytesOf(samples[i]), writerOf(infos[i].publication_handle),
-                           double(infos[i].source_timestamp) * 1e-9, 0});
+            if (infos[i].valid_data) {
+                Sample sample;
+                sample.cdr = bytesOf(samples[i]);
+                sample.stamp = double(infos[i].source_timestamp) * 1e-9;
+                tellWriter(infos[i].publication_handle, sample);
+                callback_(sample);
+            }
             releaseRawSample(samples[i]);
         }
     }
 }
 
-/// All zeros where it is gone.
-Guid Reader::writerOf(std::uint64_t handle) const {
-    Guid guid{};
-    if (dds_builtintopic_endpoint_t *const endpoint = dds_get_matched_publication_data(entity_, handle)) {
-        std::copy(std::begin(endpoint->key.v), std::end(endpoint->key.v), guid.begin());
-        dds_builtintopic_free_endpoint(endpoint);
+/// Nothing where it is gone.
+void Reader::tellWriter(std::uint64_t handle, Sample &sample) const {
+    dds_builtintopic_endpoint_t *const endpoint = dds_get_matched_publication_data(entity_, handle);
+    if (!endpoint)
+        return;
+    std::copy(std::begin(endpoint->key.v), std::end(endpoint->key.v), sample.writer.begin());
+    void *data = nullptr;
+    std::size_t size = 0;
+    if (endpoint->qos && dds_qget_userdata(endpoint->qos, &data, &size) && data) {
+        sample.userData = QByteArray(static_cast<const char *>(data), int(std::min<std::size_t>(size, 1000)));
+        dds_free(data);
     }
-    return guid;
+    dds_builtintopic_free_endpoint(endpoint);
 }
 
 } // namespace hermes::ros2

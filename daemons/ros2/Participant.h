@@ -61,8 +61,9 @@ public:
     struct Sample {
         std::string_view cdr; ///< with its encapsulation
         Guid writer{};
-        double stamp = 0; ///< when it was written by the clock of who wrote it, seconds since the epoch
-        double age_s = 0; ///< how old it was then, where it tells that
+        double stamp = 0;    ///< when it was written by the clock of who wrote it, seconds since the epoch
+        double age_s = 0;    ///< how old it was then, where it tells that
+        QByteArray userData; ///< of the writer
     };
     using Callback = std::function<void(const Sample &)>;
 
@@ -76,7 +77,7 @@ private:
     friend class Participant;
     Reader() = default;
     void take();
-    Guid writerOf(std::uint64_t handle) const;
+    void tellWriter(std::uint64_t handle, Sample &sample) const;
 
     int entity_ = 0, topic_ = 0;
     Guid guid_{};
@@ -94,13 +95,14 @@ public:
     Participant(const Participant &) = delete;
     Participant &operator=(const Participant &) = delete;
 
-    /// topic: as DDS knows it, "rt/scan". type: as ROS 2 does, "sensor_msgs/msg/LaserScan". hash: of the
-    /// type, "RIHS01_..."; empty: none is told. matched is called when the number of readers has changed.
+    /// topic: as DDS knows it, "rt/scan". type: as ROS 2 does, "sensor_msgs/msg/LaserScan". userData: of the
+    /// endpoint, "typehash=RIHS01_...;", or none. matched is called when the number of readers has changed.
     Result<std::unique_ptr<Writer>> write(const QString &topic, const std::string &type,
-                                          const Quality &quality, const QByteArray &hash,
-                                          std::function<void()> matched);
+                                          const Quality &quality, const QByteArray &userData = {},
+                                          std::function<void()> matched = {});
     Result<std::unique_ptr<Reader>> read(const QString &topic, const std::string &type,
-                                         const Quality &quality, Reader::Callback callback);
+                                         const Quality &quality, Reader::Callback callback,
+                                         const QByteArray &userData = {});
     const Guid &guid() const { return guid_; }
 
 private:

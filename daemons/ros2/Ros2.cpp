@@ -104,6 +104,8 @@ Result<void> Ros2::start() {
     velocity_ = std::make_unique<VelocityCommands>(daemons_, server().gaps());
     if (const Result<void> listening = listenToRos(); !listening)
         return listening;
+    if (const Result<void> serving = serve(); !serving)
+        return serving;
     follow();
     looks_.start(healthPeriod);
     setState(DaemonState::Running);
@@ -114,6 +116,8 @@ Result<void> Ros2::start() {
 void Ros2::stop() {
     looks_.stop();
     readers_.clear();
+    triggers_.clear();
+    getMap_.reset();
     velocity_.reset();
     bridge_.reset();
     daemons_.follow({});
@@ -149,7 +153,7 @@ Result<void> Ros2::read(const char *topic,
         });
     if (!reader)
         return reader.error();
-    bridge_->addReader((*reader)->guid());
+    bridge_->addEndpoints({(*reader)->guid()}, {});
     readers_.push_back(reader.take());
     return {};
 }
@@ -207,8 +211,11 @@ void Ros2::takePose(const ros::PoseWithCovarianceStamped &pose, const Reader::Sa
     const Pose2D sensor = Pose2D{at.position.x, at.position.y, headingOf(at.orientation)} * mount.pose;
     if (!(std::isfinite(sensor.x) && std::isfinite(sensor.y) && std::isfinite(sensor.theta)))
         return logWarning("ros", "initialpose is no finite pose");
-    call("pose.set", "pose.set", {{"x", sensor.x}, {"y", sensor.y}, {"theta", sensor.theta}},
-         "initialpose of " + nodeOf(sample.writer));
+    call("pose.set", {{"x", sensor.x}, {"y", sensor.y}, {"theta", sensor.theta}},
+         [who = nodeOf(sample.writer)](const Result<QJsonValue> &result) {
+             if (!result)
+                 logWarning("ros", "initialpose of " + who + ": " + result.error().message);
+         });
 }
 
 /// Anyone may stop; only people release, with Hermes' own tools.
@@ -228,15 +235,46 @@ void Ros2::takeStop(const ros::Bool &stop, const Reader::Sample &sample) {
         logError("ros", "an emergency stop of " + who + ": no motor control answers");
 }
 
-void Ros2::call(const QString &command, const QString &method, const QJsonObject &params,
-                const QString &what) {
+void Ros2::call(const QString &command, const QJsonObject &params, const Client::Callback &answered) {
     for (const auto &[address, daemon] : daemons_.all())
         if (daemon->isKnown && daemon->commands.contains(command))
-            return daemon->client->call(method, params, [what](const Result<QJsonValue> &result) {
-                if (!result)
-                    logWarning("ros", what + ": " + result.error().message);
+            return daemon->client->call(command, params, answered);
+    answered(Error(ErrorCode::NotReady, "no daemon of the robot answers that has " + command));
+}
+
+Result<void> Ros2::serveTrigger(const char *name, const QString &command, const QJsonObject &params,
+                                bool isFree) {
+    auto made = Trigger::open(
+        *bridge_, QLatin1String(name),
+        [this, name, command, params, isFree](const ros::TriggerRequest &, const Trigger::Answer &answer) {
+            if (!isFree && !mayCommand(name, {}))
+                return answer({false, "refused: the setting \"commands\" of hermes-ros2 is false"});
+            call(command, params, [answer](const Result<QJsonValue> &result) {
+                answer({result.ok(), result ? std::string() : result.error().message.toStdString()});
             });
-    logWarning("ros", what + ": no daemon answers that has " + command);
+        });
+    if (!made)
+        return made.error();
+    triggers_.push_back(made.take());
+    return {};
+}
+
+Result<void> Ros2::serve() {
+    const QString name = "ros-map.csv";
+    for (const Result<void> &made : {serveTrigger("stop", "motor.stop", {{"client", "a ROS service"}}, true),
+                                     serveTrigger("reset_odometry", "odometry.reset", {}),
+                                     serveTrigger("save_map", "map.save", {{"path", name}, {"force", true}})})
+        if (!made)
+            return made;
+    auto map =
+        GetMap::open(*bridge_, "get_map", [this](const ros::GetMapRequest &, const GetMap::Answer &answer) {
+            const auto grid = ros::fromCdr<ros::OccupancyGrid>(bridge_->latched("map"));
+            answer({grid ? *grid : ros::OccupancyGrid()});
+        });
+    if (!map)
+        return map.error();
+    getMap_ = map.take();
+    return {};
 }
 
 void Ros2::updateHealth() {

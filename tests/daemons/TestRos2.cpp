@@ -2,7 +2,7 @@
 #include "common/ros/Motion.h"
 #include "common/ros/Scans.h"
 #include "common/ros/States.h"
-#include "daemons/ros2/NodeGraph.h"
+#include "daemons/ros2/Service.h"
 #include "tests/support/Rows.h"
 #include "tests/support/Seed.h"
 
@@ -256,7 +256,8 @@ private Q_SLOTS:
         // Of another type, on the same topic.
         auto other =
             participant->read(topic, "std_msgs/msg/Bool", {}, [&](const Reader::Sample &) { got.clear(); });
-        auto writer = participant->write(topic, "std_msgs/msg/String", {true, false, 50}, "RIHS01_0", {});
+        auto writer =
+            participant->write(topic, "std_msgs/msg/String", {true, false, 50}, "typehash=RIHS01_0;");
         QVERIFY(reader && other && writer);
         QTRY_COMPARE((*writer)->readers(), 1);
         std::vector<std::string> sent;
@@ -273,11 +274,54 @@ private Q_SLOTS:
         QVERIFY(std::abs(stamp - double(QDateTime::currentMSecsSinceEpoch()) * 1e-3) < 60);
     }
 
+    void servicesAnswerWhomTheyCanTellApart() {
+        Bridge::Options options;
+        options.network.domain = 1 + int(QCoreApplication::applicationPid() % 200);
+        options.space = QString("/test_%1").arg(QCoreApplication::applicationPid());
+        RobotDaemons robot("");
+        auto bridge = Bridge::open(options, robot);
+        QVERIFY(bridge);
+        using Trigger = Service<ros::TriggerRequest, ros::TriggerResponse>;
+        int served = 0;
+        Trigger::Answer later;
+        auto service =
+            Trigger::open(**bridge, "stop", [&](const ros::TriggerRequest &, const Trigger::Answer &answer) {
+                if (++served == 2)
+                    later = answer;
+                else
+                    answer({true, "done"});
+            });
+        QVERIFY(service);
+        Participant &participant = (*bridge)->participant();
+        std::vector<ros::Numbered<ros::TriggerResponse>> replies;
+        const std::string type = "std_srvs/srv/Trigger_";
+        auto reader = participant.read(
+            "rr" + options.space + "/stopReply", type + "Response", {true, false, 10},
+            [&](const Reader::Sample &sample) {
+                replies.push_back(*ros::fromCdr<ros::Numbered<ros::TriggerResponse>>(sample.cdr));
+            });
+        auto client = participant.write("rq" + options.space + "/stopRequest", type + "Request",
+                                        {true, false, 10}, "clientid=1.2;");
+        auto stranger =
+            participant.write("rq" + options.space + "/stopRequest", type + "Request", {true, false, 10});
+        QTRY_VERIFY((*client)->readers() == 1 && (*stranger)->readers() == 1);
+        (*stranger)->write(ros::toCdr(ros::Numbered<ros::TriggerRequest>{7, 1, {}}));
+        (*client)->write(ros::toCdr(ros::Numbered<ros::TriggerRequest>{7, 2, {}}));
+        QTRY_COMPARE(replies.size(), std::size_t(1));
+        QCOMPARE(replies[0].client, quint64(7));
+        QCOMPARE(replies[0].number, qint64(2));
+        QVERIFY(replies[0].body.success && replies[0].body.message == "done");
+        (*client)->write(ros::toCdr(ros::Numbered<ros::TriggerRequest>{7, 3, {}}));
+        QTRY_COMPARE(served, 2); // nothing of the stranger's
+        service->reset();
+        later({true, "too late"}); // nobody is there any more
+    }
+
     void whoComesLaterGetsTheLatchedState() {
         const auto participant = joined();
         const QString topic = QString("rt/latched_%1").arg(QCoreApplication::applicationPid());
         const Quality latched{true, true, 1};
-        auto writer = participant->write(topic, "std_msgs/msg/String", latched, {}, {});
+        auto writer = participant->write(topic, "std_msgs/msg/String", latched);
         (*writer)->write(ros::toCdr(ros::String{"old"}));
         (*writer)->write(ros::toCdr(ros::String{"new"}));
         std::string got;

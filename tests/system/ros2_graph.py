@@ -95,7 +95,7 @@ class Graph(Ros2Case):
             (node,), listed, prefix = message["node_entities_info_seq"], peer.listed(), bytes(message["gid"]["data"])[:12].hex()
             told = {bytes(gid["data"])[:16].hex() for side in ("writer", "reader") for gid in node[side + "_gid_seq"] if not any(gid["data"][16:size])}
             there = {guid: one["topic"] for side in ("writers", "readers") for guid, one in listed[side].items()
-                     if guid.startswith(prefix) and one["topic"].startswith("rt/")}
+                     if guid.startswith(prefix) and one["topic"][:3] in ("rt/", "rq/", "rr/")}
             return told ^ there.keys()
         wait_for("its readers and writers in the graph", lambda: not differences())
 
