@@ -3,8 +3,9 @@
 // and answers are lines of JSON (tests/system/ros2_support.py):
 //
 //   {"op": "read", "topic": "rt/scan", "type": "sensor_msgs::msg::dds_::LaserScan_", "reliable": true,
-//    "transient_local": false, "depth": 5, "quiet": false}   each sample is a line; quiet: they are counted
-//   {"op": "write", ..., "user_data": "..."}                 with the same members
+//    "transient_local": false, "depth": 5, "user_data": "", "quiet": false}   each sample is a line; quiet:
+//                                                            they are counted
+//   {"op": "write", ...}                                     with the same members
 //   {"op": "send", "topic": ..., "hex": ..., "count": 1, "hz": 0}   count 0: until stop or close
 //   {"op": "stop", "topic": ...}, {"op": "close", "topic": ...}
 //   {"op": "list"}                                           what was discovered
@@ -136,8 +137,6 @@ private:
         if (endpoint.writer)
             throw std::runtime_error("topic: \"" + topic + "\" is written already");
         dds::DataWriterQos qos = qosOf(request, dds::DATAWRITER_QOS_DEFAULT);
-        const std::string userData = request.value("user_data", "");
-        qos.user_data().data_vec(Bytes(userData.begin(), userData.end()));
         qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
         endpoint.matches = std::make_unique<Matches>(topic);
         endpoint.writer = publisher_->create_datawriter(endpoint.topic, qos, endpoint.matches.get());
