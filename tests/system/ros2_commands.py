@@ -86,7 +86,8 @@ class Commands(CommandCase):
     def test_name_of_who_drives(self):
         """The graph tells which node a writer is of."""
         peer, other = self.driver(twist(0.1)), self.peer()
-        mine = lambda: [guid for guid, one in other.listed()["writers"].items() if one["topic"] == "rt/cmd_vel" and guid[:24] == peer.guid[:24]]  # noqa: E731
+        mine = lambda: [guid for guid, one in other.listed()["writers"].items()  # noqa: E731
+                        if one["topic"] == "rt/cmd_vel" and guid[:24] == peer.guid[:24]]
         writer = bytes.fromhex(wait_for("the writer", mine)[0])
         peer.open("write", GRAPH, GRAPH_TYPE, transient_local=True, depth=1)
         node = {"node_namespace": "/", "node_name": "teleop_keyboard", "writer_gid_seq": [{"data": writer}]}

@@ -46,8 +46,9 @@ class Graph(Ros2Case):
         for peer, is_reliable in ((rviz, True), (nav2, False)):
             for topic, kind in (("/scan", "sensor_msgs/LaserScan"), ("/odom", "nav_msgs/Odometry"), ("/tf", "tf2_msgs/TFMessage")):
                 peer.read(topic, kind, reliable=is_reliable)
+            peer.read("/points", "sensor_msgs/PointCloud2", reliable=is_reliable, depth=1)  # larger than a datagram
         for peer in (rviz, nav2):
-            for topic in ("/scan", "/odom", "/tf"):
+            for topic in ("/scan", "/odom", "/tf", "/points"):
                 peer.wait_for_count(topic, 10)
             self.assertEqual((peer.errors, peer.incompatible), ([], []))
 
@@ -93,7 +94,8 @@ class Graph(Ros2Case):
             """What is told of readers and writers, and is not there, or the other way round; both grow at the beginning."""
             message, _ = self.graph_of(peer)
             (node,), listed, prefix = message["node_entities_info_seq"], peer.listed(), bytes(message["gid"]["data"])[:12].hex()
-            told = {bytes(gid["data"])[:16].hex() for side in ("writer", "reader") for gid in node[side + "_gid_seq"] if not any(gid["data"][16:size])}
+            gids = [bytes(gid["data"]) for side in ("writer", "reader") for gid in node[side + "_gid_seq"]]
+            told = {gid[:16].hex() for gid in gids if not any(gid[16:size])}
             there = {guid: one["topic"] for side in ("writers", "readers") for guid, one in listed[side].items()
                      if guid.startswith(prefix) and one["topic"][:3] in ("rt/", "rq/", "rr/")}
             return told ^ there.keys()
@@ -147,10 +149,16 @@ class Graph(Ros2Case):
 
     def test_name_space(self):
         domain = free_domain()
-        process, _ = self.ros2(domain, namespace="robot1")
+        process, _ = self.ros2(domain, namespace="robot1", frame_prefix="robot1/")
         peer = self.peer(domain)
         peer.read("/robot1/scan", "sensor_msgs/LaserScan")
-        peer.wait("/robot1/scan")
+        frames = {peer.wait("/robot1/scan")["header"]["frame_id"]}
+        (topic,) = [writer["topic"][2:] for writer in peer.listed()["writers"].values() if writer["topic"] in ("rt/tf", "rt/robot1/tf")]
+        peer.read(topic, "tf2_msgs/TFMessage", depth=100)
+        peer.wait_for_count(topic, 30)
+        for one in [one for message in peer.messages(topic) for one in message["transforms"]]:
+            frames |= {one["header"]["frame_id"], one["child_frame_id"]}
+        self.assertEqual([frame for frame in frames if not frame.startswith("robot1/")], [])
         topics = {writer["topic"] for writer in peer.listed()["writers"].values() if writer["topic"].startswith("rt/")}
         common = {wire_name(topic) for topic in ("/tf", "/tf_static", "/diagnostics", "/rosout")}  # ROS has them once, whoever writes
         self.assertEqual([topic for topic in topics - common if not topic.startswith("rt/robot1/")], [])

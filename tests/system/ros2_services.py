@@ -89,7 +89,8 @@ class Services(CommandCase):
         anna = Driver(self.robot.ports["motorcontrol"], "anna", vx=0.15)
         right = ros_cdr.encode("service/Request", {"guid": 77, "sequence": 1})
         plain = ros_cdr.LITTLE + b"\0"
-        for user_data, requests in (("", (plain, right)), ("clientid=;", (plain, b"")), (CLIENT, (plain, right[:12], b"", ros_cdr.LITTLE, b"\0\7" + right[2:]))):
+        noise = plain, right[:12], b"", ros_cdr.LITTLE, b"\0\7" + right[2:]
+        for user_data, requests in (("", (plain, right)), ("clientid=;", (plain, b"")), (CLIENT, noise)):
             client = self.service("stop", user_data=user_data)
             for request in requests:
                 client.peer.send(client.request, request, count=20, hz=50)
