@@ -10,7 +10,7 @@ import unittest
 
 from ros2_robot import Ros2Case, skip_without_programs
 from ros2_support import free_domain, ros_cdr, stamp_of, wire_name
-from support import PATIENCE, release, wait_for
+from support import BINARIES, PATIENCE, Process, free_port, release, wait_for
 
 GRAPH, GRAPH_TYPE = "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 LEVELS = {"ok": 0, "warn": 1, "error": 2, "stale": 3}
@@ -206,6 +206,13 @@ class Graph(Ros2Case):
         with open(f"/proc/{self.process.process.pid}/status", encoding="ascii") as status:
             (resident,) = [int(line.split()[1]) for line in status if line.startswith("VmRSS")]
         self.assertLess(resident, 150000)  # kB
+
+    def test_network_that_is_not_there(self):
+        """The end tells which."""
+        process = Process(BINARIES, "ros2", free_port(0), self.robot.folder, {"networks": '["nope0"]', "domain": free_domain()})
+        self.addCleanup(process.stop)
+        self.assertEqual(wait_for("the end", lambda: process.process.poll() is not None and process.process.returncode), 1)
+        self.assertRegex(process.last_words().splitlines()[-1], "^hermes-ros2: .*nope0")
 
     def test_end(self):
         domain = free_domain()
