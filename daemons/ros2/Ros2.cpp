@@ -74,6 +74,10 @@ void Ros2::declareSettings() {
                 "Form of the node for `ros2 node list`: humble, or jazzy from Iron on; auto: that of "
                 "other nodes, once there is one")
         .choices(graphForms);
+    table.define(
+        "enclave", "",
+        "Folder of an enclave of SROS2, KEYSTORE/enclaves/NAME: only nodes with keys of that store see the "
+        "robot, and do what their permissions say. Empty: everybody on the networks does");
     table.group("Commands", Applies::OnRestart);
     table.define("commands", false,
                  "Nodes may move the robot by cmd_vel and tell its place by initialpose. Everybody on the "
@@ -88,6 +92,7 @@ Bridge::Options Ros2::options() {
     options.network.networks = values["networks"].toVariant().toStringList();
     options.network.peers = values["peers"].toVariant().toStringList();
     options.network.fragmentBytes = int(settings().integer("fragment_bytes"));
+    options.network.enclave = settings().text("enclave");
     options.graph = graphFormOf(settings().text("graph"));
     const QString space = settings().text("namespace");
     options.space = space.isEmpty() ? QString() : '/' + space;
@@ -308,7 +313,8 @@ void Ros2::updateHealth() {
                   {"late", double(taken.late)},
                   {"others", double(taken.others)},
                   {"refused", double(taken.refused + forbidden_)}});
-    if (mayCommand && !settings().values()["networks"].toArray().isEmpty())
+    if (mayCommand && settings().text("enclave").isEmpty() &&
+        !settings().values()["networks"].toArray().isEmpty())
         health().set("insecure", HealthLevel::Warn,
                      "everybody on the networks " +
                          settings().values()["networks"].toVariant().toStringList().join(", ") +
