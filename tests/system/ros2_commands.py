@@ -182,6 +182,17 @@ class Commands(CommandCase):
         self.assert_stands()  # who publishes on and on does not drive when a person lets the robot move again
         peer.close()
 
+    def test_two_nodes(self):
+        """One drives at a time: the other does once the first has paused."""
+        one = self.driver(twist(0.15))
+        self.wait_for_drive(0.15)
+        other = self.driver(twist(-0.15))
+        self.assertGreater(self.moved()[0], 0.25)
+        one.stop("/cmd_vel")
+        self.wait_for_drive(-0.15)
+        other.close()
+        one.close()
+
     def test_bridge_that_dies(self):
         domain = free_domain()
         process, _ = self.ros2(domain, commands=True)

@@ -8,7 +8,7 @@ import struct
 import time
 import unittest
 
-from ros2_robot import Ros2Case, skip_without_programs
+from ros2_robot import Heard, Ros2Case, skip_without_programs
 from ros2_support import free_domain, ros_cdr, stamp_of, wire_name
 from support import BINARIES, PATIENCE, Process, free_port, release, wait_for
 
@@ -188,6 +188,24 @@ class Graph(Ros2Case):
         self.robot.processes["velodynelogger"].process.wait()
         count = len(peer.samples_of("/scan"))
         self.robot.start("velodynelogger")
+        peer.wait_for_count("/scan", count + 10)
+
+    def test_replay_is_not_told(self):
+        """It says nothing of the robot of now."""
+        lidar = self.robot.daemons["velodynelogger"]
+        lidar.call("record.start", name="drive")
+        wait_for("packets", lambda: lidar.call("record.status")["counts"]["packets"] > 2000)
+        lidar.call("record.stop")
+        peer, heard = self.peer(), Heard(self.robot.ports["velodynelogger"], "scan2d")
+        self.addCleanup(heard.close)
+        peer.read("/scan", "sensor_msgs/LaserScan")
+        peer.wait_for_count("/scan", 3)
+        lidar.call("source.open", recording="drive", loop=True)
+        wait_for("the replay", lambda: [one for one in heard.messages if one["data"]["replayed"]])
+        count = len(peer.samples_of("/scan"))
+        wait_for("20 scans of it", lambda: len([one for one in heard.messages if one["data"]["replayed"]]) > 20)
+        self.assertLessEqual(len(peer.samples_of("/scan")), count + 2)  # those that were on their way
+        lidar.call("source.open", live=True)
         peer.wait_for_count("/scan", count + 10)
 
     def test_noise_on_its_ports(self):

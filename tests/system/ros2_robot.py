@@ -111,7 +111,8 @@ class Robot:
         serial = f"serial://{line}?baud=115200"
         self.settings = {
             "simulator": {"world": world, "lidar.port": lidar, "lidar.position_port": position, "motors.link": line, "gps.link": gps},
-            "velodynelogger": {"source.port": lidar, "source.address": "127.0.0.1", "source.position_port": position},
+            "velodynelogger": {"source.port": lidar, "source.address": "127.0.0.1", "source.position_port": position,
+                               "record.folder": os.path.join(folder, "records"), "record.free_floor_bytes": 0},
             "seriallogger": {"ports": json.dumps([{"name": "gps", "url": f"serial://{gps}?baud=9600", "view": "nmea"}])},
             "motorcontrol": {"controllers.1.url": serial, "controllers.2.url": serial},
             "scanmatcher": {"source.address": f"127.0.0.1:{self.ports['velodynelogger']}", "map.folder": folder,
