@@ -169,7 +169,7 @@ class Commands(CommandCase):
         peer, other = self.driver(twist(0.15)), self.peer()
         other.write("/emergency_stop", "std_msgs/Bool")
         wait_for("who is to stop", lambda: other.readers_of("/emergency_stop"))
-        other.wait_for_match("/emergency_stop", "writer")
+        other.wait_for_match("/emergency_stop", "writer", 2)  # a reader for each kind of writer
         self.wait_for_drive(0.15)
         other.send("/emergency_stop", {"data": False})
         other.send("/emergency_stop", {"data": True}, count=5, hz=5)
