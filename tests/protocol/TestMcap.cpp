@@ -315,7 +315,7 @@ private Q_SLOTS:
         row("a cut record", chunk(4, "", "abcd", 4), "damaged records");
         row("a message without fields", chunk(10, "", record(5, "a"), 10), "damaged records");
         row("no channel", chunk(31, "", record(5, QByteArray(22, 1)), 31), "no known channel");
-        row("a message outside", record(5, QByteArray(22, 1)), "outside of a chunk");
+        row("a message outside", record(5, QByteArray(22, 1)), "no known channel");
         row("a schema without a name", record(3, "ab"), "schema or channel");
         row("metadata that are longer", record(4, QByteArray(12, 0) + number(~0u, 4)), "schema or channel");
         row("a record of all bytes", char(6) + number(~std::uint64_t(0), 8), "no whole record");
