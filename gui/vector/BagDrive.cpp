@@ -371,7 +371,7 @@ std::string BagDrive::notices(bool isPlaced) const {
             all.push_back(text);
     };
     const BagScanner &s = scanner();
-    add(!s.mount,
+    add(!s.mount && !isPlaced,
         "where " + s.frame + " is on the robot is not told: it is taken for the robot's centre (--sensor)");
     add(s.isMountMoving && !isPlaced, s.frame + " moves on the robot: its first place is taken");
     add(s.tilt > largestTilt_rad, s.frame + " is tilted by " +

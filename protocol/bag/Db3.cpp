@@ -65,6 +65,7 @@ private:
     bool readTopics();
     void readDefinitions();
     void readSpan();
+    bool addSpans(const std::string &query);
     void note(const std::string &what);
     void noteError(const std::string &where) { note(where + ": " + sqlite3_errmsg(database_.get())); }
     void begin(const std::string &how, const std::string &order);
@@ -165,27 +166,35 @@ void Db3::readDefinitions() {
 
 /// Counts, and the first and last time.
 void Db3::readSpan() {
-    const Statement rows =
-        prepare("SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages GROUP BY topic_id");
+    const std::string rows = "SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages ";
+    if (addSpans(rows + "GROUP BY topic_id"))
+        return;
+    for (Topic &topic : topics_)
+        topic.messages = 0;
+    start_ns_ = end_ns_ = 0;
+    addSpans("SELECT topic_id, 1, timestamp, timestamp FROM messages NOT INDEXED"); // those that can be read
+}
+
+bool Db3::addSpans(const std::string &query) {
+    const Statement rows = prepare(query);
     int code = SQLITE_ERROR;
-    bool isFirst = true;
     while (rows && (code = sqlite3_step(rows.get())) == SQLITE_ROW) {
-        const auto place = places_.find(sqlite3_column_int64(rows.get(), 0));
         const auto number = [&](int column) {
             return std::uint64_t(sqlite3_column_int64(rows.get(), column));
         };
+        const auto place = places_.find(std::int64_t(number(0)));
         if (place == places_.end()) {
-            note("table messages: " + std::to_string(number(1)) + " messages of a topic " +
-                 std::to_string(number(0)) + " that table topics does not have");
+            note("table messages: found one or more of topic " + std::to_string(number(0)) +
+                 ", expected the id of a row of table topics");
             continue;
         }
         topics_[place->second].messages += number(1);
-        start_ns_ = isFirst ? number(2) : std::min(start_ns_, number(2));
+        start_ns_ = end_ns_ == 0 ? number(2) : std::min(start_ns_, number(2));
         end_ns_ = std::max(end_ns_, number(3));
-        isFirst = false;
     }
     if (code != SQLITE_DONE)
         noteError("table messages");
+    return code == SQLITE_DONE;
 }
 
 void Db3::select(const std::function<bool(const Topic &)> &wanted) {
