@@ -60,8 +60,9 @@ std::string Ros1Bag::readFileHeader() {
     if (!head.fields.text("encryptor").empty())
         return "byte 13: found a bag that is encrypted by " +
                std::string(head.fields.text("encryptor").substr(0, 80)) + ", expected one that is not";
-    if (!head.fields.number("index_pos", indexAt_))
-        file_.note(head.at, "the header of the bag does not tell where its index is");
+    if (!head.fields.number("index_pos", indexAt_) || !head.fields.number("conn_count", connectionCount_) ||
+        !head.fields.number("chunk_count", chunkCount_))
+        file_.note(head.at, "the header of the bag does not tell where its index is and what it has");
     return {};
 }
 
@@ -81,9 +82,15 @@ bool Ros1Bag::readIndex() {
         else if (record.op == Ros1Op::ChunkInfo)
             isSound = takeChunkInfo(record, places);
     }
-    if (isSound && !record.isCut())
+    const bool isWhole = connections_.size() == connectionCount_ && chunks_.size() == chunkCount_;
+    if (isSound && !record.isCut() && isWhole)
         return true;
-    file_.note(indexAt_ + record.at, "a record of the index is damaged");
+    file_.note(indexAt_ + record.at, isSound && !record.isCut()
+                                         ? "the index has " + std::to_string(connections_.size()) +
+                                               " connections and " + std::to_string(chunks_.size()) +
+                                               " chunks, expected " + std::to_string(connectionCount_) +
+                                               " and " + std::to_string(chunkCount_)
+                                         : "a record of the index is damaged");
     topics_.clear();
     connections_.clear();
     chunks_.clear();
@@ -299,22 +306,23 @@ void Ros1Bag::define(const Ros1Fields &fields, std::string_view data, std::uint6
 void Ros1Bag::eachMessage(const std::string &records, std::uint64_t offset,
                           const std::function<void(std::uint32_t, std::uint64_t, std::size_t)> &take) {
     Ros1Cursor record(records);
+    const auto where = [&] { return "record " + std::to_string(record.at) + " bytes into the chunk: "; };
     while (record.next()) {
         std::uint32_t connection = 0;
         std::uint64_t time_ns = 0;
-        if (record.op != Ros1Op::Message)
+        if (record.op == Ros1Op::Connection)
             continue;
-        if (record.fields.number("conn", connection) && record.fields.time("time", time_ns) &&
-            connections_.count(connection) > 0)
+        if (record.op != Ros1Op::Message)
+            file_.note(offset, where() + "found one of kind " + std::to_string(int(record.op)) +
+                                   ", expected a message");
+        else if (record.fields.number("conn", connection) && record.fields.time("time", time_ns) &&
+                 connections_.count(connection) > 0)
             take(connection, time_ns, record.at);
         else
-            file_.note(offset, "record " + std::to_string(record.at) +
-                                   " bytes into the chunk: a message of no known "
-                                   "connection");
+            file_.note(offset, where() + "a message of no known connection");
     }
     if (record.isCut())
-        file_.note(offset,
-                   "the chunk has a damaged record, behind the one " + bytesText(record.at) + " into it");
+        file_.note(offset, "the chunk has a damaged record behind the " + where() + "all after it is lost");
 }
 
 void Ros1Bag::select(const std::function<bool(const Topic &)> &wanted) {
@@ -350,20 +358,26 @@ void Ros1Bag::openChunk(const Chunk &told, mcap::OpenChunk &open) {
     };
     const bool isAnyWanted =
         told.counts.empty() || std::any_of(told.counts.begin(), told.counts.end(), [&](const auto &count) {
-            return connections_.count(count.first) > 0 && isWanted(count.first);
+            return connections_.count(count.first) == 0 || isWanted(count.first);
         });
     open.offset = told.offset;
     if (!isAnyWanted || !load(told, open.records))
         return;
-    bool isInTime = true;
+    bool isAsTold = true;
+    std::uint64_t expected = 0, found = 0;
+    for (const auto &[connection, count] : told.counts)
+        expected += count;
     eachMessage(open.records, told.offset,
                 [&](std::uint32_t connection, std::uint64_t time_ns, std::size_t at) {
-                    isInTime = isInTime && time_ns >= told.start_ns && time_ns <= told.end_ns;
+                    isAsTold = isAsTold && time_ns >= told.start_ns && time_ns <= told.end_ns;
+                    ++found;
                     if (isWanted(connection))
                         open.messages.emplace_back(time_ns, at);
                 });
-    if (!isInTime)
-        file_.note(told.offset, "the chunk has messages of other times than the index tells");
+    if (!isAsTold || found != expected)
+        file_.note(told.offset, "the chunk has " + std::to_string(found) + " messages, expected " +
+                                    std::to_string(expected) +
+                                    ", or some of other times than the index tells");
 }
 
 } // namespace hermes::bag

@@ -62,7 +62,8 @@ private:
     void openChunk(const Chunk &told, mcap::OpenChunk &open);
 
     mcap::File file_;
-    std::uint64_t indexAt_ = 0; // 0: the bag was not closed
+    std::uint64_t indexAt_ = 0;                          // 0: the bag was not closed
+    std::uint32_t connectionCount_ = 0, chunkCount_ = 0; // as the header tells
     bool isIndexed_ = false;
     std::vector<Topic> topics_;
     std::map<std::uint32_t, std::size_t> connections_; // to the place of their topics
