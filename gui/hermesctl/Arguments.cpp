@@ -123,6 +123,8 @@ const std::vector<Option> &options() {
         {"--format F", "session export: csv, tum, carmen, mcap or pcap", take<&Arguments::format>},
         {"--topics A,B", "session export: these topics and no others, as motorcontrol/odometry",
          takeList<&Arguments::topics>},
+        {"--name NAME", "session import: its name (that of the bag)", take<&Arguments::name>},
+        {"--topic TOPIC", "session import: of several scanners in the bag this one", take<&Arguments::topic>},
         {"--role ROLE", "keys issue, pair: observer, operator, engineer, or daemon", take<&Arguments::role>},
         {"--days N", "keys issue, pair: valid for so many days (730)", take<&Arguments::days, 36500>},
         {"--port P", "keys pair: waits on this port (7499)", takePort},

@@ -256,26 +256,27 @@ void BagDrive::choose(const BagOptions &options) {
             note("left out: " + scanners_[i].topic);
 }
 
-void BagDrive::readScans(const std::function<void(vectorlib::TimedScan &scan)> &take) {
-    const bag::Topic *topic = nullptr;
+void BagDrive::begin() {
     for (const bag::Topic &known : reader_->topics())
         if (known.name == scanner().topic && known.type == scanner().type)
-            topic = &known;
-    reader_->select([&](const bag::Topic &known) { return &known == topic; });
-    if (!odometry().empty()) {
-        odometryReader_ = valueOrFail(bag::open(path_));
-        odometryReader_->select([this](const bag::Topic &known) {
-            return odometryTopic_.empty() ? isFrames(known) && faultOf<ros::TfMessage>(known).empty()
-                                          : known.name == odometryTopic_ && isOdometry(known);
-        });
-    }
-    BagScan reading(cloud_);
-    vectorlib::TimedScan scan;
+            scanTopic_ = &known;
+    reader_->select([&](const bag::Topic &known) { return &known == scanTopic_; });
+    reading_ = BagScan(cloud_);
+    if (odometry().empty())
+        return;
+    odometryReader_ = valueOrFail(bag::open(path_));
+    odometryReader_->select([this](const bag::Topic &known) {
+        return odometryTopic_.empty() ? isFrames(known) && faultOf<ros::TfMessage>(known).empty()
+                                      : known.name == odometryTopic_ && isOdometry(known);
+    });
+}
+
+std::optional<std::uint64_t> BagDrive::nextScan(vectorlib::TimedScan &scan) {
     std::string frame;
     while (const auto message = reader_->next()) {
-        const std::string why = readScan(*topic, *message, reading, scan, frame);
+        const std::string why = readScan(*scanTopic_, *message, reading_, scan, frame);
         if (!why.empty() && refusedScans_++ == 0)
-            firstRefused_ = "message " + std::to_string(scans_) + " of " + topic->name + ": " + why;
+            firstRefused_ = "message " + std::to_string(scans_) + " of " + scanTopic_->name + ": " + why;
         ++scans_;
         if (!why.empty())
             continue;
@@ -286,18 +287,28 @@ void BagDrive::readScans(const std::function<void(vectorlib::TimedScan &scan)> &
         if (scanner().isUpsideDown)
             hangUpsideDown(scan);
         scan.odometry.reset();
-        if (odometryReader_ && !scan.points.empty()) {
-            scan.odometry = feed_.over(scan.begin(), scan.end(), [this] { return nextSample(); });
-            withoutOdometry_ += !scan.odometry;
-        }
-        take(scan);
+        return message->time_ns;
     }
+    return std::nullopt;
 }
 
-std::optional<vectorlib::OdometrySample> BagDrive::nextSample() {
-    while (const auto message = odometryReader_->next())
+void BagDrive::readScans(const std::function<void(vectorlib::TimedScan &scan)> &take) {
+    begin();
+    const auto nextOne = [this] {
+        const auto sample = nextSample();
+        return sample ? std::optional(sample->second) : std::nullopt;
+    };
+    for (vectorlib::TimedScan scan; nextScan(scan); take(scan))
+        if (odometryReader_ && !scan.points.empty()) {
+            scan.odometry = feed_.over(scan.begin(), scan.end(), nextOne);
+            withoutOdometry_ += !scan.odometry;
+        }
+}
+
+std::optional<std::pair<std::uint64_t, vectorlib::OdometrySample>> BagDrive::nextSample() {
+    while (const auto message = odometryReader_ ? odometryReader_->next() : std::nullopt)
         if (const auto sample = odometryTopic_.empty() ? sampleFromFrames(*message) : sampleFrom(*message))
-            return sample;
+            return std::pair(message->time_ns, *sample);
     return std::nullopt;
 }
 

@@ -56,6 +56,13 @@ public:
     /// Gives all its scans, with the odometry of their times.
     void readScans(const std::function<void(vectorlib::TimedScan &scan)> &take);
 
+    /// Before the next two, which are another way to read it: scans and odometry apart.
+    void begin();
+    /// The time of the next scan in the bag, and that scan without odometry; nothing at the end.
+    std::optional<std::uint64_t> nextScan(vectorlib::TimedScan &scan);
+    /// The same of the odometry.
+    std::optional<std::pair<std::uint64_t, vectorlib::OdometrySample>> nextSample();
+
     std::size_t odometryRefused() const { return odometryRefused_; }
     /// What was left out and what could not be read, for people; empty: nothing. isPlaced: somebody told
     /// where the scanner is.
@@ -72,7 +79,6 @@ private:
     void placeScanner(BagScanner &scanner);
     std::string readScan(const bag::Topic &topic, const bag::Message &message, BagScan &reading,
                          vectorlib::TimedScan &scan, std::string &frame) const;
-    std::optional<vectorlib::OdometrySample> nextSample();
     std::optional<vectorlib::OdometrySample> sampleFrom(const bag::Message &message);
     std::optional<vectorlib::OdometrySample> sampleFromFrames(const bag::Message &message);
     std::optional<vectorlib::OdometrySample> checked(vectorlib::OdometrySample sample);
@@ -83,6 +89,8 @@ private:
     std::vector<BagScanner> scanners_;
     std::size_t chosen_ = 0;
     CloudOptions cloud_;
+    BagScan reading_;
+    const bag::Topic *scanTopic_ = nullptr;
     std::string odometryTopic_; ///< empty: none
     std::string base_;          ///< the robot's frame, as the odometry tells; empty: it does not
     FrameTree frames_;
