@@ -4,7 +4,6 @@
 #include "gui/vector/BagMessages.h"
 #include "gui/vector/Failure.h"
 #include "vectorlib/io/Number.h"
-#include "vectorlib/motion/OdometryFault.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,19 +13,12 @@ namespace hermes::vector {
 namespace {
 
 constexpr double largestTilt_rad = 0.35; // 20 degrees
-constexpr double longestStep_s = 0.5;    // over a longer one no speed is told by two poses
 
 bool isLaser(const bag::Topic &topic) {
     return isOfType<ros::LaserScan>(topic) || isOfType<ros::MultiEchoLaserScan>(topic);
 }
 bool isScanner(const bag::Topic &topic) {
     return topic.messages > 0 && (isLaser(topic) || isOfType<ros::PointCloud>(topic));
-}
-bool isFrames(const bag::Topic &topic) {
-    return isOfType<ros::TfMessage>(topic) || topic.type == "tf/tfMessage";
-}
-bool isOdometry(const bag::Topic &topic) {
-    return topic.messages > 0 && isOfType<ros::Odometry>(topic);
 }
 
 /// Of a name with namespaces.
@@ -38,17 +30,11 @@ std::string counted(std::size_t count, const std::string &what) {
     return std::to_string(count) + ' ' + what;
 }
 
-double stampOr(const ros::Header &header, const bag::Message &message) {
-    const double stamp = secondsOf(header.stamp);
-    return stamp != 0 ? stamp : 1e-9 * double(message.time_ns);
-}
-
 } // namespace
 
 BagDrive::BagDrive(const std::string &path)
     : path_(path)
-    , reader_(valueOrFail(bag::open(path)))
-    , odometryReader_(nullptr) {
+    , reader_(valueOrFail(bag::open(path))) {
     listTopics();
     readFrames();
     findOdometryFrames();
@@ -81,6 +67,8 @@ void BagDrive::listTopics() {
             scanner.messages = topic.messages;
             scanner.problem = fault;
             scanners_.push_back(scanner);
+        } else if (isOfType<ros::TfMessage>(topic)) {
+            fault = faultOf<ros::TfMessage>(topic);
         } else if (isOdometry(topic)) {
             fault = faultOf<ros::Odometry>(topic);
             if (fault.empty() && (odometry == nullptr || rank(*odometry) < rank(topic)))
@@ -103,8 +91,7 @@ bool BagDrive::isNeeded(const bag::Topic &topic) const {
     const auto isFrameOpen = [&](const BagScanner &scanner) {
         return scanner.topic == topic.name && scanner.frame.empty() && scanner.problem.empty();
     };
-    return (isFrames(topic) && faultOf<ros::TfMessage>(topic).empty()) ||
-           (topic.name == odometryTopic_ && base_.empty()) ||
+    return (isFrames(topic)) || (topic.name == odometryTopic_ && base_.empty()) ||
            std::any_of(scanners_.begin(), scanners_.end(), isFrameOpen);
 }
 
@@ -191,10 +178,6 @@ void BagDrive::findOdometryFrames() {
                                        [](const std::string &name) { return lastPart(name) == "odom"; });
         if (odom != up.end() && odom != up.begin()) {
             way_.assign(up.begin(), odom + 1);
-            for (auto frame = up.begin(); frame != odom; ++frame) {
-                wayMoves_ = wayMoves_ || frames_.edge(*frame).moves;
-                latest_.emplace(*frame, frames_.edge(*frame).inParent);
-            }
             return;
         }
     }
@@ -262,13 +245,10 @@ void BagDrive::begin() {
             scanTopic_ = &known;
     reader_->select([&](const bag::Topic &known) { return &known == scanTopic_; });
     reading_ = BagScan(cloud_);
-    if (odometry().empty())
-        return;
-    odometryReader_ = valueOrFail(bag::open(path_));
-    odometryReader_->select([this](const bag::Topic &known) {
-        return odometryTopic_.empty() ? isFrames(known) && faultOf<ros::TfMessage>(known).empty()
-                                      : known.name == odometryTopic_ && isOdometry(known);
-    });
+    if (!odometryTopic_.empty())
+        odometry_ = std::make_unique<BagOdometry>(path_, odometryTopic_);
+    else if (!way_.empty())
+        odometry_ = std::make_unique<BagOdometry>(path_, way_, frames_);
 }
 
 std::optional<std::uint64_t> BagDrive::nextScan(vectorlib::TimedScan &scan) {
@@ -299,80 +279,10 @@ void BagDrive::readScans(const std::function<void(vectorlib::TimedScan &scan)> &
         return sample ? std::optional(sample->second) : std::nullopt;
     };
     for (vectorlib::TimedScan scan; nextScan(scan); take(scan))
-        if (odometryReader_ && !scan.points.empty()) {
+        if (odometry_ && !scan.points.empty()) {
             scan.odometry = feed_.over(scan.begin(), scan.end(), nextOne);
             withoutOdometry_ += !scan.odometry;
         }
-}
-
-std::optional<std::pair<std::uint64_t, vectorlib::OdometrySample>> BagDrive::nextSample() {
-    while (const auto message = odometryReader_ ? odometryReader_->next() : std::nullopt)
-        if (const auto sample = odometryTopic_.empty() ? sampleFromFrames(*message) : sampleFrom(*message))
-            return std::pair(message->time_ns, *sample);
-    return std::nullopt;
-}
-
-std::optional<vectorlib::OdometrySample> BagDrive::sampleFrom(const bag::Message &message) {
-    const auto odometry = messageFrom<ros::Odometry>(odometryReader_->topics()[message.topic], message.data);
-    const auto pose = odometry ? isometryOf({odometry->pose.pose.position.x, odometry->pose.pose.position.y,
-                                             odometry->pose.pose.position.z},
-                                            odometry->pose.pose.orientation)
-                               : std::nullopt;
-    if (!pose) {
-        ++odometryRefused_;
-        return std::nullopt;
-    }
-    const ros::Twist &twist = odometry->twist.twist;
-    vectorlib::OdometrySample sample;
-    sample.stamp = stampOr(odometry->header, message);
-    sample.pose = poseOf(*pose);
-    sample.twist = {twist.linear.x, twist.linear.y, twist.angular.z};
-    return checked(sample);
-}
-
-/// Nothing where none of the frames that move is told anew.
-std::optional<vectorlib::OdometrySample> BagDrive::sampleFromFrames(const bag::Message &message) {
-    const auto transforms =
-        messageFrom<ros::TfMessage>(odometryReader_->topics()[message.topic], message.data);
-    std::optional<double> stamp;
-    if (!transforms)
-        return std::nullopt; // counted when all frames were read
-    for (const ros::TransformStamped &transform : transforms->transforms) {
-        const std::string child = plainFrame(transform.childFrameId);
-        const auto at = std::find(way_.begin(), way_.end() - 1, child);
-        const auto frame = isometryOf(transform.transform.translation, transform.transform.rotation);
-        if (at == way_.end() - 1 || !frame || plainFrame(transform.header.frameId) != *(at + 1))
-            continue;
-        latest_.at(child) = *frame;
-        if (frames_.edge(child).moves || !wayMoves_) // a fixed one may be told ahead of its time
-            stamp = stampOr(transform.header, message);
-    }
-    if (!stamp)
-        return std::nullopt;
-    Eigen::Isometry3d robot = Eigen::Isometry3d::Identity();
-    for (std::size_t i = 0; i + 1 < way_.size(); ++i)
-        robot = latest_.at(way_[i]) * robot;
-    vectorlib::OdometrySample sample;
-    sample.stamp = *stamp;
-    sample.pose = poseOf(robot);
-    return checked(sample);
-}
-
-/// With the speed that the last two poses tell where it has none. Nothing where no robot can tell so.
-std::optional<vectorlib::OdometrySample> BagDrive::checked(vectorlib::OdometrySample sample) {
-    vectorlib::Twist2D &twist = sample.twist;
-    const double seconds = last_ ? sample.stamp - last_->stamp : 0;
-    if (twist.vx == 0 && twist.vy == 0 && twist.omega == 0 && seconds > 0 && seconds < longestStep_s) {
-        twist = vectorlib::Twist2D::between(last_->pose.inverse() * sample.pose, seconds);
-        if (!vectorlib::faultOf(sample).empty())
-            twist = {}; // a leap, of which there is no speed
-    }
-    if (!vectorlib::faultOf(sample).empty()) {
-        ++odometryRefused_;
-        return std::nullopt;
-    }
-    last_ = sample;
-    return sample;
 }
 
 std::string BagDrive::notices(bool isPlaced) const {
@@ -396,6 +306,8 @@ std::string BagDrive::notices(bool isPlaced) const {
     add(refusedFrames_ > 0, counted(refusedFrames_, "transform(s) of tf are none"));
     add(refusedFrameMessages_ > 0, counted(refusedFrameMessages_, "message(s) of tf cannot be read"));
     add(!reader_->problem().empty(), path_ + ": " + reader_->problem());
+    const std::string ofOdometry = odometry_ ? odometry_->problem() : "";
+    add(!ofOdometry.empty() && ofOdometry != reader_->problem(), path_ + ", odometry: " + ofOdometry);
     std::string text;
     for (const std::string &one : all)
         text += (text.empty() ? "" : "; ") + one;

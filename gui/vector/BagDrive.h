@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/BagOdometry.h"
 #include "gui/vector/BagScan.h"
 #include "gui/vector/FrameTree.h"
 #include "gui/vector/OdometryFeed.h"
@@ -7,7 +8,6 @@
 #include "vectorlib/mapping/TimedScan.h"
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,9 +61,11 @@ public:
     /// The time of the next scan in the bag, and that scan without odometry; nothing at the end.
     std::optional<std::uint64_t> nextScan(vectorlib::TimedScan &scan);
     /// The same of the odometry.
-    std::optional<std::pair<std::uint64_t, vectorlib::OdometrySample>> nextSample();
+    std::optional<std::pair<std::uint64_t, vectorlib::OdometrySample>> nextSample() {
+        return odometry_ ? odometry_->next() : std::nullopt;
+    }
 
-    std::size_t odometryRefused() const { return odometryRefused_; }
+    std::size_t odometryRefused() const { return odometry_ ? odometry_->refused() : 0; }
     /// What was left out and what could not be read, for people; empty: nothing. isPlaced: somebody told
     /// where the scanner is.
     std::string notices(bool isPlaced) const;
@@ -79,13 +81,11 @@ private:
     void placeScanner(BagScanner &scanner);
     std::string readScan(const bag::Topic &topic, const bag::Message &message, BagScan &reading,
                          vectorlib::TimedScan &scan, std::string &frame) const;
-    std::optional<vectorlib::OdometrySample> sampleFrom(const bag::Message &message);
-    std::optional<vectorlib::OdometrySample> sampleFromFrames(const bag::Message &message);
-    std::optional<vectorlib::OdometrySample> checked(vectorlib::OdometrySample sample);
     void note(const std::string &what);
 
     std::string path_;
-    std::unique_ptr<bag::Reader> reader_, odometryReader_;
+    std::unique_ptr<bag::Reader> reader_;
+    std::unique_ptr<BagOdometry> odometry_; ///< null: there is none, or nothing was read
     std::vector<BagScanner> scanners_;
     std::size_t chosen_ = 0;
     CloudOptions cloud_;
@@ -95,13 +95,10 @@ private:
     std::string base_;          ///< the robot's frame, as the odometry tells; empty: it does not
     FrameTree frames_;
     std::vector<std::string> way_; ///< frames from the robot's up to that of the odometry, by tf
-    std::map<std::string, Eigen::Isometry3d> latest_; ///< of these
-    bool wayMoves_ = false;                           ///< one of these does
     OdometryFeed feed_;
-    std::optional<vectorlib::OdometrySample> last_; ///< of the odometry
     std::vector<std::string> notices_;
-    std::size_t scans_ = 0, refusedScans_ = 0, unstamped_ = 0, withoutOdometry_ = 0, odometryRefused_ = 0,
-                refusedFrames_ = 0, refusedFrameMessages_ = 0;
+    std::size_t scans_ = 0, refusedScans_ = 0, unstamped_ = 0, withoutOdometry_ = 0, refusedFrames_ = 0,
+                refusedFrameMessages_ = 0;
     std::string firstRefused_;
 };
 

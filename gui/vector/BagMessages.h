@@ -49,6 +49,15 @@ std::string faultOf(const bag::Topic &topic) {
                : "topic " + topic.name + ": its " + topic.type + " has other fields than those of ROS";
 }
 
+/// Of frames, and not refused.
+inline bool isFrames(const bag::Topic &topic) {
+    return (isOfType<ros::TfMessage>(topic) || topic.type == "tf/tfMessage") &&
+           faultOf<ros::TfMessage>(topic).empty();
+}
+inline bool isOdometry(const bag::Topic &topic) {
+    return topic.messages > 0 && isOfType<ros::Odometry>(topic);
+}
+
 template <typename M>
 Outcome<M> messageFrom(const bag::Topic &topic, std::string_view data) {
     return topic.serialization == "ros1" ? ros::fromRos1<M>(data) : ros::fromCdr<M>(data);

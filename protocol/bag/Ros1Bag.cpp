@@ -1,8 +1,5 @@
 #include "protocol/bag/Ros1Bag.h"
 
-#include "protocol/bag/Bzip2.h"
-#include "protocol/mcap/Unpack.h"
-
 #include <algorithm>
 
 namespace hermes::bag {
@@ -11,15 +8,9 @@ namespace {
 
 constexpr std::string_view ros1Magic = "#ROSBAG V2.0\n";
 constexpr std::string_view anyMagic = "#ROSBAG V";
-constexpr std::uint64_t largestRos1Header = 64 << 10; // of a record
 constexpr std::uint64_t largestIndex = 256 << 20;
 constexpr std::uint64_t largestRos1Loose = 1 << 20; // of messages outside of chunks that are read at once
-constexpr std::uint64_t largestRos1Ratio = 1 << 15; // bz2: 900 kB of zeros take 45 bytes
 constexpr std::size_t mostConnections = 1 << 16;
-
-std::string bytesText(std::uint64_t bytes) {
-    return std::to_string(bytes) + " bytes";
-}
 
 } // namespace
 
@@ -40,7 +31,7 @@ Outcome<std::unique_ptr<Reader>> Ros1Bag::open(mcap::File file) {
     for (const Chunk &chunk : bag->chunks_)
         for (const auto &[connection, count] : chunk.counts)
             if (const auto known = bag->connections_.find(connection); known != bag->connections_.end())
-                bag->topics_[known->second].messages += count;
+                bag->topics_.count(known->second, count);
     return std::unique_ptr<Reader>(std::move(bag));
 }
 
@@ -54,8 +45,8 @@ std::string Ros1Bag::readFileHeader() {
     file_.read(0, std::min<std::uint64_t>(file_.size(), ros1Magic.size()), begin);
     if (begin != ros1Magic)
         return "found " + begin.substr(0, begin.find('\n')) + ", expected #ROSBAG V2.0";
-    Head head;
-    if (!readHead(ros1Magic.size(), head) || head.op != Ros1Op::FileHeader)
+    Ros1Head head;
+    if (!file_.readHead(ros1Magic.size(), head) || head.op != Ros1Op::FileHeader)
         return {}; // noted; what follows is looked at all the same
     if (!head.fields.text("encryptor").empty())
         return "byte 13: found a bag that is encrypted by " +
@@ -91,7 +82,7 @@ bool Ros1Bag::readIndex() {
                                                " chunks, expected " + std::to_string(connectionCount_) +
                                                " and " + std::to_string(chunkCount_)
                                          : "a record of the index is damaged");
-    topics_.clear();
+    topics_ = {};
     connections_.clear();
     chunks_.clear();
     definitionBytes_ = 0;
@@ -115,10 +106,10 @@ bool Ros1Bag::takeChunkInfo(const Ros1Cursor &record, std::set<std::uint64_t> &p
 }
 
 void Ros1Bag::scan() {
-    Head head;
-    for (std::uint64_t offset = ros1Magic.size(); (offset = skipZeros(offset)) < file_.size();
+    Ros1Head head;
+    for (std::uint64_t offset = ros1Magic.size(); (offset = file_.skipZeros(offset)) < file_.size();
          offset = head.end()) {
-        if (!readHead(offset, head))
+        if (!file_.readHead(offset, head))
             return;
         if (head.op == Ros1Op::Chunk) {
             scanChunk(head);
@@ -137,11 +128,11 @@ void Ros1Bag::scan() {
     }
 }
 
-void Ros1Bag::scanChunk(const Head &head) {
+void Ros1Bag::scanChunk(const Ros1Head &head) {
     Chunk chunk;
     chunk.offset = head.at;
     std::string records;
-    if (!unpack(head, records))
+    if (!file_.unpack(head, records))
         return;
     Ros1Cursor record(records);
     while (record.next())
@@ -159,7 +150,7 @@ void Ros1Bag::scanChunk(const Head &head) {
 }
 
 /// A message outside of chunks, as in the last chunk of a bag that was not closed.
-void Ros1Bag::scanMessage(const Head &head) {
+void Ros1Bag::scanMessage(const Ros1Head &head) {
     std::uint32_t connection = 0;
     std::uint64_t time_ns = 0;
     if (!head.fields.number("conn", connection) || !head.fields.time("time", time_ns) ||
@@ -172,8 +163,9 @@ void Ros1Bag::scanMessage(const Head &head) {
                                 bytesText(mcap::largestChunk));
         return;
     }
-    const bool goesOn =
-        !chunks_.empty() && chunks_.back().isLoose && head.end() - chunks_.back().offset <= largestRos1Loose;
+    const bool goesOn = !chunks_.empty() && chunks_.back().isLoose &&
+                        head.at == chunks_.back().offset + chunks_.back().bytes &&
+                        head.end() - chunks_.back().offset <= largestRos1Loose;
     Chunk chunk = goesOn ? std::move(chunks_.back()) : Chunk();
     if (goesOn)
         chunks_.pop_back();
@@ -194,87 +186,14 @@ void Ros1Bag::add(Chunk chunk) {
     chunks_.push_back(std::move(chunk));
 }
 
-/// Where the first byte stands from there on that is not of padding: no record begins with four zeros.
-std::uint64_t Ros1Bag::skipZeros(std::uint64_t offset) {
-    std::string block;
-    if (!file_.read(offset, 4, block) || block != std::string(4, '\0'))
-        return offset;
-    for (constexpr std::uint64_t most = 1 << 16; offset < file_.size(); offset += block.size()) {
-        if (!file_.read(offset, std::min(most, file_.size() - offset), block))
-            return file_.size();
-        if (const std::size_t at = block.find_first_not_of('\0'); at != std::string::npos)
-            return offset + at;
-    }
-    return offset;
-}
-
-/// false: there is no record, which is noted. Its data may be cut off.
-bool Ros1Bag::readHead(std::uint64_t offset, Head &head) {
-    std::string size;
-    std::uint32_t bytes = 0, data = 0;
-    std::uint8_t kind = 0;
-    const auto readSize = [&](std::uint64_t at, std::uint32_t &value) {
-        std::string_view left;
-        return file_.read(at, 4, size) && mcap::takeField(left = size, value);
-    };
-    if (offset > file_.size() || !readSize(offset, bytes))
-        return file_.note(offset, "the record is cut off");
-    if (bytes > largestRos1Header)
-        return file_.note(offset, "found a record with a header of " + bytesText(bytes) +
-                                      ", expected at most " + bytesText(largestRos1Header));
-    if (!file_.read(offset + 4, bytes, head.bytes) || !readSize(offset + 4 + bytes, data))
-        return file_.note(offset, "the record is cut off");
-    if (!head.fields.read(head.bytes) || !head.fields.number("op", kind))
-        return file_.note(offset, "the header of the record is damaged: it has no field op");
-    head.at = offset;
-    head.op = Ros1Op(kind);
-    head.dataAt = offset + 4 + bytes + 4;
-    head.dataBytes = data;
-    return true;
-}
-
 bool Ros1Bag::load(const Chunk &chunk, std::string &records) {
     if (chunk.isLoose)
         return file_.read(chunk.offset, chunk.bytes, records) || file_.note(chunk.offset, "cannot be read");
-    Head head;
-    if (!readHead(chunk.offset, head))
+    Ros1Head head;
+    if (!file_.readHead(chunk.offset, head))
         return false;
-    return head.op == Ros1Op::Chunk ? unpack(head, records) : file_.note(chunk.offset, "there is no chunk");
-}
-
-/// The records of a chunk; of one that is cut off and not packed those that are there. false: they cannot be
-/// had, which is noted.
-bool Ros1Bag::unpack(const Head &head, std::string &records) {
-    const auto compression = head.fields.text("compression");
-    std::uint32_t size = 0;
-    head.fields.number("size", size);
-    const std::uint64_t there = std::min(head.dataBytes, file_.size() - head.dataAt);
-    const bool isPlain = compression == "none";
-    if (there < head.dataBytes)
-        file_.note(head.at, "the chunk is cut off: found " + bytesText(there) + " of its " +
-                                bytesText(head.dataBytes));
-    if (there < head.dataBytes && !isPlain)
-        return false;
-    if (head.dataBytes > mcap::largestChunk || size > mcap::largestChunk || size / largestRos1Ratio > there)
-        return file_.note(head.at, "found a chunk of " + bytesText(head.dataBytes) + " that were " +
-                                       bytesText(size) + ", expected at most " +
-                                       bytesText(mcap::largestChunk));
-    std::string packed;
-    if (!file_.read(head.dataAt, there, isPlain ? records : packed))
-        return file_.note(head.at, "the chunk cannot be read");
-    if (isPlain)
-        return true;
-    if (compression != "bz2" && compression != "lz4")
-        return file_.note(head.at, "found a chunk with compression '" +
-                                       std::string(compression.substr(0, 20)) +
-                                       "', expected none, bz2 or lz4");
-    records.resize(size);
-    if (const std::string why =
-            compression == "bz2" ? unpackBzip2(packed, records) : mcap::unpackLz4(packed, records);
-        !why.empty())
-        return file_.note(head.at, "the chunk cannot be unpacked: " + why);
-    return records.size() == size || file_.note(head.at, "the chunk has " + bytesText(records.size()) +
-                                                             ", and not " + bytesText(size) + " as it tells");
+    return head.op == Ros1Op::Chunk ? file_.unpack(head, records)
+                                    : file_.note(chunk.offset, "there is no chunk");
 }
 
 void Ros1Bag::define(const Ros1Fields &fields, std::string_view data, std::uint64_t at) {
@@ -292,14 +211,9 @@ void Ros1Bag::define(const Ros1Fields &fields, std::string_view data, std::uint6
         return;
     }
     definitionBytes_ += data.size();
-    Topic topic{std::string(fields.text("topic")), plainType(std::string(told.text("type"))),
-                std::string(told.text("message_definition")), "ros1", 0};
-    const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const Topic &other) {
-        return other.name == topic.name && other.type == topic.type;
-    });
-    connections_[id] = std::size_t(known - topics_.begin());
-    if (known == topics_.end())
-        topics_.push_back(std::move(topic));
+    connections_[id] =
+        topics_.add({std::string(fields.text("topic")), plainType(std::string(told.text("type"))),
+                     std::string(told.text("message_definition")), "ros1", 0});
 }
 
 /// Of known connections. offset: of the chunk, for what is noted.
@@ -327,7 +241,7 @@ void Ros1Bag::eachMessage(const std::string &records, std::uint64_t offset,
 
 void Ros1Bag::select(const std::function<bool(const Topic &)> &wanted) {
     isWanted_.clear();
-    for (const Topic &topic : topics_)
+    for (const Topic &topic : topics())
         isWanted_.push_back(wanted(topic));
     order_.restart();
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "protocol/bag/Reader.h"
-#include "protocol/bag/Ros1Records.h"
+#include "protocol/bag/Ros1File.h"
+#include "protocol/bag/TopicList.h"
 #include "protocol/mcap/ChunkOrder.h"
 
 #include <map>
@@ -19,7 +19,7 @@ public:
     static Outcome<std::unique_ptr<Reader>> open(mcap::File file);
 
     std::string kind() const override;
-    const std::vector<Topic> &topics() const override { return topics_; }
+    const std::vector<Topic> &topics() const override { return topics_.all(); }
     std::uint64_t start_ns() const override { return start_ns_; }
     std::uint64_t end_ns() const override { return end_ns_; }
     void select(const std::function<bool(const Topic &)> &wanted) override;
@@ -33,27 +33,15 @@ private:
         bool isLoose = false;                          // no chunk: records that stand in the file themselves
         std::map<std::uint32_t, std::uint64_t> counts; // messages of each connection
     };
-    struct Head {
-        std::string bytes; // that the fields are of
-        Ros1Op op = Ros1Op::FileHeader;
-        Ros1Fields fields;
-        std::uint64_t at = 0, dataAt = 0, dataBytes = 0;
-
-        std::uint64_t end() const { return dataAt + dataBytes; }
-    };
-
     explicit Ros1Bag(mcap::File file)
         : file_(std::move(file)) {}
     std::string readFileHeader();
     bool readIndex();
     bool takeChunkInfo(const Ros1Cursor &record, std::set<std::uint64_t> &places);
     void scan();
-    void scanChunk(const Head &head);
-    void scanMessage(const Head &head);
-    bool readHead(std::uint64_t offset, Head &head);
-    std::uint64_t skipZeros(std::uint64_t offset);
+    void scanChunk(const Ros1Head &head);
+    void scanMessage(const Ros1Head &head);
     bool load(const Chunk &chunk, std::string &records);
-    bool unpack(const Head &head, std::string &records);
     void define(const Ros1Fields &fields, std::string_view data, std::uint64_t at);
     void eachMessage(
         const std::string &records, std::uint64_t offset,
@@ -61,11 +49,11 @@ private:
     void add(Chunk chunk);
     void openChunk(const Chunk &told, mcap::OpenChunk &open);
 
-    mcap::File file_;
+    Ros1File file_;
     std::uint64_t indexAt_ = 0;                          // 0: the bag was not closed
     std::uint32_t connectionCount_ = 0, chunkCount_ = 0; // as the header tells
     bool isIndexed_ = false;
-    std::vector<Topic> topics_;
+    TopicList topics_;
     std::map<std::uint32_t, std::size_t> connections_; // to the place of their topics
     std::uint64_t definitionBytes_ = 0;
     std::vector<Chunk> chunks_; // in the order of their least times

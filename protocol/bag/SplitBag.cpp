@@ -1,6 +1,7 @@
 #include "protocol/bag/SplitBag.h"
 
 #include "protocol/bag/Metadata.h"
+#include "protocol/bag/TopicList.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -30,7 +31,7 @@ public:
     std::string kind() const override {
         return kind_ + (parts_.size() > 1 ? ", " + std::to_string(parts_.size()) + " files" : "");
     }
-    const std::vector<Topic> &topics() const override { return topics_; }
+    const std::vector<Topic> &topics() const override { return topics_.all(); }
     std::uint64_t start_ns() const override { return start_ns_; }
     std::uint64_t end_ns() const override { return end_ns_; }
     void select(const std::function<bool(const Topic &)> &wanted) override;
@@ -59,7 +60,7 @@ private:
 
     std::vector<Part> parts_; ///< in the order of their first messages
     std::string kind_;
-    std::vector<Topic> topics_;
+    TopicList topics_;
     std::uint64_t start_ns_ = 0, end_ns_ = 0;
     std::vector<bool> isWanted_; ///< of each topic; empty: all
     std::size_t nextPart_ = 0;
@@ -74,17 +75,8 @@ std::string SplitBag::add(const std::string &path) {
     if (!reader)
         return reader.error();
     Part part{path, (*reader)->start_ns(), {}};
-    for (const Topic &topic : (*reader)->topics()) {
-        const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const Topic &other) {
-            return other.name == topic.name && other.type == topic.type &&
-                   other.serialization == topic.serialization;
-        });
-        part.places.push_back(std::size_t(known - topics_.begin()));
-        if (known != topics_.end())
-            known->messages += topic.messages;
-        else
-            topics_.push_back(topic);
-    }
+    for (const Topic &topic : (*reader)->topics())
+        part.places.push_back(topics_.add(topic));
     if ((*reader)->end_ns() > 0) {
         start_ns_ = start_ns_ == 0 ? part.start_ns : std::min(start_ns_, part.start_ns);
         end_ns_ = std::max(end_ns_, (*reader)->end_ns());
@@ -101,7 +93,7 @@ void SplitBag::finish() {
 
 void SplitBag::select(const std::function<bool(const Topic &)> &wanted) {
     isWanted_.clear();
-    for (const Topic &topic : topics_)
+    for (const Topic &topic : topics())
         isWanted_.push_back(wanted(topic));
     open_.clear();
     given_.reset();

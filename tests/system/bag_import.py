@@ -78,6 +78,9 @@ class BagImport(unittest.TestCase):
         self.assertEqual(json.loads(mapped.stdout)["matched"], SCANS)
         self.assertIn(json.loads(mapped.stdout)["segments"], (4, 5))  # one is seen in two parts
         self.assertNotIn("contradict", mapped.stderr)
+        alone = subprocess.run([os.path.join(BINARIES, "hermes-vector"), "map", os.path.join(self.records, "strange", "recorder-0001.mcap")],
+                               capture_output=True, text=True, timeout=60, check=True)
+        self.assertEqual(json.loads(alone.stdout)["matched"], SCANS)
         again = self.ctl("session", "import", self.bag)
         self.assertEqual(again.returncode, 1)
         self.assertIn("it exists already; --name", again.stderr)
