@@ -41,8 +41,8 @@ class BagImport(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder, self.records = folder.name, os.path.join(folder.name, "records")
         os.mkdir(self.records)
-        self.bag = os.path.join(self.folder, "strange.db3")
-        bags.write_db3(self.bag, drive())
+        self.bag = os.path.join(self.folder, "strange.mcap")
+        bags.write_mcap(self.bag, drive())
         self.ports = {name: free_port(0) for name in ("scanner", "motorcontrol", "scanmatcher", "recorder")}
         address = {name: f"127.0.0.1:{port}" for name, port in self.ports.items()}
         self.settings = {"recorder": {"daemons": json.dumps([address[name] for name in ("scanner", "motorcontrol")]), "record.folder": self.records,
