@@ -6,7 +6,8 @@
 namespace hermes::ctl {
 
 /// Makes a session of a bag of ROS (the word after the recorder), in the folder of the recorder, which has to
-/// be on this computer: `scanner/scan2d` in the frame of the robot, and `motorcontrol/odometry`.
+/// be on this computer: `scanner/scan2d` in the frame of the robot, `motorcontrol/odometry`, and
+/// `scanmatcher/pose` where the bag has a map.
 Result<void> importSession(Client &recorder, const Arguments &arguments);
 
 } // namespace hermes::ctl

@@ -8,6 +8,7 @@
 #include "gui/vector/BagDrive.h"
 #include "gui/vector/Failure.h"
 #include "protocol/mcap/Writer.h"
+#include "protocol/messages/Matching.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
@@ -39,6 +40,7 @@ public:
               "hermesctl") {
         scan_ = channel<ScanMessage>("scanner", "scan2d");
         odometry_ = channel<OdometryMessage>("motorcontrol", "odometry");
+        pose_ = channel<PoseMessage>("scanmatcher", "pose");
     }
 
     /// In the frame of the robot, so that nobody has to be told where the scanner is on it.
@@ -71,6 +73,15 @@ public:
         message.covariance[8] = turn_variance * (way_m_ + turned_rad_);
         write(odometry_, time_ns, sample.stamp, asJson(message));
     }
+    /// Of the last scan.
+    void add(std::uint64_t time_ns, double stamp, const vectorlib::Pose2D &pose) {
+        PoseMessage message;
+        message.pose = pose;
+        message.outcome = "matched";
+        message.scan = scans_ - 1;
+        message.trust = 1;
+        write(pose_, time_ns, stamp, asJson(message));
+    }
     /// false: not all could be written.
     bool finish() {
         return isOpen_ && isWhole_ && writer_.finish() && file_.flush() && ::fsync(file_.handle()) == 0;
@@ -101,7 +112,7 @@ private:
     QFile file_;
     bool isOpen_, isWhole_ = true; ///< isOpen_: before the writer begins
     mcap::Writer writer_;
-    std::uint16_t scan_ = 0, odometry_ = 0;
+    std::uint16_t scan_ = 0, odometry_ = 0, pose_ = 0;
     quint64 scans_ = 0, messages_ = 0;
     std::optional<vectorlib::Pose2D> before_;
     double way_m_ = 0, turned_rad_ = 0;
@@ -148,6 +159,8 @@ Result<QJsonObject> writeDrive(vector::BagDrive &drive, const QString &folder) {
             continue;
         }
         file.add(*time_ns, scan, mount, scanner.base);
+        if (const auto pose = drive.poseAt(scan))
+            file.add(*time_ns, scan.stamp, *pose);
         progress.update(double(file.scans()), double(scanner.messages));
         time_ns = drive.nextScan(scan);
     }

@@ -37,7 +37,9 @@ BagDrive::BagDrive(const std::string &path)
     , reader_(valueOrFail(bag::open(path))) {
     listTopics();
     readFrames();
-    findOdometryFrames();
+    if (odometryTopic_.empty())
+        way_ = wayTo("odom");
+    wayToMap_ = wayTo("map");
     for (BagScanner &scanner : scanners_)
         placeScanner(scanner);
 }
@@ -168,19 +170,16 @@ std::string BagDrive::baseOf(const std::string &frame) const {
     return up.back();
 }
 
-/// Without a topic of the odometry: the way from the robot's frame up to the one called odom.
-void BagDrive::findOdometryFrames() {
-    if (!odometryTopic_.empty() || scanners_.empty())
-        return;
+/// Frames from the robot's up to one that is called so; none: it is not above the robot.
+std::vector<std::string> BagDrive::wayTo(const char *name) const {
     for (const BagScanner &scanner : scanners_) {
         const std::vector<std::string> up = frames_.upFrom(baseOf(scanner.frame));
-        const auto odom = std::find_if(up.begin(), up.end(),
-                                       [](const std::string &name) { return lastPart(name) == "odom"; });
-        if (odom != up.end() && odom != up.begin()) {
-            way_.assign(up.begin(), odom + 1);
-            return;
-        }
+        const auto found = std::find_if(up.begin(), up.end(),
+                                        [&](const std::string &frame) { return lastPart(frame) == name; });
+        if (found != up.end() && found != up.begin())
+            return {up.begin(), found + 1};
     }
+    return {};
 }
 
 void BagDrive::placeScanner(BagScanner &scanner) {
@@ -272,15 +271,20 @@ std::optional<std::uint64_t> BagDrive::nextScan(vectorlib::TimedScan &scan) {
     return std::nullopt;
 }
 
+std::optional<vectorlib::Pose2D> BagDrive::poseAt(const vectorlib::TimedScan &scan) {
+    if (wayToMap_.empty())
+        return std::nullopt;
+    if (!poses_)
+        poses_ = std::make_unique<BagOdometry>(path_, wayToMap_, frames_);
+    const auto track = poseFeed_.over(scan.stamp, scan.stamp, [this] { return poses_->nextSample(); });
+    return track ? std::optional(track->at(scan.stamp).pose()) : std::nullopt;
+}
+
 void BagDrive::readScans(const std::function<void(vectorlib::TimedScan &scan)> &take) {
     begin();
-    const auto nextOne = [this] {
-        const auto sample = nextSample();
-        return sample ? std::optional(sample->second) : std::nullopt;
-    };
     for (vectorlib::TimedScan scan; nextScan(scan); take(scan))
         if (odometry_ && !scan.points.empty()) {
-            scan.odometry = feed_.over(scan.begin(), scan.end(), nextOne);
+            scan.odometry = feed_.over(scan.begin(), scan.end(), [this] { return odometry_->nextSample(); });
             withoutOdometry_ += !scan.odometry;
         }
 }
@@ -293,7 +297,7 @@ std::string BagDrive::notices(bool isPlaced) const {
     };
     const BagScanner &s = scanner();
     add(!s.mount && !isPlaced,
-        "where " + s.frame + " is on the robot is not told: it is taken for the robot's centre (--sensor)");
+        "where " + s.frame + " is on the robot is not told: it is taken for the robot's centre");
     add(s.isMountMoving && !isPlaced, s.frame + " moves on the robot: its first place is taken");
     add(s.tilt > largestTilt_rad, s.frame + " is tilted by " +
                                       std::to_string(std::lround(s.tilt * 180 / vectorlib::pi)) +

@@ -65,6 +65,10 @@ public:
         return odometry_ ? odometry_->next() : std::nullopt;
     }
 
+    /// Where the robot was at the stamp of the scan by a program that made a map: in the frame map of tf,
+    /// where there is one and the bag tells of that time.
+    std::optional<vectorlib::Pose2D> poseAt(const vectorlib::TimedScan &scan);
+
     std::size_t odometryRefused() const { return odometry_ ? odometry_->refused() : 0; }
     /// What was left out and what could not be read, for people; empty: nothing. isPlaced: somebody told
     /// where the scanner is.
@@ -76,7 +80,7 @@ private:
     bool isNeeded(const bag::Topic &topic) const;
     void takeFrames(const bag::Topic &topic, const bag::Message &message);
     void readFirstScan(const bag::Topic &topic, const bag::Message &message);
-    void findOdometryFrames();
+    std::vector<std::string> wayTo(const char *name) const;
     std::string baseOf(const std::string &frame) const;
     void placeScanner(BagScanner &scanner);
     std::string readScan(const bag::Topic &topic, const bag::Message &message, BagScan &reading,
@@ -86,6 +90,7 @@ private:
     std::string path_;
     std::unique_ptr<bag::Reader> reader_;
     std::unique_ptr<BagOdometry> odometry_; ///< null: there is none, or nothing was read
+    std::unique_ptr<BagOdometry> poses_;    ///< null: they were not asked for
     std::vector<BagScanner> scanners_;
     std::size_t chosen_ = 0;
     CloudOptions cloud_;
@@ -94,8 +99,9 @@ private:
     std::string odometryTopic_; ///< empty: none
     std::string base_;          ///< the robot's frame, as the odometry tells; empty: it does not
     FrameTree frames_;
-    std::vector<std::string> way_; ///< frames from the robot's up to that of the odometry, by tf
-    OdometryFeed feed_;
+    std::vector<std::string> way_;      ///< frames from the robot's up to that of the odometry, by tf
+    std::vector<std::string> wayToMap_; ///< the same up to that of a map
+    OdometryFeed feed_, poseFeed_;
     std::vector<std::string> notices_;
     std::size_t scans_ = 0, refusedScans_ = 0, unstamped_ = 0, withoutOdometry_ = 0, refusedFrames_ = 0,
                 refusedFrameMessages_ = 0;

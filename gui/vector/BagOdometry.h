@@ -24,6 +24,10 @@ public:
 
     /// The time of the next sample in the bag, and that sample; nothing at the end.
     std::optional<std::pair<std::uint64_t, vectorlib::OdometrySample>> next();
+    std::optional<vectorlib::OdometrySample> nextSample() {
+        const auto sample = next();
+        return sample ? std::optional(sample->second) : std::nullopt;
+    }
     /// Samples that no robot can tell.
     std::size_t refused() const { return refused_; }
     std::string problem() const { return reader_->problem(); } ///< as of the reader

@@ -199,6 +199,8 @@ void readBag(const MapSourceOptions &options, const MapScanSink &sink, MapSource
     report.odometryRefused = bag.odometryRefused();
     report.mount = options.mount ? *options.mount : bag.scanner().mount.value_or(vectorlib::Pose2D());
     report.otherSensors = bag.notices(options.mount.has_value());
+    if (!options.mount && !bag.scanner().mount)
+        report.otherSensors += "; --sensor X,Y,THETA tells where";
 }
 
 void readFolder(const MapSourceOptions &options, const MapScanSink &sink) {

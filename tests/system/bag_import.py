@@ -24,13 +24,16 @@ def wall_distance(x, y, direction):
     return min((edge - at) / step for at, step, edges in ((x, dx, (-4, 5)), (y, dy, (-3, 3))) for edge in edges if (edge - at) * step > 1e-9)
 
 
-def drive():
-    """A drive ahead with a scanner that looks to the left and sees three quarters of a turn."""
+def drive(with_map=False):
+    """A drive ahead with a scanner that looks to the left and sees three quarters of a turn; with the frame of a map."""
     messages = [("/tf_static", "tf2_msgs/TFMessage", START, bags.transforms(bags.Bytes("cdr"), (START, "base", "laser", (*MOUNT[:2], 0.2), MOUNT[2])))]
     for i in range(SCANS):
         t, x = START + 0.1 * i, WAY_M * i
         ranges = [wall_distance(x + MOUNT[0], 0, MOUNT[2] - 2.3 + 0.01 * k) for k in range(460)]
         messages.append(("/odom", "nav_msgs/Odometry", t, bags.odometry(bags.Bytes("cdr"), t, (x, 0, 0), (WAY_M * 10, 0, 0), child="base")))
+        if with_map:
+            frames = (t, "map", "odom", (10, 20, 0), math.pi / 2), (t, "odom", "base", (x, 0, 0), 0)
+            messages.append(("/tf", "tf2_msgs/TFMessage", t, bags.transforms(bags.Bytes("cdr"), *frames)))
         messages.append(("/scan", "sensor_msgs/LaserScan", t + 0.02, bags.laser_scan(bags.Bytes("cdr"), t, ranges, "laser", -2.3, 0.01)))
     return messages
 
@@ -86,6 +89,18 @@ class BagImport(unittest.TestCase):
         self.assertIn("it exists already; --name", again.stderr)
         self.assertEqual(self.ctl("session", "import", self.bag, "--name", "other", "--topic", "/scan").stdout, "other\n")
         self.assertEqual(self.sessions(), ["other", "strange"])
+
+    def test_poses_in_a_map(self):
+        recorder = self.start("recorder")
+        bags.write_mcap(self.bag, drive(with_map=True))
+        self.assertEqual(self.ctl("session", "import", self.bag).returncode, 0)
+        recorder.call("session.export", name="strange", format="tum")
+        with open(os.path.join(self.records, "strange", "export", "scanmatcher-pose.tum"), encoding="ascii") as file:
+            poses = [tuple(map(float, line.split())) for line in file if line[0] != "#"]
+        self.assertEqual(len(poses), SCANS)
+        for i, (t, x, y, *_, z, w) in enumerate(poses):
+            for found, expected in ((t, START + 0.1 * i), (x, 10), (y, 20 + WAY_M * i), (2 * math.atan2(z, w), math.pi / 2)):
+                self.assertAlmostEqual(found, expected, places=4)
 
     def test_what_cannot_be_imported(self):
         self.start("recorder")
