@@ -115,26 +115,6 @@ Standing standingOf(const Telemetry &t) {
     return standing;
 }
 
-Fields<WheelMessage> fieldsOf(Of<WheelMessage>) {
-    using W = WheelMessage;
-    return Fields<W>()
-        .add("target", &W::target, "What was commanded", "rad/s")
-        .add("set_point", &W::setPoint, "On the way there", "rad/s")
-        .add("speed", &W::speed, "As measured", "rad/s")
-        .add("angle", &W::angle, "Since the start", "rad");
-}
-
-Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>) {
-    Fields<WheelsMessage> fields;
-    for (std::size_t i = 0; i < wheelCount; ++i)
-        fields.add(wheelNames[i], WheelsMessage::wheels()[i],
-                   "Positive turns drive the robot forward; of omni wheels counter-clockwise");
-    return fields
-        .add("steering", &WheelsMessage::steering, "Of a steered axle, to the left, as commanded", "rad")
-        .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s")
-        .add("target", &WheelsMessage::target, "The robot's velocity that was commanded");
-}
-
 Fields<Standing::Controller> fieldsOf(Of<Standing::Controller>) {
     using C = Standing::Controller;
     return Fields<C>()

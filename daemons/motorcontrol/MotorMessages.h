@@ -6,25 +6,6 @@
 
 namespace hermes::motorcontrol {
 
-/// A wheel of the topic `wheels`: rad/s, angle in rad.
-struct WheelMessage {
-    double target = 0, setPoint = 0, speed = 0, angle = 0;
-};
-
-/// The topic `wheels`, with those that the layout has.
-struct WheelsMessage {
-    std::optional<WheelMessage> frontLeft, frontRight, rearLeft, rearRight;
-    std::optional<double> steering; ///< rad
-    double slip = 0;
-    Twist2D target; ///< of the robot
-
-    /// In the order of Wheel.
-    static constexpr std::array<std::optional<WheelMessage> WheelsMessage::*, wheelCount> wheels() {
-        return {&WheelsMessage::frontLeft, &WheelsMessage::frontRight, &WheelsMessage::rearLeft,
-                &WheelsMessage::rearRight};
-    }
-};
-
 /// Whether all controllers have confirmed that they stand: the answer to a stop.
 struct Standing {
     struct Controller {
@@ -75,8 +56,6 @@ bool allStand(const Telemetry &telemetry);
 /// Which controllers answer and are not known to stand; empty when none.
 QString turningOf(const Telemetry &telemetry);
 
-Fields<WheelMessage> fieldsOf(Of<WheelMessage>);
-Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>);
 Fields<Standing::Controller> fieldsOf(Of<Standing::Controller>);
 Fields<Standing> fieldsOf(Of<Standing>);
 Fields<CycleState> fieldsOf(Of<CycleState>);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/messages/Motion.h"
+#include "protocol/messages/Motors.h"
 
 #include <array>
 
@@ -8,10 +8,9 @@ namespace hermes::motorcontrol {
 
 enum class Wheel { FrontLeft, FrontRight, RearLeft, RearRight };
 
-constexpr int wheelCount = 4;
+constexpr int wheelCount = WheelsMessage::count;
 /// As in settings, commands and topics, in the order of Wheel.
-constexpr std::array<const char *, wheelCount> wheelNames{"front_left", "front_right", "rear_left",
-                                                          "rear_right"};
+constexpr auto wheelNames = WheelsMessage::names;
 
 /// One number a wheel, in the order of Wheel. Positive turns drive the robot forward, on both sides.
 using WheelValues = std::array<double, wheelCount>;

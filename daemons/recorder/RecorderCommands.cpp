@@ -195,6 +195,10 @@ void Recorder::declareStudies() {
                                          "odometry; mcap: all in one file; pcap: the packets of each lidar "
                                          "in one")
                        .choices({"csv", "tum", "carmen", "mcap", "pcap"}))
+            .param(
+                Field::text("profile", "Of mcap: ros2 makes it a bag of ROS 2, with what hermes-ros2 tells")
+                    .choices({"", "ros2"})
+                    .byDefault(""))
             .param(Field::array("topics",
                                 "Which, as DAEMON/TOPIC; * stands for any text. Without it all, or "
                                 "those of the format",
@@ -204,7 +208,7 @@ void Recorder::declareStudies() {
             .asyncHandler([this](const Call &call, const Reply &reply) {
                 study(exports_, call.text("name"), reply,
                       [topics = textsOf(call.value("topics")), format = call.text("format"),
-                       floor = settings().number("record.free_floor_bytes")](
+                       profile = call.text("profile"), floor = settings().number("record.free_floor_bytes")](
                           SessionReader &session) -> Result<QJsonValue> {
                           const Result<double> room = freeBytes(session.folder());
                           const double needed = floor + (format == "pcap" ? captureBytes(session.folder())
@@ -216,7 +220,7 @@ void Recorder::declareStudies() {
                                                    .arg(needed * 1e-6, 0, 'f', 0),
                                                session.folder());
                           const Result<SessionFiles> files =
-                              exportSession(session, format, topics, session.folder() + "/export");
+                              exportSession(session, format, topics, session.folder() + "/export", profile);
                           return files ? Result<QJsonValue>(asJson(*files)) : files.error();
                       });
             }));

@@ -5,6 +5,7 @@
 #include "common/recording/DiskError.h"
 #include "daemons/recorder/CarmenText.h"
 #include "daemons/recorder/ExportFiles.h"
+#include "daemons/recorder/RosBag.h"
 #include "protocol/mcap/Writer.h"
 #include "protocol/wire/JsonText.h"
 
@@ -120,16 +121,22 @@ struct Trajectory {
     }
 };
 
+mcap::Writer::Sink sinkOf(ExportFile &file) {
+    return [&file](std::string_view bytes) {
+        file.write(QByteArray::fromRawData(bytes.data(), int(bytes.size())));
+        return true;
+    };
+}
+
+std::string library() {
+    return "hermes " + projectVersion().toStdString();
+}
+
 /// One MCAP file of all.
 class McapCopy {
 public:
     explicit McapCopy(ExportFile &file)
-        : writer_(
-              [&file](std::string_view bytes) {
-                  file.write(QByteArray::fromRawData(bytes.data(), int(bytes.size())));
-                  return true;
-              },
-              "hermes " + projectVersion().toStdString()) {}
+        : writer_(sinkOf(file), library()) {}
 
     void take(const SessionMessage &message) {
         const auto key = std::pair(keyOf(message), message.channel.metadata);
@@ -237,7 +244,10 @@ double captureBytes(const QString &folder) {
 }
 
 Result<SessionFiles> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
-                                   const QString &into) {
+                                   const QString &into, const QString &profile) {
+    if (!profile.isEmpty() && (profile != "ros2" || format != "mcap"))
+        return Error(ErrorCode::InvalidParams,
+                     "profile: found " + profile + " with " + format + ", expected ros2 with mcap");
     ExportFiles files(into);
     if (const auto begun = files.begin(); !begun)
         return begun.error();
@@ -276,6 +286,14 @@ Result<SessionFiles> exportSession(SessionReader &session, const QString &format
         if (text.scans() == 0)
             return Error(ErrorCode::NotReady, session.folder() + ": found no scan with odometry, expected " +
                                                   CarmenText::topics().join(" and "));
+    } else if (profile == "ros2") {
+        mcap::Writer writer(sinkOf(files.open(name, ".ros2.mcap")), library(), 1 << 20, "ros2");
+        RosBag bag(writer);
+        readAll({}, [&](const SessionMessage &message) { bag.take(message); });
+        writer.finish();
+        messages = bag.messages();
+        if (bag.unreadable() != 0)
+            session.note(QString("%1 messages could not be read").arg(bag.unreadable()));
     } else if (format == "mcap") {
         McapCopy copy(files.open(name, ".mcap"));
         readAll({}, [&](const SessionMessage &message) { copy.take(message); });

@@ -10,12 +10,12 @@ namespace hermes::recorder {
 ///  tum:    a file a topic that tells poses: stamp x y z qx qy qz qw; else scanmatcher/pose
 ///  carmen: ODOM lines and a ROBOTLASER1 line a scan, of motorcontrol/odometry and the scan2d of lidar or
 ///          scanner
-///  mcap:   everything in one file
+///  mcap:   everything in one file; with the profile ros2, what hermes-ros2 would have told of it
 ///  pcap:   the packets of each lidar in one file; without topics
-/// What is missing in them is told. Errors: InvalidParams (format), NotReady (no such messages, or it was to
-/// end early), InputOutput.
+/// What is missing in them is told. Errors: InvalidParams (format, profile), NotReady (no such messages, or
+/// it was to end early), InputOutput.
 Result<SessionFiles> exportSession(SessionReader &session, const QString &format, const QStringList &topics,
-                                   const QString &into);
+                                   const QString &into, const QString &profile = {});
 /// Of the captures in the folder of a session.
 double captureBytes(const QString &folder);
 

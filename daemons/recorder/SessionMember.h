@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/client/RobotDaemons.h"
+#include "common/daemon/RobotDaemons.h"
 #include "protocol/messages/Recordings.h"
 
 #include <QJsonObject>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/client/RobotDaemons.h"
+#include "common/daemon/RobotDaemons.h"
 #include "common/schema/Field.h"
 #include "daemons/recorder/McapRecorder.h"
 #include "daemons/recorder/TopicRing.h"

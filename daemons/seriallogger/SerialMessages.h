@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemons/seriallogger/FixEpoch.h"
+#include "protocol/messages/Fixes.h"
 #include "protocol/messages/Recordings.h"
 
 namespace hermes::seriallogger {
@@ -11,22 +12,6 @@ struct LineMessage {
     double stamp = 0, mono = 0;
     QString text;
     bool cut = false;
-};
-
-/// What a GPS receiver told of one moment.
-struct FixValues {
-    double stamp = 0, mono = 0;
-    std::optional<double> time;
-    bool valid = false;
-    std::optional<double> lat_deg, lon_deg, alt;
-    std::optional<int> quality, satellites;
-    std::optional<double> hdop, speed, course_deg;
-};
-
-/// The topic `fix`.
-struct FixMessage {
-    QString port;
-    FixValues values;
 };
 
 /// What was found in the bytes of a port with view nmea.
@@ -80,8 +65,6 @@ struct ExportAnswer {
 FixValues valuesOf(const Fix &fix);
 
 Fields<LineMessage> fieldsOf(Of<LineMessage>);
-Fields<FixValues> fieldsOf(Of<FixValues>);
-Fields<FixMessage> fieldsOf(Of<FixMessage>);
 Fields<NmeaCounts> fieldsOf(Of<NmeaCounts>);
 Fields<PortStatus> fieldsOf(Of<PortStatus>);
 Fields<SerialMessage> fieldsOf(Of<SerialMessage>);

@@ -121,6 +121,7 @@ const std::vector<Option> &options() {
         {"--at S", "session explain: what was at this second of the session",
          take<&Arguments::at_s, 1000000000, true>},
         {"--format F", "session export: csv, tum, carmen, mcap or pcap", take<&Arguments::format>},
+        {"--profile P", "session export --format mcap: ros2, a bag of ROS 2", take<&Arguments::profile>},
         {"--topics A,B", "session export: these topics and no others, as motorcontrol/odometry",
          takeList<&Arguments::topics>},
         {"--name NAME", "session import: its name (that of the bag)", take<&Arguments::name>},

@@ -29,6 +29,7 @@ struct Arguments {
     QStringList without, topics;
     QString name, topic; ///< of a session that is imported, of the scanner in its bag
     QString format;
+    QString profile;
     QString scanner, world, kinematics = "mecanum"; ///< of a simulated robot
     double at_s = 0, from_s = 0;
     bool detach = false;

@@ -139,6 +139,8 @@ private:
             return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option == "--format")
             return plain({"csv", "tum", "carmen", "mcap", "pcap"}, before);
+        if (option == "--profile")
+            return plain({"ros2"}, before);
         if (option == "--base" && line_.arguments.command == "simulate")
             return plain(FoundSerial::controllerKinds(), before);
         if (option == "--kinematics")

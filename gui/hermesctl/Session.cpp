@@ -24,6 +24,7 @@ QJsonObject paramsOf(const Arguments &arguments) {
         {"--without", {"without", list(arguments.without)}},
         {"--at", {"at_s", arguments.at_s}},
         {"--format", {"format", arguments.format}},
+        {"--profile", {"profile", arguments.profile}},
         {"--topics", {"topics", list(arguments.topics)}},
         {"--yes", {"confirm", true}}};
     QJsonObject params;

@@ -92,7 +92,7 @@ const std::vector<Subcommand> &subcommands() {
         {"session live", "ends a replay", "--recorder", session},
         {"session explain SESSION", "who drove, and why the robot stopped", "--recorder --at", session},
         {"session export SESSION --format F", "writes files for other programs beside it, and tells which",
-         "--recorder --format --topics", session},
+         "--recorder --format --profile --topics", session},
         {"session import BAG", "makes a session of a bag of ROS, which replays", "--recorder --name --topic",
          importSession},
         {"session rename SESSION NAME", "gives it another name", "--recorder", session},

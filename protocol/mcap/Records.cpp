@@ -105,9 +105,9 @@ bool define(Contents &contents, Op op, std::string_view content) {
     return op != Op::Channel || defineIn(contents.channels, contents.definitionBytes, content);
 }
 
-std::string beginning(const std::string &library) {
+std::string beginning(const std::string &library, const std::string &profile) {
     std::string begin(magic);
-    putRecord(begin, Op::Header, std::string(), library); // no profile
+    putRecord(begin, Op::Header, profile, library);
     return begin;
 }
 

@@ -168,7 +168,7 @@ bool eachMessage(const Contents &contents, std::string_view records, const Take 
 }
 
 /// The beginning of a file that this library writes.
-std::string beginning(const std::string &library);
+std::string beginning(const std::string &library, const std::string &profile = {});
 /// The end of a file with these contents: DataEnd, summary, footer. at: where in the file it will stand.
 std::string ending(const Contents &contents, std::uint64_t at);
 

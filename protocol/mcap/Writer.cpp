@@ -13,11 +13,11 @@ constexpr int zstdLevel = 1; // the fastest: a robot has little to spare
 
 } // namespace
 
-Writer::Writer(Sink sink, const std::string &library, std::size_t chunkBytes)
+Writer::Writer(Sink sink, const std::string &library, std::size_t chunkBytes, const std::string &profile)
     : sink_(std::move(sink))
     , chunkBytes_(std::min<std::size_t>(chunkBytes, largestChunk))
     , packer_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
-    give(beginning(library));
+    give(beginning(library, profile));
 }
 
 std::uint16_t Writer::addSchema(std::string name, std::string encoding, std::string data) {

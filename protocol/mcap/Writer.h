@@ -18,9 +18,10 @@ public:
     /// Takes whole records, in order. false: it failed, and nothing more is written.
     using Sink = std::function<bool(std::string_view)>;
 
-    /// library: who writes the file. chunkBytes: a chunk with as many is closed; it has more if a single
-    /// message has.
-    Writer(Sink sink, const std::string &library, std::size_t chunkBytes = 1 << 20);
+    /// library: who writes the file. profile: "ros2", or none. chunkBytes: a chunk with as many is closed; it
+    /// has more if a single message has.
+    Writer(Sink sink, const std::string &library, std::size_t chunkBytes = 1 << 20,
+           const std::string &profile = {});
 
     /// The id of the new schema; 0: there are no more ids, or more than mostDefinitions.
     std::uint16_t addSchema(std::string name, std::string encoding, std::string data);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/wire/FieldsOf.h"
+#include "protocol/messages/Motion.h"
 
 #include <QMap>
 #include <QString>
@@ -62,11 +62,36 @@ struct PowerMessage {
     BatteryState battery;
 };
 
+/// A wheel of the topic `wheels`: rad/s, angle in rad.
+struct WheelMessage {
+    double target = 0, setPoint = 0, speed = 0, angle = 0;
+};
+
+/// The topic `wheels`, with those that the layout has.
+struct WheelsMessage {
+    static constexpr int count = 4;
+    static constexpr std::array<const char *, count> names{"front_left", "front_right", "rear_left",
+                                                           "rear_right"};
+
+    std::optional<WheelMessage> frontLeft, frontRight, rearLeft, rearRight;
+    std::optional<double> steering; ///< rad
+    double slip = 0;
+    Twist2D target; ///< of the robot
+
+    /// In the order of their names.
+    static constexpr std::array<std::optional<WheelMessage> WheelsMessage::*, count> wheels() {
+        return {&WheelsMessage::frontLeft, &WheelsMessage::frontRight, &WheelsMessage::rearLeft,
+                &WheelsMessage::rearRight};
+    }
+};
+
 Fields<LeaseState> fieldsOf(Of<LeaseState>);
 Fields<MotionHold> fieldsOf(Of<MotionHold>);
 Fields<StandConfirmation> fieldsOf(Of<StandConfirmation>);
 Fields<ControllerPower> fieldsOf(Of<ControllerPower>);
 Fields<BatteryState> fieldsOf(Of<BatteryState>);
 Fields<PowerMessage> fieldsOf(Of<PowerMessage>);
+Fields<WheelMessage> fieldsOf(Of<WheelMessage>);
+Fields<WheelsMessage> fieldsOf(Of<WheelsMessage>);
 
 } // namespace hermes

@@ -47,6 +47,8 @@ public:
             if constexpr (form == Form::Ros1 && std::is_same_v<T, Header>)
                 count(0); // seq: nobody uses it
             forEachField(value, [this](const char *, const auto &member) { write(member); });
+            if constexpr (form == Form::Cdr && hasNoFields<T>)
+                write(Octet());
         }
     }
 
@@ -94,6 +96,10 @@ public:
         } else {
             if constexpr (form == Form::Ros1 && std::is_same_v<T, Header>)
                 count();
+            if constexpr (form == Form::Cdr && hasNoFields<T>) {
+                Octet none{};
+                plain(&none, 1);
+            }
             forEachField(value, [this](const char *name, auto &member) {
                 if (!hasFailed())
                     read(member);

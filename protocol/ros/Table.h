@@ -50,6 +50,10 @@ constexpr const char *typeOf() {
     return tableOf(Of<M>()).type;
 }
 
+/// Such a message is one byte.
+template <typename M>
+constexpr bool hasNoFields = std::tuple_size_v<decltype(tableOf(Of<M>()).members)> == 0;
+
 /// A number, bool or Octet: its bytes are those of the wire.
 template <typename T>
 constexpr bool isPlain = std::is_arithmetic_v<T> || std::is_same_v<T, Octet>;

@@ -16,6 +16,7 @@ ALLOWED = {
     "daemons/motorcontrol": {"common", "protocol"},
     "daemons/velodynelogger": {"common", "protocol"},
     "daemons/recorder": {"common", "protocol"},
+    "daemons/ros2": {"common", "protocol"},
     "daemons/seriallogger": {"common", "protocol"},
     "daemons/scanner": {"common", "protocol"},
     "daemons/softwaretrigger": {"common", "protocol"},

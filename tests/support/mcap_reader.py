@@ -115,7 +115,7 @@ class Mcap:
             first = False
             if kind == HEADER:
                 fields = Fields(content)
-                require(fields.text() == "", "the file has a profile")
+                self.profile = fields.text()
                 self.library = fields.text()
             elif kind in (SCHEMA, CHANNEL):
                 self._define(kind, content)

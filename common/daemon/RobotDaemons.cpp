@@ -1,4 +1,4 @@
-#include "common/client/RobotDaemons.h"
+#include "common/daemon/RobotDaemons.h"
 
 #include "common/Log.h"
 #include "common/Time.h"
