@@ -90,6 +90,16 @@ class BagImport(unittest.TestCase):
         self.assertEqual(self.ctl("session", "import", self.bag, "--name", "other", "--topic", "/scan").stdout, "other\n")
         self.assertEqual(self.sessions(), ["other", "strange"])
 
+    def test_a_session_of_a_bag_becomes_a_bag_again(self):
+        recorder = self.start("recorder")
+        self.assertEqual(self.ctl("session", "import", self.bag).returncode, 0)
+        path = recorder.call("session.export", name="strange", format="mcap", profile="ros2")["paths"][0]
+        mapped = subprocess.run([os.path.join(BINARIES, "hermes-vector"), "map", path], capture_output=True, text=True, timeout=60, check=True)
+        self.assertEqual((json.loads(mapped.stdout)["matched"], json.loads(mapped.stdout)["by_odometry"]), (SCANS, SCANS - 1))
+        self.assertEqual(self.ctl("session", "import", path, "--name", "again").returncode, 0)
+        topics = {t["topic"]: t["messages"] for t in recorder.call("session.info", name="again")["topics"]}
+        self.assertEqual(topics, {"scanner/scan2d": SCANS, "motorcontrol/odometry": SCANS})
+
     def test_poses_in_a_map(self):
         recorder = self.start("recorder")
         bags.write_mcap(self.bag, drive(with_map=True))
