@@ -58,7 +58,7 @@ struct InfoCommand {
         json["odometry"] = drive.odometry().empty() ? Json() : Json(drive.odometry());
         if (!problem.empty()) {
             json["problem"] = problem;
-            std::cerr << "hermes-vector: " << path << ": " << problem << '\n';
+            std::cerr << "hermes-vector: " << path << ": " << printable(problem) << '\n';
         }
         files.out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
         files.commit();

@@ -47,7 +47,7 @@ private:
         const bool isBag = bag::isBag(path);
         if (!isFolder && !isBag)
             return;
-        if (!isBag || isOwn(path)) {
+        if (!isBag || (hasExtension(path, ".mcap") && isOwn(path))) {
             auto session = std::make_shared<RecordedSession>(path);
             if (!(isFolder && captureIn(path)) && session->scanTopics().first.empty())
                 return;

@@ -333,7 +333,7 @@ void MapSourceReport::warn(std::ostream &out) const {
             << vectorlib::Number(vectorlib::rounded(secondsPerTurn, 3))
             << " s, as the turns of the robot tell: each point gets its time (--seconds-per-turn S)\n";
     if (!otherSensors.empty())
-        out << "hermes-vector: " << otherSensors << '\n';
+        out << "hermes-vector: " << printable(otherSensors) << '\n';
 }
 
 } // namespace hermes::vector

@@ -336,6 +336,9 @@ class VectorBags(unittest.TestCase):
         with sqlite3.connect(self.path("other.db3")) as database:
             database.execute("UPDATE topics SET serialization_format = 'fancy' WHERE name = '/scan'")
         self.refused("other.db3", "serialization fancy")
+        with sqlite3.connect(self.path("other.db3")) as database:
+            database.execute("UPDATE topics SET name = '\x1b[2Jevil' WHERE name = '/scan'")
+        self.refused("other.db3", "topic ?[2Jevil")
         bags.write_db3(self.path("empty.db3"), [m for m in messages("cdr") if m[0] == "/odom"])
         self.refused("empty.db3", "no topic of a scanner")
         text, bags.TYPES[LASER] = bags.TYPES[LASER], (bags.TYPES[LASER][0], "Header header\nfloat32 angle\n", {})
