@@ -25,7 +25,8 @@ std::string columnText(sqlite3_stmt *row, int column) {
 /// A name in a URI of SQLite.
 std::string uriOf(const std::string &path, bool isImmutable) {
     std::string uri = "file:";
-    for (const char c : path) {
+    const std::size_t slashes = std::min(path.find_first_not_of('/'), path.size()); // "//" would begin a host
+    for (const char c : path.substr(slashes - std::min<std::size_t>(slashes, 1))) {
         const bool isPlain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                              c == '/' || c == '.' || c == '-' || c == '_';
         const char *const digits = "0123456789ABCDEF";
