@@ -102,12 +102,15 @@ std::string Db3::open() {
     sqlite3_db_config(opened, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_exec(opened, "PRAGMA cell_size_check=ON; PRAGMA mmap_size=0", nullptr, nullptr, nullptr);
+    const std::string hint =
+        isImmutable ? ""
+                    : " (SQLite reads what is in its write-ahead log only in a folder that can be written)";
     for (const char *const name : {"topics", "messages"})
         if (!isTable(name))
             return first_.empty() ? std::string("found no table ") + name + ", expected a bag of ROS 2"
-                                  : first_;
+                                  : first_ + hint;
     if (!readTopics())
-        return first_;
+        return first_ + hint;
     readDefinitions();
     readSpan();
     select([](const Topic &) { return true; });
