@@ -124,6 +124,8 @@ const std::vector<Option> &options() {
         {"--profile P", "session export --format mcap: ros2, a bag of ROS 2", take<&Arguments::profile>},
         {"--topics A,B", "session export: these topics and no others, as motorcontrol/odometry",
          takeList<&Arguments::topics>},
+        {"--name NAME", "session import: its name (that of the bag)", take<&Arguments::name>},
+        {"--topic TOPIC", "session import: of several scanners in the bag this one", take<&Arguments::topic>},
         {"--role ROLE", "keys issue, pair, ros2: observer, operator, engineer, or daemon",
          take<&Arguments::role>},
         {"--days N", "keys issue, pair, ros2: valid for so many days (730)", take<&Arguments::days, 36500>},

@@ -27,6 +27,7 @@ struct Arguments {
     QStringList daemons;           ///< speak to these; empty: to those at their default ports
     QString recorder = "recorder"; ///< who records and replays sessions
     QStringList without, topics;
+    QString name, topic; ///< of a session that is imported, of the scanner in its bag
     QString format;
     QString profile;
     QString scanner, world, kinematics = "mecanum"; ///< of a simulated robot

@@ -177,6 +177,8 @@ private:
             return described(ask("topics.list").toArray());
         if (word == "SESSION")
             return sessions();
+        if (word == "BAG")
+            return {{":files", QString()}};
         if (word == "SAMPLE")
             return samples();
         if (word.endsWith('='))

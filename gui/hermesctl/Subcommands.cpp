@@ -1,5 +1,7 @@
 #include "gui/hermesctl/Subcommands.h"
 
+#include "gui/hermesctl/Import.h"
+
 #include <QRegularExpression>
 #include <algorithm>
 
@@ -91,6 +93,8 @@ const std::vector<Subcommand> &subcommands() {
         {"session explain SESSION", "who drove, and why the robot stopped", "--recorder --at", session},
         {"session export SESSION --format F", "writes files for other programs beside it, and tells which",
          "--recorder --format --profile --topics", session},
+        {"session import BAG", "makes a session of a bag of ROS, which replays", "--recorder --name --topic",
+         importSession},
         {"session rename SESSION NAME", "gives it another name", "--recorder", session},
         {"session remove SESSION", "removes it, after a question", "--recorder --yes", session},
         {"record ...", "short for session: record start, record stop, ...", "", "session"},

@@ -83,7 +83,7 @@ int CommandLine::run(int argc, char **argv) const {
                   << (chosen.empty() ? "" : chosen.front()->get_name() + ' ') << "--help.\n";
         return wrongUsage;
     } catch (const Failure &e) {
-        std::cerr << name << ": " << e.what() << '\n';
+        std::cerr << name << ": " << printable(e.what()) << '\n';
         return failed;
     } catch (const std::exception &e) {
         std::cerr << name << ": unexpected failure: " << e.what() << '\n';

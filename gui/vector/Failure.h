@@ -3,6 +3,7 @@
 #include "common/Outcome.h"
 #include "vectorlib/io/TextInput.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace hermes::vector {
@@ -11,6 +12,13 @@ namespace hermes::vector {
 struct Failure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// Without what a terminal would obey: names in files are anybody's.
+inline std::string printable(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return (c < ' ' && c != '\n') || c == 0x7F; }, '?');
+    return text;
+}
 
 /// The value, or a Failure with the message.
 template <typename T>

@@ -8,6 +8,7 @@
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Tum.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -38,17 +39,35 @@ public:
     }
 
 private:
+    /// A session, a file of one, or a bag.
     void openSession() {
         const std::string &path = options.source.path;
         std::error_code ignored;
-        if (!std::filesystem::is_directory(std::filesystem::u8path(path), ignored))
+        const bool isFolder = std::filesystem::is_directory(std::filesystem::u8path(path), ignored);
+        const bool isBag = bag::isBag(path);
+        if (!isFolder && !isBag)
             return;
-        auto session = std::make_shared<RecordedSession>(path);
-        if (!captureIn(path) && session->scanTopics().first.empty())
-            return;
-        options.source.session = std::move(session);
-        if (!options.isSigmaGiven())
+        if (!isBag || (hasExtension(path, ".mcap") && isOwn(path))) {
+            auto session = std::make_shared<RecordedSession>(path);
+            if (!(isFolder && captureIn(path)) && session->scanTopics().first.empty())
+                return;
+            options.source.session = std::move(session);
+        } else {
+            options.source.bag = std::make_shared<BagDrive>(path);
+            options.source.bag->choose(options.source.scanner);
+        }
+        if (options.source.session && !options.isSigmaGiven())
             options.sigma = options.source.session->sigma().value_or(options.sigma);
+    }
+    /// Whether hermes-recorder wrote it.
+    static bool isOwn(const std::string &path) {
+        const auto reader = valueOrFail(bag::open(path));
+        const auto &topics = reader->topics();
+        return std::any_of(topics.begin(), topics.end(), [](const bag::Topic &topic) {
+            const std::string end = "/scan2d";
+            return topic.serialization == "json" && topic.name.size() > end.size() &&
+                   topic.name.compare(topic.name.size() - end.size(), end.size(), end) == 0;
+        });
     }
 
     void build() {
@@ -164,6 +183,10 @@ private:
             options.source.session ? options.source.session->tracker() : vectorlib::ScanTrackerSettings();
         if (options.source.session && options.source.mount)
             settings.sensorOnRobot = *options.source.mount;
+        if (options.source.bag)
+            settings.sensorOnRobot = options.source.mount
+                                         ? *options.source.mount
+                                         : options.source.bag->scanner().mount.value_or(vectorlib::Pose2D());
         settings.useOdometry = options.odometry == "use";
         settings.seekWhereContradicted = false; // the parts of a log are joined later
         tracker.apply(settings);
@@ -250,8 +273,9 @@ private:
 void addMapCommand(CLI::App &app) {
     auto command = std::make_shared<MapCommand>();
     CLI::App *sub = app.add_subcommand(
-        "map", "Build the vector map of a CARMEN log, a capture or a folder of scans, or find the poses in a "
-               "finished map (summary as JSON)");
+        "map",
+        "Build the vector map of a CARMEN log, a bag of ROS, a capture or a folder of scans, or find the "
+        "poses in a finished map (summary as JSON)");
     command->options.addTo(*sub);
     sub->callback([command, sub] {
         if (command->options.loops == "leave" && sub->count("--out-graph") > 0)

@@ -23,7 +23,8 @@ void MapOptions::addInput(CLI::App &command) {
     command
         .add_option(
             "LOG", source.path,
-            "CARMEN log, pcap of an " + velodyne::sensorNames() +
+            "CARMEN log, bag of ROS (.bag, .db3, .mcap or the folder of one), pcap of an " +
+                velodyne::sensorNames() +
                 " (of NAME-0001.pcap, NAME-0002.pcap ... the first), the folder of a session, or one of "
                 "points files taken in name order (2 before 10)")
         ->required();
@@ -62,9 +63,9 @@ void MapOptions::addWays(CLI::App &command) {
     command.add_flag("--corrected", source.corrected,
                      "The log's scan poses are a corrected reference: odometry is taken from its ODOM lines "
                      "only, and the summary tells the error against the reference");
-    addOption(
-        command, "--sensor X,Y,THETA", sensor, poseText(true),
-        "Pose of the sensor on the robot of a CARMEN log or a session: metres, radians (degrees as 90deg)");
+    addOption(command, "--sensor X,Y,THETA", sensor, poseText(true),
+              "Pose of the sensor on the robot of a CARMEN log, a session or a bag: metres, radians (degrees "
+              "as 90deg)");
     addOption(command, "--field-of-view DEG", source.fieldOfView, between(1, 360),
               "Angle that a scan of a CARMEN log covers, degrees");
     addOption(command, "--max-range M", source.maxRange, between(0.01, 1000),
@@ -79,6 +80,13 @@ void MapOptions::addWays(CLI::App &command) {
     command.add_flag("--skip-damaged", source.skipDamaged,
                      "Count damaged lines of a log and go on instead of stopping at the first");
     source.sensor.addTo(command);
+    addOption(command, "--topic NAME", source.scanner.topic,
+              "Of a bag with several scanners: the topic of this one");
+    addOption(
+        command, "--laser ID", source.scanner.cloud.laser, wholeNumber(0, 1e6),
+        "Of a bag's cloud of points: the ring that is used, else the one that looks nearest to the horizon");
+    addOption(command, "--height M", source.scanner.cloud.height, between(-100, 100),
+              "Of a bag's cloud without rings: how high over the sensor the slice lies that is used, metres");
     sigmaOption_ = addOption(command, "--sigma M", sigma, aboveZero(),
                              "Largest standard deviation of points from their line, metres")
                        ->capture_default_str();

@@ -184,6 +184,25 @@ void readScans(const MapSourceOptions &options, const MapScanSink &sink, MapSour
     reportSession(session, false, options, report);
 }
 
+void readBag(const MapSourceOptions &options, const MapScanSink &sink, MapSourceReport &report) {
+    BagDrive &bag = *options.bag;
+    const std::size_t total = (std::size_t(bag.scanner().messages) + options.every - 1) / options.every;
+    std::size_t scans = 0;
+    MapScan scan;
+    bag.readScans([&](const vectorlib::TimedScan &read) {
+        if (scans++ % options.every != 0)
+            return;
+        static_cast<vectorlib::TimedScan &>(scan) = read;
+        scan.fault = MapScan::Fault::None;
+        sink(scan, (scans - 1) / options.every, total);
+    });
+    report.odometryRefused = bag.odometryRefused();
+    report.mount = options.mount ? *options.mount : bag.scanner().mount.value_or(vectorlib::Pose2D());
+    report.otherSensors = bag.notices(options.mount.has_value());
+    if (!options.mount && !bag.scanner().mount)
+        report.otherSensors += "; --sensor X,Y,THETA tells where";
+}
+
 void readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
     std::vector<std::string> names;
     for (const fs::directory_entry &entry : fs::directory_iterator(fs::u8path(options.path)))
@@ -218,7 +237,9 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
           std::tuple("--sender", "capture", !isCapture && !options.sensor.sender.empty()),
           std::tuple("--corrected", "CARMEN log", !isLog && options.corrected),
           std::tuple("--skip-damaged", "CARMEN log", !isLog && options.skipDamaged),
-          std::tuple("--sensor", "CARMEN log or session", !isLog && !options.session && options.mount),
+          std::tuple("--topic, --laser and --height", "bag", !options.bag && options.scanner.isGiven()),
+          std::tuple("--sensor", "CARMEN log, session or bag",
+                     !isLog && !options.session && !options.bag && options.mount),
           std::tuple("--field-of-view", "CARMEN log", !isLog && options.fieldOfView),
           std::tuple("--max-range", "CARMEN log", !isLog && options.maxRange),
           std::tuple("--seconds-per-turn", "CARMEN log", !isLog && options.secondsPerTurn),
@@ -230,8 +251,13 @@ void refuseUnused(const MapSourceOptions &options, bool isCapture, bool isLog) {
 
 void readAny(const MapSourceOptions &options, const MapScanSink &sink, MapSourceReport &report) {
     std::error_code ignored;
+    if (options.bag) {
+        refuseUnused(options, false, false);
+        return readBag(options, sink, report);
+    }
     if (options.session) {
-        const auto capture = captureIn(options.path);
+        const auto capture =
+            fs::is_directory(fs::u8path(options.path), ignored) ? captureIn(options.path) : std::nullopt;
         refuseUnused(options, capture.has_value(), false);
         if (!capture)
             return readScans(options, sink, report);
@@ -307,7 +333,7 @@ void MapSourceReport::warn(std::ostream &out) const {
             << vectorlib::Number(vectorlib::rounded(secondsPerTurn, 3))
             << " s, as the turns of the robot tell: each point gets its time (--seconds-per-turn S)\n";
     if (!otherSensors.empty())
-        out << "hermes-vector: " << otherSensors << '\n';
+        out << "hermes-vector: " << printable(otherSensors) << '\n';
 }
 
 } // namespace hermes::vector

@@ -115,6 +115,7 @@ void addMapMergeCommand(CLI::App &app);
 void addMatchCommand(CLI::App &app);
 void addRelocalizeCommand(CLI::App &app);
 void addEvaluateCommand(CLI::App &app);
+void addInfoCommand(CLI::App &app);
 void addRingCommand(CLI::App &app);
 
 } // namespace hermes::vector

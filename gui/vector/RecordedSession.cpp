@@ -17,9 +17,7 @@ using JsonData = nlohmann::json;
 namespace {
 
 constexpr std::size_t partDigits = 4;
-constexpr double clockStep_s = 0.5; // back: the clock was set
 const std::string scanSuffix = "/scan2d";
-constexpr double longestLead_s = 1.0; // of an odometry before a scan: else its stamp is wrong
 
 /// Where the number of a part begins in its path: NAME-0001.pcap.
 std::optional<std::size_t> partNumberAt(const std::string &path, const std::string &extension) {
@@ -139,8 +137,9 @@ std::optional<std::string> captureIn(const std::string &folder) {
     return parts[0];
 }
 
-RecordedSession::RecordedSession(const std::string &folder)
-    : files_(partsIn(folder, ".mcap")) {
+RecordedSession::RecordedSession(const std::string &path) {
+    std::error_code ignored;
+    files_ = fs::is_directory(fs::u8path(path), ignored) ? partsIn(path, ".mcap") : std::vector{path};
     for (const std::string &file : files_)
         readers_.push_back(valueOrFail(mcap::Reader::open(file)));
     readSettings();
@@ -269,22 +268,8 @@ std::optional<vectorlib::OdometrySample> RecordedSession::nextSample() {
     return std::nullopt;
 }
 
-// Samples are taken until one is not earlier than the end of the scan. Where the clock was set back, those
-// that follow are of the scans that follow.
 std::optional<vectorlib::OdometryTrack> RecordedSession::over(double begin, double end) {
-    const bool goesBack = lastEnd_ && end < *lastEnd_ - clockStep_s;
-    lastEnd_ = end;
-    for (;;) {
-        if (!next_)
-            next_ = nextSample();
-        const bool isBehind = !newest_ || *newest_ < end;
-        const bool isSetBack = next_ && newest_ && next_->stamp < *newest_ - clockStep_s;
-        if (!next_ || !(isBehind || (isSetBack && (goesBack || *newest_ > end + longestLead_s))))
-            return buffer_.over(begin, end);
-        buffer_.add(*next_);
-        newest_ = next_->stamp;
-        next_.reset();
-    }
+    return feed_.over(begin, end, [this] { return nextSample(); });
 }
 
 std::string RecordedSession::problems() const {

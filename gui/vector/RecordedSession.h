@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/OdometryFeed.h"
 #include "protocol/mcap/Reader.h"
 #include "protocol/velodyne/ClockChoice.h"
 #include "protocol/velodyne/TurnAssembler.h"
@@ -25,11 +26,11 @@ std::vector<std::string> partsFrom(const std::string &path);
 std::optional<std::string> captureIn(const std::string &folder);
 
 /// A session as the robot recorded it: a folder with the capture of its lidar and, in recorder-0001.mcap and
-/// on, its odometry and the settings of its daemons.
+/// on, its odometry and the settings of its daemons; or one of these files alone.
 class RecordedSession {
 public:
     /// Throws Failure where a file of it cannot be read.
-    explicit RecordedSession(const std::string &folder);
+    explicit RecordedSession(const std::string &path);
 
     /// As the daemons had them when the recording began; where that is not known, as they are by default.
     vectorlib::ScanTrackerSettings tracker() const;
@@ -72,9 +73,7 @@ private:
     std::vector<mcap::Reader> readers_;
     std::map<std::string, nlohmann::json> settings_; ///< by topic
     std::size_t reader_ = 0;
-    std::optional<vectorlib::OdometrySample> next_; ///< not yet in the buffer
-    vectorlib::OdometryBuffer buffer_;
-    std::optional<double> newest_, lastEnd_; ///< stamp in the buffer; of the last scan
+    OdometryFeed feed_;
     std::size_t refused_ = 0, refusedScans_ = 0;
 };
 

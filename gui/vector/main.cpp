@@ -40,6 +40,7 @@ int main(int argc, char **argv) {
                            "Scans to line segments, and line segments to maps.",
                            {addSegmentCommand, addVectorizeCommand, addRegisterCommand, addSimilarityCommand,
                             addMatchCommand, addRelocalizeCommand, addObserveCommand, addMapCommand,
-                            addMapMergeCommand, addEvaluateCommand, addRingCommand, addElsewhere}};
+                            addMapMergeCommand, addEvaluateCommand, addInfoCommand, addRingCommand,
+                            addElsewhere}};
     return line.run(argc, argv);
 }

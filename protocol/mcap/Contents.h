@@ -33,7 +33,8 @@ struct Chunk {
     std::uint64_t offset = 0, bytes = 0;            ///< of the whole record in the file
     std::map<std::uint16_t, std::uint64_t> indexes; ///< where those of its channels stand in the file
     std::uint64_t indexBytes = 0;
-    std::string compression; ///< "zstd", or empty: none
+    std::string compression; ///< "zstd", "lz4", or empty: none
+    bool isLoose = false;    ///< no chunk: records that stand in the file themselves, and some between them
     std::uint64_t packedBytes = 0, unpackedBytes = 0;
 };
 
@@ -56,8 +57,13 @@ struct Contents {
     std::vector<Chunk> chunks;                     ///< in the order of the file
     std::uint64_t start_ns = 0, end_ns = 0;        ///< least and greatest log time; 0 without chunks
 
+    /// Whether the indexes of the chunks are of all messages.
+    bool isAllIndexed() const;
+
     /// Appends a chunk; start and end follow.
     void add(Chunk chunk);
+    /// A message of a known channel outside of chunks, whose record stands there in the file.
+    void addLoose(const Message &message, std::uint64_t offset, std::uint64_t bytes);
     /// Its messages are counted, too.
     void add(const IndexedChunk &chunk);
 };

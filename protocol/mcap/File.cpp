@@ -15,8 +15,8 @@ constexpr std::uint64_t largestRatio = 1 << 15; // zstd: a block of 128 KiB take
 
 /// Gives why that fails; empty: it is done.
 std::string unpack(std::string_view packed, const Chunk &chunk, std::string &records) {
-    if (chunk.compression != "zstd" && !chunk.compression.empty())
-        return "found compression '" + chunk.compression.substr(0, 20) + "', expected zstd or none";
+    if (chunk.compression != "zstd" && chunk.compression != "lz4" && !chunk.compression.empty())
+        return "found compression '" + chunk.compression.substr(0, 20) + "', expected zstd, lz4 or none";
     if (chunk.unpackedBytes > largestChunk || chunk.unpackedBytes / largestRatio > packed.size())
         return "found " + std::to_string(packed.size()) + " bytes that were " +
                std::to_string(chunk.unpackedBytes) + ", expected at most " + std::to_string(largestChunk);
@@ -24,7 +24,8 @@ std::string unpack(std::string_view packed, const Chunk &chunk, std::string &rec
         records = packed;
     } else {
         records.resize(std::size_t(chunk.unpackedBytes));
-        if (std::string problem = unpackZstd(packed, records); !problem.empty())
+        const auto unpackIt = chunk.compression == "lz4" ? unpackLz4 : unpackZstd;
+        if (std::string problem = unpackIt(packed, records); !problem.empty())
             return problem;
     }
     return records.size() == chunk.unpackedBytes ? "" : "its size is not what it tells";
@@ -60,8 +61,10 @@ bool File::load(Chunk &chunk, std::string &records) {
     if (chunk.bytes > largestChunk + largestHead)
         return note(chunk.offset, "found a chunk of " + std::to_string(chunk.bytes) +
                                       " bytes, expected at most " + std::to_string(largestChunk));
-    if (!read(chunk.offset, chunk.bytes, bytes))
+    if (!read(chunk.offset, chunk.bytes, chunk.isLoose ? records : bytes))
         return note(chunk.offset, "the chunk cannot be read");
+    if (chunk.isLoose)
+        return true;
     RecordCursor record(bytes);
     if (!record.next() || record.op != Op::Chunk || record.isCut())
         return note(chunk.offset, "there is no chunk of that size");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "protocol/mcap/ChunkOrder.h"
 #include "protocol/mcap/Scan.h"
 
 #include <functional>
@@ -8,8 +9,9 @@
 
 namespace hermes::mcap {
 
-/// Reads one MCAP file: by the summary at its end, or from its beginning where it was cut off. Reads chunks
-/// without compression and those of zstd. Bad chunks are left out. Memory: up to 256 MiB of chunks.
+/// Reads one MCAP file: by the summary at its end, or from its beginning where it was cut off or has messages
+/// outside of chunks. Reads chunks without compression and those of zstd and lz4. Bad chunks are left out.
+/// Memory: up to 256 MiB of chunks.
 class Reader {
 public:
     /// Fails when it is no regular file, or none of MCAP. path: in UTF-8.
@@ -36,25 +38,15 @@ public:
     std::string problem() const { return file_.problem(); }
 
 private:
-    struct OpenChunk {
-        std::string records;
-        /// To give, the next one last: log time, and where the message begins in the records.
-        std::vector<std::pair<std::uint64_t, std::size_t>> messages;
-    };
-
     Reader(File file, Found found);
-    void openChunks();
-    void openChunk(const Chunk &told);
+    void openChunk(const Chunk &told, OpenChunk &open);
     bool isWanted(const Chunk &chunk) const;
 
     File file_;
     Found found_; ///< its chunks in the order of their least log times
     std::set<std::uint16_t> unwanted_;
     std::uint64_t from_ns_ = 0;
-    std::size_t nextChunk_ = 0;
-    /// By the log time of the next message, and the place in the file.
-    std::map<std::pair<std::uint64_t, std::uint64_t>, OpenChunk> open_;
-    bool given_ = false; ///< the next message of the first of them
+    ChunkOrder order_;
 };
 
 } // namespace hermes::mcap

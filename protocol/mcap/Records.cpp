@@ -8,6 +8,8 @@ namespace hermes::mcap {
 namespace {
 
 constexpr std::size_t indexEntryBytes = 8 + 8;
+constexpr std::size_t indexHeadBytes = headBytes + 2 + 4; // of the record, its channel and its entries' bytes
+constexpr std::uint64_t largestLoose = 1 << 20; // of messages outside of chunks that are read at once
 
 template <typename T>
 bool defineIn(std::map<std::uint16_t, T> &known, std::uint64_t &bytes, std::string_view content) {
@@ -56,6 +58,34 @@ void Contents::add(const IndexedChunk &chunk) {
     add(static_cast<const Chunk &>(chunk));
 }
 
+void Contents::addLoose(const Message &message, std::uint64_t offset, std::uint64_t bytes) {
+    ++counts[message.channel];
+    const std::uint64_t time_ns = message.logTime_ns;
+    const bool goesOn =
+        !chunks.empty() && chunks.back().isLoose && offset + bytes - chunks.back().offset <= largestLoose;
+    Chunk chunk = goesOn ? chunks.back() : Chunk();
+    if (goesOn)
+        chunks.pop_back();
+    else
+        chunk.offset = offset;
+    chunk.start_ns = goesOn ? std::min(chunk.start_ns, time_ns) : time_ns;
+    chunk.end_ns = std::max(chunk.end_ns, time_ns);
+    chunk.isLoose = true;
+    chunk.bytes = offset + bytes - chunk.offset;
+    add(std::move(chunk));
+}
+
+bool Contents::isAllIndexed() const {
+    std::uint64_t messages = 0, indexed = 0;
+    for (const auto &[channel, count] : counts)
+        messages += count;
+    for (const Chunk &chunk : chunks)
+        indexed += (chunk.indexBytes -
+                    std::min<std::uint64_t>(chunk.indexBytes, indexHeadBytes * chunk.indexes.size())) /
+                   indexEntryBytes;
+    return messages == indexed;
+}
+
 bool RecordCursor::next() {
     std::string_view from = left_;
     std::uint8_t first = 0;
@@ -93,11 +123,14 @@ std::string ending(const Contents &contents, std::uint64_t at) {
     for (const auto &[channel, count] : contents.counts)
         messages += count;
     const std::uint32_t attachments = 0, metadata = 0;
+    const auto isChunk = [](const Chunk &chunk) { return !chunk.isLoose; };
     putRecord(end, Op::Statistics, messages, std::uint16_t(contents.schemas.size()),
               std::uint32_t(contents.channels.size()), attachments, metadata,
-              std::uint32_t(contents.chunks.size()), contents.start_ns, contents.end_ns, contents.counts);
+              std::uint32_t(std::count_if(contents.chunks.begin(), contents.chunks.end(), isChunk)),
+              contents.start_ns, contents.end_ns, contents.counts);
     for (const Chunk &chunk : contents.chunks)
-        put(end, Op::ChunkIndex, chunk);
+        if (isChunk(chunk))
+            put(end, Op::ChunkIndex, chunk);
     putRecord(end, Op::Footer, at + summary, std::uint64_t(0), std::uint32_t(0)); // no offsets of groups
     // The sum is of all from the summary to the footer's last field, which holds it.
     end.resize(end.size() - 4);

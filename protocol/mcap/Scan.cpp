@@ -27,6 +27,7 @@ private:
     bool areChunksDisjoint(std::uint64_t end);
     bool takeNext(std::uint64_t &offset);
     void takeChunk(std::uint64_t &offset, std::uint64_t bytes);
+    void takeLoose(std::uint64_t at, std::uint64_t bytes);
     void accept(std::uint64_t end);
 
     File &file_;
@@ -126,15 +127,29 @@ bool Scan::takeNext(std::uint64_t &offset) {
     if (op == Op::Chunk) {
         takeChunk(offset, headBytes + length);
     } else if (op != Op::MessageIndex) { // one here is of a chunk that is damaged
-        if (op == Op::Message)
-            file_.note(at, "a message outside of a chunk");
         const bool isDefinition = op == Op::Schema || op == Op::Channel;
         if (isDefinition && !(length <= mostDefinitions && file_.read(at + headBytes, length, record) &&
                               define(contents_, op, record)))
             file_.note(at, "the schema or channel is damaged");
         accept(offset);
+        if (op == Op::Message)
+            takeLoose(at, headBytes + length);
     }
     return true;
+}
+
+/// A message outside of chunks.
+void Scan::takeLoose(std::uint64_t at, std::uint64_t bytes) {
+    std::string fields;
+    Message message;
+    if (bytes > largestChunk)
+        file_.note(at, "found a message of " + std::to_string(bytes) + " bytes, expected at most " +
+                           std::to_string(largestChunk));
+    else if (!file_.read(at + headBytes, std::min<std::uint64_t>(bytes, messageBytes) - headBytes, fields) ||
+             !take(fields, message) || contents_.channels.count(message.channel) == 0)
+        file_.note(at, "the message is damaged, or of no known channel");
+    else
+        contents_.addLoose(message, at, bytes);
 }
 
 /// offset: where the chunk ends; then, where its indexes end that are there.
@@ -180,7 +195,8 @@ Outcome<Found> readContents(File &file) {
     if (!scan.isMcap())
         return file.path() + ": found no header, expected an MCAP file";
     scan.found().whole = scan.readEnd();
-    if (!scan.found().whole || scan.found().contents.chunks.empty())
+    const Contents &contents = scan.found().contents;
+    if (!scan.found().whole || contents.chunks.empty() || !contents.isAllIndexed())
         scan.readAll();
     if (scan.found().whole)
         scan.found().bytes = file.size();

@@ -315,7 +315,7 @@ private Q_SLOTS:
         row("a cut record", chunk(4, "", "abcd", 4), "damaged records");
         row("a message without fields", chunk(10, "", record(5, "a"), 10), "damaged records");
         row("no channel", chunk(31, "", record(5, QByteArray(22, 1)), 31), "no known channel");
-        row("a message outside", record(5, QByteArray(22, 1)), "outside of a chunk");
+        row("a message outside", record(5, QByteArray(22, 1)), "no known channel");
         row("a schema without a name", record(3, "ab"), "schema or channel");
         row("metadata that are longer", record(4, QByteArray(12, 0) + number(~0u, 4)), "schema or channel");
         row("a record of all bytes", char(6) + number(~std::uint64_t(0), 8), "no whole record");
@@ -332,6 +332,50 @@ private Q_SLOTS:
         QVERIFY(repaired);
         QCOMPARE(repaired->problem, reader.problem());
         QVERIFY(opened(path).isWhole());
+    }
+
+    /// As lz4 packs what does not get smaller.
+    void chunksOfLz4() {
+        const auto channel =
+            record(4, number(1, 2) + number(0, 2) + number(1, 4) + "a" + number(0, 4) + number(0, 4));
+        const auto records =
+            channel + record(5, number(1, 2) + number(7, 4) + number(3, 8) + number(4, 8) + "data");
+        const QByteArray packed = QByteArray::fromHex("04224d18604082") +
+                                  number(std::uint64_t(records.size()) | 0x80000000, 4) + records +
+                                  QByteArray(4, 0);
+        const QByteArray bytes =
+            chunk(std::uint64_t(records.size()), "lz4", packed, std::uint64_t(packed.size()));
+        Reader reader = opened(saved(header + bytes));
+        if (reader.problem().find("without liblz4") != std::string::npos)
+            QSKIP("built without liblz4");
+        QCOMPARE(all(reader), QByteArray("3 4 7 a data\n"));
+        for (int size = 0; size < packed.size(); ++size) {
+            Reader cut = opened(saved(header + chunk(std::uint64_t(records.size()), "lz4", packed.left(size),
+                                                     std::uint64_t(size))));
+            QVERIFY2(all(cut).isEmpty() && cut.problem().find("unpacked") != std::string::npos,
+                     saying("cut at %1: %2", size, QString::fromStdString(cut.problem())));
+        }
+    }
+
+    /// Some writers make no chunks, or not of all; with a summary that tells of the chunks alone, too.
+    void messagesOutsideOfChunks() {
+        Writer file = writer();
+        const auto a = file.addChannel(0, "a", "json", {});
+        QVERIFY(write(file, a, 5, "five") && file.closeChunk());
+        const QByteArray loose =
+            record(5, number(a, 2) + number(3, 4) + number(3, 8) + number(4, 8) + "three");
+        const QByteArray open = bytes_ + loose + record(0x7E, "something new") + loose;
+        const QByteArray lines = "3 4 3 a three\n3 4 3 a three\n5 6 5 a five\n";
+        Reader cut = opened(saved(open));
+        QCOMPARE(all(cut), lines);
+        QVERIFY(cut.problem().empty() && !cut.isWhole());
+        QCOMPARE(cut.counts().at(a), std::uint64_t(3));
+        const QString path = saved(open);
+        QVERIFY(repair(path.toStdString()));
+        Reader mended = opened(path);
+        QVERIFY(mended.isWhole());
+        QCOMPARE(all(mended), lines);
+        QCOMPARE(mended.problem(), std::string());
     }
 
     void hostileSummaries_data() {
