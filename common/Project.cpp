@@ -14,8 +14,8 @@ struct KnownDaemon {
 const KnownDaemon knownDaemons[] = {
     {"supervisor", 7400},   {"motorcontrol", 7410},    {"velodynelogger", 7420},
     {"seriallogger", 7430}, {"softwaretrigger", 7440}, {"scanmatcher", 7450},
-    {"recorder", 7460},     {"scanner", 7470},         {"ros2", 7480},
-    {"simulator", 7490},
+    {"recorder", 7460},     {"scanner", 7470},         {"web", 7475},
+    {"ros2", 7480},         {"simulator", 7490},
 };
 
 } // namespace

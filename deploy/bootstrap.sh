@@ -4,15 +4,16 @@
 hermes_tool_packages=(build-essential cmake ninja-build pkg-config python3)
 hermes_library_packages=(
     qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libsdl2-dev libeigen3-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev libzstd-dev zlib1g-dev
+    libbz2-dev liblz4-dev libsqlite3-dev
 )
-# What is built only where its library is installed: hermes-ros2.
-hermes_optional_packages=(cyclonedds-dev)
+# What is built only where its library is installed: hermes-ros2, hermes-web.
+hermes_optional_packages=(cyclonedds-dev libqt5websockets5-dev)
 hermes_build_packages=("${hermes_tool_packages[@]}" "${hermes_library_packages[@]}")
 hermes_package_packages=("${hermes_optional_packages[@]}" debhelper dpkg-dev fakeroot help2man)
 hermes_site_packages=(mkdocs mkdocs-material mkdocstrings mkdocstrings-python-handlers doxygen help2man mandoc)
 hermes_long_test_packages=("${hermes_package_packages[@]}" "${hermes_site_packages[@]}" lintian debootstrap systemd-container umockdev
     g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine64)
-hermes_test_packages=("${hermes_optional_packages[@]}" codespell iproute2 libpcap-dev python3-jsonschema clang-format tshark python3-matplotlib zsh xvfb openbox xdotool)
+hermes_test_packages=("${hermes_optional_packages[@]}" libfastrtps-dev python3-rosbag python3-websockets codespell iproute2 libpcap-dev python3-jsonschema clang-format tshark python3-matplotlib zsh xvfb openbox xdotool)
 hermes_fuzz_packages=(clang libclang-rt-dev)
 hermes_bench_packages=(libbenchmark-dev)
 

@@ -1,6 +1,7 @@
 #include "common/daemon/RobotDaemons.h"
 
 #include "common/Log.h"
+#include "common/Project.h"
 #include "common/Time.h"
 #include "common/client/DaemonAddress.h"
 #include "protocol/wire/Fields.h"
@@ -47,6 +48,20 @@ void RobotDaemons::follow(const QStringList &addresses) {
     }
     for (const QString &address : addresses)
         add(address);
+}
+
+void RobotDaemons::followSetting(const QJsonValue &setting, const QString &self, const QStringList &more) {
+    QStringList addresses;
+    for (const QString &one : setting.toVariant().toStringList())
+        if (const Result<QString> address = daemonAddress(one))
+            addresses.append(*address);
+        else
+            logWarning("daemons", address.error().message);
+    if (addresses.isEmpty())
+        for (const QString &name : daemonNames())
+            if (name != self)
+                addresses.append(*daemonAddress(name));
+    follow(addresses + more);
 }
 
 void RobotDaemons::add(const QString &address, bool isNamed) {

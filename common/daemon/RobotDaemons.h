@@ -45,6 +45,10 @@ public:
     /// before.
     void follow(const QStringList &addresses);
 
+    /// The same by what the setting `daemons` of this daemon says: names or addresses; empty: those at the
+    /// usual ports of this host, but not this daemon itself. more: addresses beside them.
+    void followSetting(const QJsonValue &setting, const QString &self, const QStringList &more = {});
+
     /// By address, also those that are not known.
     const std::map<QString, std::unique_ptr<Daemon>> &all() const { return daemons_; }
     /// Who has been connected for a while and does not say what it is.

@@ -2,9 +2,7 @@
 
 #include "common/Log.h"
 #include "common/OwnRobot.h"
-#include "common/Project.h"
 #include "common/Time.h"
-#include "common/client/DaemonAddress.h"
 #include "common/files/SavedFile.h"
 #include "protocol/wire/Fields.h"
 
@@ -90,15 +88,8 @@ void Recorder::settingsChanged(const QStringList &paths) {
 }
 
 void Recorder::follow() {
-    QStringList addresses;
-    for (const QString &one : settings().values()["daemons"].toVariant().toStringList())
-        if (const Result<QString> address = daemonAddress(one))
-            addresses.append(*address);
-    if (addresses.isEmpty())
-        for (const QString &name : daemonNames())
-            addresses.append(*daemonAddress(name));
-    addresses += server().addresses().mid(0, 1); // its own topics are recorded as all others
-    daemons_.follow(addresses);
+    // its own topics are recorded as all others
+    daemons_.followSetting(settings().values()["daemons"], identity().name, server().addresses().mid(0, 1));
 }
 
 SessionMember Recorder::ownMember() {

@@ -2,8 +2,6 @@
 
 #include "common/Log.h"
 #include "common/OwnRobot.h"
-#include "common/Project.h"
-#include "common/client/DaemonAddress.h"
 #include "common/settings/SettingsTable.h"
 #include "protocol/ros/Definition.h"
 
@@ -147,17 +145,7 @@ void Ros2::lookForPeers() {
 }
 
 void Ros2::follow() {
-    QStringList addresses;
-    for (const QString &one : settings().values()["daemons"].toVariant().toStringList())
-        if (const Result<QString> address = daemonAddress(one))
-            addresses.append(*address);
-        else
-            logWarning("daemons", address.error().message);
-    if (addresses.isEmpty())
-        for (const QString &name : daemonNames())
-            if (name != identity().name)
-                addresses.append(*daemonAddress(name));
-    daemons_.follow(addresses);
+    daemons_.followSetting(settings().values()["daemons"], identity().name);
 }
 
 template <typename M>

@@ -2,8 +2,6 @@
 
 #include "common/Log.h"
 #include "common/OwnRobot.h"
-#include "common/Project.h"
-#include "common/client/DaemonAddress.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "common/interface/SocketOwner.h"
 #include "common/settings/SettingsTable.h"
@@ -15,7 +13,6 @@
 namespace hermes::web {
 namespace {
 
-constexpr quint16 commandPort = 7475;
 constexpr int strangers = 16; // connections that are no client yet
 constexpr std::chrono::seconds alivePeriod{60};
 constexpr double longestGap_s = 0.25; // after which what a panel wished before is void
@@ -57,8 +54,7 @@ Web::Web()
     : Daemon(
           {"web", "Web",
            "Shows the robot in a browser: to Foxglove and Lichtblick over their WebSocket protocol, and on "
-           "a page of its own",
-           commandPort})
+           "a page of its own"})
     , robot_(ownRobot().value_or(RobotIdentity()).id)
     , hall_{robot_, server().gaps(), {}, QUuid::createUuid().toString(QUuid::WithoutBraces)} {
     const QString robot = ownRobot().value_or(RobotIdentity()).name;
@@ -144,16 +140,7 @@ void Web::settingsChanged(const QStringList &paths) {
 }
 
 void Web::follow() {
-    QStringList addresses;
-    for (const QString &one : settings().value("daemons").toVariant().toStringList())
-        if (const Result<QString> address = daemonAddress(one))
-            addresses.append(*address);
-        else
-            logWarning("daemons", address.error().message);
-    if (addresses.isEmpty())
-        for (const QString &name : daemonNames())
-            addresses.append(*daemonAddress(name));
-    robot_.daemons().follow(addresses);
+    robot_.daemons().followSetting(settings().value("daemons"), identity().name);
 }
 
 void Web::enter(QWebSocket *socket) {
