@@ -128,6 +128,8 @@ class Commands(CommandCase):
         readers = peer.readers_of("/cmd_vel")
         self.assertEqual({reader["type"] for reader in readers}, {ros_cdr.dds_name(TWIST), ros_cdr.dds_name(STAMPED)})
         self.assertEqual({reader["reliable"] for reader in readers}, {False})  # it matches who is reliable and who is not
+        hashes = {f"typehash={ros_cdr.type_hash(kind)};" for kind in (TWIST, STAMPED)}
+        self.assertEqual({reader["user_data"] for reader in readers}, hashes)
 
     def test_who_holds_the_control_keeps_it(self):
         anna = Driver(self.robot.ports["motorcontrol"], "anna", vx=0.1)
@@ -276,12 +278,15 @@ class Refused(CommandCase):
             peer.close()
 
     def test_stop(self):
-        peer = self.peer()
-        peer.write("/emergency_stop", "std_msgs/Bool")
-        wait_for("who is to stop", lambda: peer.readers_of("/emergency_stop"))
-        peer.send("/emergency_stop", {"data": True}, count=20, hz=5)
-        wait_for("the stop", lambda: self.motors.call("motor.state")["estop"])
-        peer.close()
+        """Whether its publisher promises to arrive or not."""
+        for is_reliable in (True, False):
+            peer = self.peer()
+            peer.write("/emergency_stop", "std_msgs/Bool", reliable=is_reliable)
+            wait_for("who is to stop", lambda peer=peer: peer.readers_of("/emergency_stop"))
+            peer.send("/emergency_stop", {"data": True}, count=20, hz=5)
+            wait_for("the stop", lambda: self.motors.call("motor.state")["estop"])
+            peer.close()
+            release(self.motors)
 
 
 if __name__ == "__main__":
