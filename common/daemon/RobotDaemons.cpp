@@ -129,10 +129,11 @@ void RobotDaemons::take(Daemon &daemon, const QJsonObject &info, const QJsonValu
     }
     daemon.name = info["name"].toString();
     Daemon *const other = find(daemon.name);
-    if ((other && other != &daemon) || (daemon.name == "recorder" && !isThisProgram(info)))
+    if ((other && other != &daemon) || (daemon.name == ownName_ && !isThisProgram(info)))
         daemon.name += '@' + daemon.address.section("//", -1);
     daemon.info = info;
     daemon.commands = commandsOf(description);
+    daemon.methods = description["methods"].toArray();
     daemon.topics.clear();
     for (const QJsonValue &topic : description["x-topics"].toArray()) {
         ReadReport report;

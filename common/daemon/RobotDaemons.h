@@ -3,6 +3,7 @@
 #include "common/client/Client.h"
 #include "protocol/messages/Daemons.h"
 
+#include <QJsonArray>
 #include <QJsonObject>
 #include <QSet>
 #include <QTimer>
@@ -26,13 +27,16 @@ public:
         QString name;           ///< with "@HOST:PORT" where several have it
         QJsonObject info;       ///< what daemon.info gives
         QSet<QString> commands; ///< "record.stop", and "record.stop session" for each parameter
+        QJsonArray methods;     ///< of its description
         std::vector<TopicDescription> topics;
         quint64 unreadable = 0; ///< messages that came and could not be read
     };
 
     /// robot: the id of this robot; empty: none, and daemons of every robot belong to it.
-    explicit RobotDaemons(const QString &robot)
-        : robot_(robot) {
+    /// ownName: another daemon of this name, that of this program, gets its address beside it.
+    explicit RobotDaemons(const QString &robot, const QString &ownName = {})
+        : robot_(robot)
+        , ownName_(ownName) {
         connect(&again_, &QTimer::timeout, this, &RobotDaemons::askAgain);
         again_.start(std::chrono::seconds(2));
     }
@@ -68,7 +72,7 @@ private:
     void askAgain();
     void lose(Daemon &daemon);
 
-    const QString robot_;
+    const QString robot_, ownName_;
     QTimer again_;
     std::map<QString, std::unique_ptr<Daemon>> daemons_;
     QSet<QString> others_; ///< addresses of who is connected, and no daemon of this robot

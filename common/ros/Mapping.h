@@ -7,6 +7,9 @@
 
 namespace hermes::ros {
 
+/// "RIHS01_...", of the text that hashedTextOf() gives. Source: REP 2016.
+QByteArray typeHash(const std::string &hashedText);
+
 /// What a writer of DDS offers, or a reader asks for.
 struct Quality {
     bool isReliable = true;

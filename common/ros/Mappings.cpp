@@ -20,12 +20,11 @@ const Quality logged{true, true, 1000, 10};
 template <typename Out>
 Mapping row(const QStringList &topics, const char *rosTopic, const Quality &quality, bool isOfEach,
             std::function<std::unique_ptr<Translator>()> make) {
-    const QByteArray hashed = QByteArray::fromStdString(hashedTextOf<Out>());
     return {topics,
             QLatin1String(rosTopic),
             typeOf<Out>(),
             definitionOf<Out>(),
-            "RIHS01_" + QCryptographicHash::hash(hashed, QCryptographicHash::Sha256).toHex(),
+            typeHash(hashedTextOf<Out>()),
             quality,
             isOfEach,
             std::move(make)};
@@ -45,6 +44,11 @@ Mapping whole(const QStringList &topics, const char *rosTopic, const Quality &qu
 }
 
 } // namespace
+
+QByteArray typeHash(const std::string &hashedText) {
+    const QByteArray text = QByteArray::fromStdString(hashedText);
+    return "RIHS01_" + QCryptographicHash::hash(text, QCryptographicHash::Sha256).toHex();
+}
 
 /// ROS takes letters, digits and underscores, no digit first.
 QString Mapping::nameOf(const QString &daemon, bool isFirst) const {

@@ -80,6 +80,13 @@ std::map<QString, Mount> RobotModel::mounts() const {
     return all;
 }
 
+std::optional<bool> RobotModel::isMatched(const QString &scanner) const {
+    const auto found = scanners_.find(scanner);
+    if (matched_.empty() || found == scanners_.end())
+        return std::nullopt;
+    return found->second == matched_.front().port;
+}
+
 std::optional<Mount> RobotModel::matchedMount() const {
     return matched_.empty() ? std::nullopt : std::optional(matched_.front().mount);
 }

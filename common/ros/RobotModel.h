@@ -48,6 +48,8 @@ public:
     std::map<QString, Mount> mounts() const;
     /// Of the scanner that the matcher matches, whose poses it tells; none: not known.
     std::optional<Mount> matchedMount() const;
+    /// Whether it is that scanner; nothing: the matcher has not told yet.
+    std::optional<bool> isMatched(const QString &scanner) const;
     const std::vector<WheelPlace> &wheels() const { return wheels_; }
     double halfLength() const { return halfLength_; } ///< of the body, m
     double halfWidth() const { return halfWidth_; }

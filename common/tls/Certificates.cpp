@@ -6,6 +6,7 @@
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
+#include <openssl/pkcs7.h>
 #include <openssl/rand.h>
 #include <openssl/x509v3.h>
 
@@ -84,7 +85,7 @@ bool describe(X509 *certificate, EVP_PKEY *key, const CertificateSubject &subjec
            X509_gmtime_adj(X509_getm_notBefore(certificate), -clockTolerance_s) &&
            X509_gmtime_adj(X509_getm_notAfter(certificate), days * secondsOfDay) &&
            X509_set_pubkey(certificate, key) == 1 && addTo(name, "CN", subject.name) &&
-           addTo(name, "OU", subject.role);
+           (subject.role.isEmpty() || addTo(name, "OU", subject.role));
 }
 
 // Signed by the issuer; null: by its own key.
@@ -97,13 +98,13 @@ Result<CertifiedKey> make(const CertificateSubject &subject, int days, X509 *iss
     if (!key || !made || !describe(made.get(), key.get(), subject, days))
         return failed("making a certificate");
     X509 *const by = issuer ? issuer : made.get();
-    const bool isComplete =
-        X509_set_issuer_name(made.get(), X509_get_subject_name(by)) == 1 &&
-        addExtension(made.get(), by, NID_basic_constraints,
-                     issuer ? "critical,CA:FALSE" : "critical,CA:TRUE,pathlen:0") &&
-        addExtension(made.get(), by, NID_key_usage,
-                     issuer ? "critical,digitalSignature" : "critical,keyCertSign,cRLSign") &&
-        X509_sign(made.get(), issuerKey ? issuerKey : key.get(), EVP_sha256()) > 0;
+    const bool isComplete = X509_set_issuer_name(made.get(), X509_get_subject_name(by)) == 1 &&
+                            addExtension(made.get(), by, NID_basic_constraints,
+                                         issuer ? "critical,CA:FALSE" : "critical,CA:TRUE,pathlen:0") &&
+                            addExtension(made.get(), by, NID_key_usage,
+                                         issuer ? "critical,digitalSignature"
+                                                : "critical,keyCertSign,cRLSign,digitalSignature") &&
+                            X509_sign(made.get(), issuerKey ? issuerKey : key.get(), EVP_sha256()) > 0;
     const Bio certificate(BIO_new(BIO_s_mem())), secret(BIO_new(BIO_s_mem()));
     if (!isComplete || PEM_write_bio_X509(certificate.get(), made.get()) != 1 ||
         PEM_write_bio_PrivateKey(secret.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1)
@@ -133,6 +134,18 @@ Result<CertifiedKey> issueCertificate(const CertifiedKey &authority, const Certi
     if (!issuer || !key)
         return failed("reading the authority's certificate and key");
     return make(subject, days, issuer.get(), key.get());
+}
+
+Result<QByteArray> signText(const CertifiedKey &authority, const QByteArray &text) {
+    const Certificate certificate = readCertificate(authority.certificate);
+    const Key key = readKey(authority.key);
+    const Bio in(BIO_new_mem_buf(text.constData(), text.size())), out(BIO_new(BIO_s_mem()));
+    constexpr int flags = PKCS7_TEXT | PKCS7_DETACHED;
+    const std::unique_ptr<PKCS7, Freeing<PKCS7_free>> made(
+        certificate && key ? PKCS7_sign(certificate.get(), key.get(), nullptr, in.get(), flags) : nullptr);
+    if (!made || BIO_reset(in.get()) != 1 || SMIME_write_PKCS7(out.get(), made.get(), in.get(), flags) != 1)
+        return failed("signing a text");
+    return contentOf(out);
 }
 
 bool isSignedBy(const QByteArray &certificate, const QByteArray &authority) {

@@ -25,7 +25,7 @@ Recorder::Recorder()
     : Daemon({"recorder", "Recorder",
               "Records all that a robot does as sessions: what its loggers receive and every topic of every "
               "daemon; replays them as they were"})
-    , daemons_(ownRobot().value_or(RobotIdentity()).id)
+    , daemons_(ownRobot().value_or(RobotIdentity()).id, identity().name)
     , recording_("recorder", settings(), health(), file_, Recording::Files::Several)
     , return_([this](const QString &name) {
         RobotDaemons::Daemon *const daemon = daemons_.find(name);

@@ -2,6 +2,7 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
+#include "protocol/ros/Messages.h"
 
 #include <algorithm>
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds period{1000}; // of refreshing
 constexpr int maxOutlets = 200;
+constexpr double matcherWait_s = 3;
 
 bool hasTopic(const RobotDaemons::Daemon &daemon, const QString &name) {
     return std::any_of(daemon.topics.begin(), daemon.topics.end(),
@@ -35,6 +37,9 @@ Bridge::Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Pa
     connect(&daemons, &RobotDaemons::went, this, &Bridge::lose);
     connect(&second_, &QTimer::timeout, this, &Bridge::refresh);
     second_.start(period);
+    if (options.tellsReplays)
+        if (auto clock = participant_->write("rt/clock", ros::typeOf<ros::Clock>(), {false, false, 1}))
+            clock_ = clock.take();
     for (const ros::Mapping &mapping : ros::mappings())
         if (!mapping.isOfEach)
             outletFor(mapping, {});
@@ -71,7 +76,31 @@ void Bridge::greet(RobotDaemons::Daemon *daemon) {
         settings_[daemon] =
             daemon->client->subscribe("settings", {}, [this, daemon](const TopicUpdate &update) {
                 robot_.takeSettings(daemon->name, update.json().toObject());
+                receive();
             });
+    newcomers_.push_back({daemon, monotonicNow()});
+    receive();
+}
+
+/// Of several scanners the one that is matched has the plain names, whoever came first: the matcher is waited
+/// for, a little while.
+void Bridge::receive() {
+    std::stable_partition(newcomers_.begin(), newcomers_.end(), [this](const Newcomer &one) {
+        return robot_.isMatched(one.daemon->name).value_or(false);
+    });
+    const bool hasScan = std::any_of(outlets_.begin(), outlets_.end(),
+                                     [](const Outlet &outlet) { return outlet.name == "scan"; });
+    for (auto one = newcomers_.begin(); one != newcomers_.end();) {
+        const bool isMatched = robot_.isMatched(one->daemon->name).value_or(false);
+        const bool mustWait = hasTopic(*one->daemon, "scan2d") && !isMatched && !hasScan &&
+                              monotonicNow() - one->since < matcherWait_s;
+        if (!mustWait)
+            attach(one->daemon);
+        one = mustWait ? one + 1 : newcomers_.erase(one);
+    }
+}
+
+void Bridge::attach(RobotDaemons::Daemon *daemon) {
     for (const ros::Mapping &mapping : ros::mappings())
         for (const QString &topic : mapping.topics)
             if (hasTopic(*daemon, topic))
@@ -147,10 +176,14 @@ void Bridge::subscribeAsWanted(Feed &feed) {
 }
 
 void Bridge::take(Feed &feed, const TopicUpdate &update) {
-    if (update.replayed) { // it says nothing of the robot of now
-        ++counts_.replayed;
+    const bool isReplayed =
+        update.replayed || update.data["replayed"].boolean(); // by who replays it, or has it
+    if (isReplayed != options_.tellsReplays) {                // what was is never mixed with what is
+        ++counts_.leftOut;
         return;
     }
+    if (clock_)
+        tellTime(update.stamp);
     counts_.dropped += update.dropped - std::min(update.dropped, feed.dropped);
     feed.dropped = update.dropped;
     const ros::Told told{feed.daemon->name, update.stamp, robot_};
@@ -167,6 +200,15 @@ void Bridge::take(Feed &feed, const TopicUpdate &update) {
     }
 }
 
+/// Of what is replayed: nodes with use_sim_time live by it. It goes back when the replay does.
+void Bridge::tellTime(double stamp) {
+    constexpr double step_s = 0.01, late_s = 0.5; // topics come a little out of order
+    if (stamp < toldTime_ + step_s && stamp > toldTime_ - late_s)
+        return;
+    toldTime_ = stamp;
+    clock_->write(ros::toCdr(ros::Clock{ros::toTime(stamp)}));
+}
+
 void Bridge::write(Outlet &outlet) {
     outlet.writer->write(cdr_);
     ++counts_.written;
@@ -175,6 +217,7 @@ void Bridge::write(Outlet &outlet) {
 }
 
 void Bridge::refresh() {
+    receive();
     for (Outlet &outlet : outlets_)
         if (outlet.translator->refresh(robot_, stampNow(), cdr_))
             write(outlet);
@@ -182,6 +225,8 @@ void Bridge::refresh() {
 
 void Bridge::tellGraph() {
     std::vector<Guid> writers = writers_;
+    if (clock_)
+        writers.push_back(clock_->guid());
     for (const Outlet &outlet : outlets_)
         if (outlet.writer)
             writers.push_back(outlet.writer->guid());

@@ -16,8 +16,9 @@ public:
     struct Options {
         ParticipantOptions network;
         GraphForm graph = GraphForm::Auto;
-        QString space;       ///< "/robot1", or empty
-        QString framePrefix; ///< "robot1/", or empty
+        QString space;             ///< "/robot1", or empty
+        QString framePrefix;       ///< "robot1/", or empty
+        bool tellsReplays = false; ///< what is replayed and nothing else, with /clock; else all but that
     };
 
     static Result<std::unique_ptr<Bridge>> open(const Options &options, RobotDaemons &daemons);
@@ -37,7 +38,7 @@ public:
     /// How many topics there are, how many have readers, what was written and could not be.
     struct Counts {
         int topics = 0, read = 0;
-        quint64 written = 0, unreadable = 0, replayed = 0, dropped = 0;
+        quint64 written = 0, unreadable = 0, leftOut = 0, dropped = 0;
         QString lastProblem;
     };
     Counts counts() const;
@@ -63,6 +64,8 @@ private:
 
     Bridge(const Options &options, RobotDaemons &daemons, std::unique_ptr<Participant> participant);
     void greet(RobotDaemons::Daemon *daemon);
+    void receive();
+    void attach(RobotDaemons::Daemon *daemon);
     void lose(RobotDaemons::Daemon *daemon);
     Feed &feedOf(RobotDaemons::Daemon *daemon, const QString &topic);
     Outlet *outletFor(const ros::Mapping &mapping, const QString &daemon);
@@ -70,6 +73,7 @@ private:
     void subscribeAsWanted(Feed &feed);
     void take(Feed &feed, const TopicUpdate &update);
     void write(Outlet &outlet);
+    void tellTime(double stamp);
     void refresh();
     void tellGraph();
 
@@ -80,8 +84,15 @@ private:
     ros::RobotModel robot_;
     std::deque<Outlet> outlets_; // they stay where they are, as do the feeds
     std::deque<Feed> feeds_;
+    struct Newcomer {
+        RobotDaemons::Daemon *daemon;
+        double since; ///< of monotonicNow()
+    };
+    std::deque<Newcomer> newcomers_;                 ///< that have no topics yet
     std::vector<Guid> readers_, writers_;            ///< of others
     std::map<RobotDaemons::Daemon *, int> settings_; ///< handles of the subscriptions
+    std::unique_ptr<Writer> clock_;                  ///< of replays
+    double toldTime_ = 0;                            ///< its last stamp
     std::string cdr_;
     Counts counts_;
     QTimer second_;

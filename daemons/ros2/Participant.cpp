@@ -6,6 +6,7 @@
 #include "daemons/ros2/SocketGuard.h"
 #include "protocol/ros/Definition.h"
 
+#include <QFileInfo>
 #include <QRegularExpression>
 
 #pragma GCC diagnostic push
@@ -58,6 +59,35 @@ Guid guidOf(int entity) {
     Guid made{};
     std::copy(std::begin(guid.v), std::end(guid.v), made.begin());
     return made;
+}
+
+/// The files of an enclave. Source: SROS2, as rmw_cyclonedds reads them.
+Result<void> secure(dds_qos_t *qos, const QString &folder) {
+    const std::pair<const char *, const char *> files[] = {
+        {"dds.sec.auth.identity_ca", "identity_ca.cert.pem"},
+        {"dds.sec.auth.private_key", "key.pem"},
+        {"dds.sec.auth.identity_certificate", "cert.pem"},
+        {"dds.sec.access.permissions_ca", "permissions_ca.cert.pem"},
+        {"dds.sec.access.governance", "governance.p7s"},
+        {"dds.sec.access.permissions", "permissions.p7s"}};
+    for (const auto &[property, name] : files) {
+        const QFileInfo file(folder + '/' + name);
+        if (!file.isReadable())
+            return Error(ErrorCode::InputOutput,
+                         file.absoluteFilePath() + ": cannot be read, expected a file of an enclave");
+        dds_qset_prop(qos, property, ("file:" + QFile::encodeName(file.absoluteFilePath())).constData());
+    }
+    const std::array<const char *, 3> plugins[] = {{"auth", "dds_security_auth", "authentication"},
+                                                   {"crypto", "dds_security_crypto", "crypto"},
+                                                   {"access", "dds_security_ac", "access_control"}};
+    for (const auto &[name, library, function] : plugins) {
+        const std::string prefix = std::string("dds.sec.") + name + ".library.";
+        const std::string end = std::string("_") + function;
+        dds_qset_prop(qos, (prefix + "path").c_str(), library);
+        dds_qset_prop(qos, (prefix + "init").c_str(), ("init" + end).c_str());
+        dds_qset_prop(qos, (prefix + "finalize").c_str(), ("finalize" + end).c_str());
+    }
+    return {};
 }
 
 /// A damaged datagram gives a line each: so no more than one now and then is told, with the number of the
@@ -123,11 +153,17 @@ Result<std::unique_ptr<Participant>> Participant::open(const ParticipantOptions 
     dds_set_trace_sink(logCyclone, nullptr);
     std::unique_ptr<Participant> made(new Participant);
     const SocketGuard guard(options.networks);
+    if (const Result<void> known = guard.check(); !known)
+        return known.error();
     const QString what = QString("the DDS domain %1").arg(options.domain);
     made->domain_ = dds_create_domain(dds_domainid_t(options.domain), configuration->toUtf8().constData());
     if (made->domain_ < 0)
         return failure(what + " cannot be opened", made->domain_);
-    const Qos qos = qosOf({}, "enclave=/;");
+    const QString enclave = options.enclave.isEmpty() ? QString() : QFileInfo(options.enclave).fileName();
+    const Qos qos = qosOf({}, "enclave=/" + enclave.toUtf8() + ';');
+    if (!enclave.isEmpty())
+        if (const Result<void> secured = secure(qos.get(), options.enclave); !secured)
+            return secured.error();
     made->entity_ = dds_create_participant(dds_domainid_t(options.domain), qos.get(), nullptr);
     if (made->entity_ < 0)
         return failure(what + " cannot be joined", made->entity_);

@@ -27,6 +27,7 @@ struct ParticipantOptions {
     QStringList networks; ///< names or addresses of interfaces; none: this host alone
     QStringList peers;    ///< hosts that are asked for where multicast does not reach
     int fragmentBytes = 63000;
+    QString enclave; ///< folder of a keystore, as SROS2 lays it out; empty: everybody is believed
 };
 
 class Participant;

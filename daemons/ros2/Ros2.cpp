@@ -5,16 +5,18 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
 #include "common/settings/SettingsTable.h"
-#include "protocol/ros/Cdr.h"
+#include "protocol/ros/Definition.h"
 
+#include <QHostInfo>
 #include <cmath>
 
 namespace hermes::ros2 {
 namespace {
 
-constexpr std::chrono::milliseconds healthPeriod{1000};
-const Quality commands{false, false, 1}; // matches whoever offers at least that
-const Quality stops{true, false, 10};
+constexpr std::chrono::milliseconds healthPeriod{1000}, pollPeriod{100};
+constexpr int maxWaits = 50;           // for a map
+const Quality newest{false, false, 1}; // matches whoever offers at least that
+const Quality repeated{true, false, 10};
 
 const QStringList graphForms{"auto", "humble", "jazzy", "none"};
 
@@ -58,6 +60,10 @@ void Ros2::declareSettings() {
         .with("pattern", "^$|^[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$");
     table.define("frame_prefix", "", "Of all frames, for several robots: robot1/")
         .with("pattern", "^[A-Za-z0-9_/]{0,100}$");
+    table.define("replays", false,
+                 "Tells what the robot's daemons replay, and nothing else, with /clock: for a second "
+                 "hermes-ros2 with a domain "
+                 "or namespace of its own");
     table.group("Network", Applies::OnRestart);
     table.define("domain", 0, "ROS_DOMAIN_ID: only nodes with the same one see each other", "", 0, 232);
     table.defineList("networks",
@@ -74,6 +80,10 @@ void Ros2::declareSettings() {
                 "Form of the node for `ros2 node list`: humble, or jazzy from Iron on; auto: that of "
                 "other nodes, once there is one")
         .choices(graphForms);
+    table.define(
+        "enclave", "",
+        "Folder of an enclave of SROS2, KEYSTORE/enclaves/NAME: only nodes with keys of that store see the "
+        "robot, and do what their permissions say. Empty: everybody on the networks does");
     table.group("Commands", Applies::OnRestart);
     table.define("commands", false,
                  "Nodes may move the robot by cmd_vel and tell its place by initialpose. Everybody on the "
@@ -88,10 +98,12 @@ Bridge::Options Ros2::options() {
     options.network.networks = values["networks"].toVariant().toStringList();
     options.network.peers = values["peers"].toVariant().toStringList();
     options.network.fragmentBytes = int(settings().integer("fragment_bytes"));
+    options.network.enclave = settings().text("enclave");
     options.graph = graphFormOf(settings().text("graph"));
     const QString space = settings().text("namespace");
     options.space = space.isEmpty() ? QString() : '/' + space;
     options.framePrefix = settings().text("frame_prefix");
+    options.tellsReplays = settings().flag("replays");
     return options;
 }
 
@@ -107,6 +119,7 @@ Result<void> Ros2::start() {
     if (const Result<void> serving = serve(); !serving)
         return serving;
     follow();
+    lookForPeers();
     looks_.start(healthPeriod);
     setState(DaemonState::Running);
     updateHealth();
@@ -121,6 +134,16 @@ void Ros2::stop() {
     velocity_.reset();
     bridge_.reset();
     daemons_.follow({});
+}
+
+void Ros2::lookForPeers() {
+    for (const QString &peer : options().network.peers)
+        QHostInfo::lookupHost(peer, this, [this, peer](const QHostInfo &found) {
+            if (found.error() != QHostInfo::NoError)
+                health().set("peers", HealthLevel::Warn,
+                             QString("%1: %2; it is asked for again at the next start")
+                                 .arg(peer, found.errorString()));
+        });
 }
 
 void Ros2::follow() {
@@ -138,19 +161,18 @@ void Ros2::follow() {
 }
 
 template <typename M>
-Result<void> Ros2::read(const char *topic,
+Result<void> Ros2::read(const char *topic, const Quality &quality,
                         void (Ros2::*take)(const M &message, const Reader::Sample &sample)) {
     const QString name = bridge_->ddsTopic(QLatin1String(topic));
-    const bool isStop = std::is_same_v<M, ros::Bool>;
-    auto reader = bridge_->participant().read(
-        name, ros::typeOf<M>(), isStop ? stops : commands, [this, take, name](const Reader::Sample &sample) {
-            if (const auto message = ros::fromCdr<M>(sample.cdr)) {
-                (this->*take)(*message, sample);
-            } else {
-                ++unreadable_;
-                lastUnreadable_ = name + ": " + QString::fromStdString(message.error());
-            }
-        });
+    const auto received = [this, take, name](const Reader::Sample &sample) {
+        if (const auto message = ros::fromCdr<M>(sample.cdr))
+            return (this->*take)(*message, sample);
+        else
+            lastUnreadable_ = name + ": " + QString::fromStdString(message.error());
+        ++unreadable_;
+    };
+    auto reader = bridge_->participant().read(name, ros::typeOf<M>(), quality, received,
+                                              "typehash=" + ros::typeHash(ros::hashedTextOf<M>()) + ';');
     if (!reader)
         return reader.error();
     bridge_->addEndpoints({(*reader)->guid()}, {});
@@ -158,17 +180,19 @@ Result<void> Ros2::read(const char *topic,
     return {};
 }
 
+/// A stop counts from writers of both kinds: one that repeats what is lost, and one that does not.
 Result<void> Ros2::listenToRos() {
     for (const Result<void> &made :
-         {read("cmd_vel", &Ros2::takeTwist), read("cmd_vel", &Ros2::takeTwistStamped),
-          read("initialpose", &Ros2::takePose), read("emergency_stop", &Ros2::takeStop)})
+         {read("cmd_vel", newest, &Ros2::takeTwist), read("cmd_vel", newest, &Ros2::takeTwistStamped),
+          read("initialpose", newest, &Ros2::takePose), read("emergency_stop", newest, &Ros2::takeStop),
+          read("emergency_stop", repeated, &Ros2::takeStop)})
         if (!made)
             return made;
     return {};
 }
 
 bool Ros2::mayCommand(const char *topic, const Guid &writer) {
-    if (settings().flag("commands"))
+    if (settings().flag("commands") && !settings().flag("replays"))
         return true;
     if (forbidden_++ == 0)
         logWarning("ros", QString("%1 of %2 is refused: the setting \"commands\" is false")
@@ -250,7 +274,8 @@ Result<void> Ros2::serveTrigger(const char *name, const QString &command, const 
             if (!isFree && !mayCommand(name, {}))
                 return answer({false, "refused: the setting \"commands\" of hermes-ros2 is false"});
             call(command, params, [answer](const Result<QJsonValue> &result) {
-                answer({result.ok(), result ? std::string() : result.error().message.toStdString()});
+                const QString text = result ? (*result)["path"].toString() : result.error().message;
+                answer({result.ok(), text.toStdString()});
             });
         });
     if (!made)
@@ -268,13 +293,20 @@ Result<void> Ros2::serve() {
             return made;
     auto map =
         GetMap::open(*bridge_, "get_map", [this](const ros::GetMapRequest &, const GetMap::Answer &answer) {
-            const auto grid = ros::fromCdr<ros::OccupancyGrid>(bridge_->latched("map"));
-            answer({grid ? *grid : ros::OccupancyGrid()});
+            answerMap(answer, maxWaits);
         });
     if (!map)
         return map.error();
     getMap_ = map.take();
     return {};
+}
+
+/// At the start there is none for a moment.
+void Ros2::answerMap(const GetMap::Answer &answer, int waits) {
+    const auto grid = ros::fromCdr<ros::OccupancyGrid>(bridge_ ? bridge_->latched("map") : std::string());
+    if (grid || waits == 0)
+        return answer({grid ? *grid : ros::OccupancyGrid()});
+    QTimer::singleShot(pollPeriod, this, [this, answer, waits] { answerMap(answer, waits - 1); });
 }
 
 void Ros2::updateHealth() {
@@ -294,7 +326,7 @@ void Ros2::updateHealth() {
                   {"read", counts.read},
                   {"written", double(counts.written)},
                   {"unreadable", double(counts.unreadable + unreadable_)},
-                  {"replayed", double(counts.replayed)},
+                  {"left_out", double(counts.leftOut)},
                   {"dropped", double(counts.dropped)}});
     const bool mayCommand = settings().flag("commands");
     const VelocityCommands::Counts &taken = velocity_->counts();
@@ -308,7 +340,8 @@ void Ros2::updateHealth() {
                   {"late", double(taken.late)},
                   {"others", double(taken.others)},
                   {"refused", double(taken.refused + forbidden_)}});
-    if (mayCommand && !settings().values()["networks"].toArray().isEmpty())
+    if (mayCommand && settings().text("enclave").isEmpty() &&
+        !settings().values()["networks"].toArray().isEmpty())
         health().set("insecure", HealthLevel::Warn,
                      "everybody on the networks " +
                          settings().values()["networks"].toVariant().toStringList().join(", ") +

@@ -21,15 +21,18 @@ private:
     void declareSettings();
     Bridge::Options options();
     void follow();
+    void lookForPeers();
     Result<void> listenToRos();
     template <typename M>
-    Result<void> read(const char *topic, void (Ros2::*take)(const M &message, const Reader::Sample &sample));
+    Result<void> read(const char *topic, const Quality &quality,
+                      void (Ros2::*take)(const M &message, const Reader::Sample &sample));
     Result<void> serve();
     using Trigger = Service<ros::TriggerRequest, ros::TriggerResponse>;
     using GetMap = Service<ros::GetMapRequest, ros::GetMapResponse>;
     /// Calls a command of Hermes and tells how it went. isFree: anyone may.
     Result<void> serveTrigger(const char *name, const QString &command, const QJsonObject &params,
                               bool isFree = false);
+    void answerMap(const GetMap::Answer &answer, int waits);
     void takeTwist(const ros::Twist &twist, const Reader::Sample &sample);
     void takeTwistStamped(const ros::TwistStamped &twist, const Reader::Sample &sample);
     void takePose(const ros::PoseWithCovarianceStamped &pose, const Reader::Sample &sample);

@@ -76,6 +76,11 @@ Result<std::set<unsigned>> SocketGuard::interfaces() const {
     return indexes;
 }
 
+Result<void> SocketGuard::check() const {
+    const auto allowed = interfaces();
+    return allowed ? Result<void>() : allowed.error();
+}
+
 Result<void> SocketGuard::guardNewSockets() const {
     const auto allowed = interfaces();
     if (!allowed)

@@ -15,6 +15,8 @@ public:
     /// networks: names or addresses of interfaces. Notes the sockets that there are.
     explicit SocketGuard(const QStringList &networks);
 
+    /// DeviceFault: one of the networks is none of this computer.
+    Result<void> check() const;
     /// Guards all UDP sockets that this process has opened since. DeviceFault: there is no such interface, or
     /// the kernel refused.
     Result<void> guardNewSockets() const;

@@ -206,7 +206,7 @@ std::function<void()> SerialLogger::viewFilled() {
     };
 }
 
-PortView::Sinks SerialLogger::sinks(const QString &port) {
+PortView::Sinks SerialLogger::sinks(const QString &port, bool isReplayed) {
     const auto line = [this, port](const LineSplitter::Line &found) {
         const auto message = [&] {
             return LineMessage{port, found.arrival.stamp(), found.arrival.mono(),
@@ -214,8 +214,8 @@ PortView::Sinks SerialLogger::sinks(const QString &port) {
         };
         publish("lines", message, found.arrival.stamp());
     };
-    const auto fix = [this, port](const Fix &found) {
-        publish("fix", FixMessage{port, valuesOf(found)}, found.arrival.stamp());
+    const auto fix = [this, port, isReplayed](const Fix &found) {
+        publish("fix", FixMessage{port, valuesOf(found), isReplayed}, found.arrival.stamp());
     };
     return {line, fix};
 }
@@ -223,13 +223,13 @@ PortView::Sinks SerialLogger::sinks(const QString &port) {
 void SerialLogger::processViews() {
     std::optional<int> next_ms;
     for (const auto &port : ports_) {
-        const PortView::Sinks shown = sinks(port->settings().name);
+        const PortView::Sinks shown = sinks(port->settings().name, false);
         port->view().process(shown);
         if (const auto wait_ms = port->view().settle(shown))
             next_ms = std::min(*wait_ms, next_ms.value_or(*wait_ms));
     }
     for (auto &[port, view] : replayed_)
-        view.process(sinks(port));
+        view.process(sinks(port, true));
     if (next_ms)
         settleTimer_.start(*next_ms);
     else

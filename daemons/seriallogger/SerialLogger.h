@@ -49,7 +49,7 @@ private:
 
     /// For other threads to tell that a view was filled.
     std::function<void()> viewFilled();
-    PortView::Sinks sinks(const QString &port);
+    PortView::Sinks sinks(const QString &port, bool isReplayed);
     void processViews();
     void tick();
     void updateHealth();

@@ -39,7 +39,7 @@ Result<void> SerialLogger::openRecording(const Call &call, const StoredRecording
     player_.stop();
     replayed_.clear();
     for (const auto &port : ports_)
-        port->view().close(sinks(port->settings().name));
+        port->view().close(sinks(port->settings().name, false));
     const Result<void> begun = player_.start(
         stored, {call.number("speed"), false, call.flag("paused")}, call.number("delay_s"),
         [this](const QString &port, const QJsonObject &sidecar) { return replayedQueue(port, sidecar); },
@@ -62,7 +62,7 @@ ChunkQueue *SerialLogger::replayedQueue(const QString &port, const QJsonObject &
 
 void SerialLogger::replayEnded(const Result<void> &result) {
     for (auto &[port, view] : replayed_)
-        view.close(sinks(port));
+        view.close(sinks(port, true));
     source_.end(result);
     publish("serial", [this] { return state(); });
 }

@@ -23,4 +23,4 @@ _hermes_daemon() {
     *) mapfile -t COMPREPLY < <(compgen -W "--config --set --listen --print-settings --check --help --version" -- "$current") ;;
     esac
 }
-complete -F _hermes_daemon hermes-{supervisor,motorcontrol,velodynelogger,seriallogger,softwaretrigger,scanmatcher,recorder,ros2,scanner,simulator,gui}
+complete -F _hermes_daemon hermes-{supervisor,motorcontrol,velodynelogger,seriallogger,softwaretrigger,scanmatcher,recorder,ros2,scanner,simulator,web,gui}

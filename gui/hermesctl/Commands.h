@@ -30,6 +30,7 @@ Result<void> emergencyStopRobots(const Arguments &arguments);
 
 /// Keys for TLS, in the folder of this user: docs/security.md.
 Result<void> keysInit(const Arguments &arguments);
+Result<void> keysRos(const Arguments &arguments);
 /// Error: --role is none that a certificate can have.
 Result<void> checkKeyRole(const Arguments &arguments);
 Result<void> keysIssue(const Arguments &arguments);

@@ -1,8 +1,10 @@
 #include "common/Role.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyFolder.h"
+#include "common/tls/RosKeystore.h"
 #include "gui/hermesctl/Commands.h"
 
+#include <QDir>
 #include <QHostInfo>
 #include <QJsonArray>
 
@@ -51,6 +53,27 @@ Result<void> keysIssue(const Arguments &arguments) {
                   "For a robot, or the computer of a person:\n  ssh %2 mkdir -p -m 700 "
                   ".config/hermes/keys\n  scp -p %1/* %2:.config/hermes/keys/")
               .arg(*folder, name));
+    return {};
+}
+
+Result<void> keysRos(const Arguments &arguments) {
+    const QString store = arguments.words.value(0), name = arguments.words.value(1);
+    const Result<QString> enclave =
+        RosKeystore(store).addEnclave(name, arguments.role != toString(Role::Observer), arguments.days);
+    if (!enclave)
+        return enclave.error();
+    print(
+        arguments, QJsonObject{{"folder", *enclave}, {"name", name}, {"role", arguments.role}},
+        arguments.role == PeerCertificate::daemonRole()
+            ? QString("%1: the keys of the robot %2. Copy the folder there, by a way that nobody else can "
+                      "read, and set "
+                      "it:\n  hermesctl set ros2 enclave=%1")
+                  .arg(*enclave, name)
+            : QString(
+                  "%1: the keys of %2. On the laptop, with the keystore but its folder private:\n"
+                  "  export ROS_SECURITY_KEYSTORE=%3 ROS_SECURITY_ENABLE=true ROS_SECURITY_STRATEGY=Enforce\n"
+                  "  ros2 run ... --ros-args --enclave /%2")
+                  .arg(*enclave, name, QDir(store).absolutePath()));
     return {};
 }
 

@@ -42,7 +42,7 @@ QString helpLine(const Entry &entry, int width) {
 } // namespace
 
 QString Subcommand::name() const {
-    static const QRegularExpression form("^[a-z]+( [a-z]+)?(?![^ ])");
+    static const QRegularExpression form("^[a-z]+( [a-z]+[0-9]*)?(?![^ ])");
     return form.match(usage).captured();
 }
 
@@ -109,6 +109,10 @@ const std::vector<Subcommand> &subcommands() {
          keysJoin},
         {"keys revoke NAME", "revokes the keys of a person or robot, or of a serial number", "", keysRevoke},
         {"keys list", "the keys that were issued", "", keysList},
+        {"keys ros2 KEYSTORE NAME --role ROLE",
+         "keys for DDS security, in a keystore of SROS2, for a robot (daemon) or a laptop that commands "
+         "(operator) or looks (observer)",
+         "--role --days", keysRos, checkKeyRole},
         {"discover D", "the commands and topics of a daemon (--json: its OpenRPC document)", "", discover},
         {"call D METHOD [NAME=VALUE]...",
          "calls a command and prints the result; VALUE is JSON, else a string; A.B=VALUE: member B of A", "",

@@ -24,7 +24,8 @@ Fields<FixValues> fieldsOf(Of<FixValues>) {
 Fields<FixMessage> fieldsOf(Of<FixMessage>) {
     return Fields<FixMessage>()
         .add("port", &FixMessage::port, "That it came from")
-        .include(&FixMessage::values);
+        .include(&FixMessage::values)
+        .addMaybe("replayed", &FixMessage::replayed, "It was recorded, and says nothing of the robot of now");
 }
 
 } // namespace hermes

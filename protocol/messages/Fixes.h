@@ -21,6 +21,7 @@ struct FixValues {
 struct FixMessage {
     QString port;
     FixValues values;
+    bool replayed = false;
 };
 
 Fields<FixValues> fieldsOf(Of<FixValues>);

@@ -21,6 +21,7 @@ ALLOWED = {
     "daemons/scanner": {"common", "protocol"},
     "daemons/softwaretrigger": {"common", "protocol"},
     "daemons/supervisor": {"common", "protocol"},
+    "daemons/web": {"common", "protocol"},
     "daemons/scanmatcher": {"common", "protocol", "vectorlib"},
     "daemons/simulator": {"common", "protocol", "vectorlib"},
     "gui": {"common", "protocol", "vectorlib"},

@@ -1,7 +1,7 @@
 """Datagrams of RTPS 2.1 as somebody sends them who hears no answer: a participant, a writer of its own, and samples. The participant tells
-that it is reached at 127.0.0.1, wherever it is, so that who looks at what it tells alone believes it.
+an address of its own that is not true, so that who looks at what it tells alone believes it.
 
-As a program: ADDRESS DOMAIN TOPIC TYPE HEX SECONDS sends these samples, with their encapsulation, 20 times a second."""
+As a program: ADDRESS DOMAIN TOPIC TYPE HEX SECONDS TOLD sends these samples, with their encapsulation, 20 times a second."""
 import os
 import socket
 import struct
@@ -43,10 +43,10 @@ def text(words):
 class Blind:
     """A participant that is made anew each time, and its one writer, which promises nothing."""
 
-    def __init__(self, domain, topic, kind):
+    def __init__(self, domain, topic, kind, told):
         self.port, prefix = 7400 + 250 * domain, b"\1\x0f" + os.urandom(10)
         self.head, self.count = b"RTPS\2\1\1\x0f" + prefix, 0
-        here = struct.pack("<iI", 1, self.port + 99) + bytes(12) + bytes([127, 0, 0, 1])
+        here = struct.pack("<iI", 1, self.port + 99) + bytes(12) + socket.inet_aton(told)
         self.participant = parameters((0x15, b"\2\1"), (0x16, b"\1\x0f"), (0x50, prefix + PARTICIPANT), (0x32, here), (0x31, here),
                                       (0x02, struct.pack("<iI", 100, 0)), (0x58, struct.pack("<I", 0x3f)))
         self.writer = parameters((0x5a, prefix + WRITER), (0x50, prefix + PARTICIPANT), (0x05, text(topic)), (0x07, text(kind)),
@@ -63,8 +63,8 @@ class Blind:
 
 
 def main():
-    address, domain, topic, kind, sample, seconds = sys.argv[1:]
-    blind, end = Blind(int(domain), topic, kind), time.monotonic() + float(seconds)
+    address, domain, topic, kind, sample, seconds, told = sys.argv[1:]
+    blind, end = Blind(int(domain), topic, kind, told), time.monotonic() + float(seconds)
     while time.monotonic() < end:
         blind.send(address, bytes.fromhex(sample))
         time.sleep(0.05)

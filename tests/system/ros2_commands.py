@@ -2,12 +2,13 @@
 """Nodes of ROS 2 that command the robot: by cmd_vel where that is allowed and nobody else drives, until they fall silent or are killed; by
 initialpose; and its stop, always."""
 import math
+import signal
 import time
 import unittest
 
 from recorded_robot import Driver
 from ros2_robot import MOUNT, SMALL, Heard, Ros2Case, apart, compose, inverse, pose_of, skip_without_programs
-from ros2_support import ros_cdr
+from ros2_support import free_domain, ros_cdr
 from support import PATIENCE, Daemon, release, wait_for
 
 TWIST, STAMPED = "geometry_msgs/Twist", "geometry_msgs/TwistStamped"
@@ -51,7 +52,11 @@ class CommandCase(Ros2Case):
         def is_driving():
             now = self.true_twist()
             return abs(now["vx"] - vx) < 0.02 and abs(now["omega"] - omega) < 0.05
-        wait_for(f"a drive with {vx} m/s", is_driving, 20)
+        try:
+            wait_for(f"a drive with {vx} m/s", is_driving, 20)
+        except AssertionError as error:
+            state = self.motors.call("motor.state")
+            raise AssertionError(f"{error}: {state['halted']}; {state['control']}, target {state['target']}") from None
 
     def moved(self, cycles=100):
         """How far the wheels bring the robot in so many cycles of the motor control, two seconds: x, y, heading."""
@@ -81,7 +86,8 @@ class Commands(CommandCase):
     def test_name_of_who_drives(self):
         """The graph tells which node a writer is of."""
         peer, other = self.driver(twist(0.1)), self.peer()
-        mine = lambda: [guid for guid, one in other.listed()["writers"].items() if one["topic"] == "rt/cmd_vel" and guid[:24] == peer.guid[:24]]  # noqa: E731
+        mine = lambda: [guid for guid, one in other.listed()["writers"].items()  # noqa: E731
+                        if one["topic"] == "rt/cmd_vel" and guid[:24] == peer.guid[:24]]
         writer = bytes.fromhex(wait_for("the writer", mine)[0])
         peer.open("write", GRAPH, GRAPH_TYPE, transient_local=True, depth=1)
         node = {"node_namespace": "/", "node_name": "teleop_keyboard", "writer_gid_seq": [{"data": writer}]}
@@ -163,7 +169,7 @@ class Commands(CommandCase):
         peer, other = self.driver(twist(0.15)), self.peer()
         other.write("/emergency_stop", "std_msgs/Bool")
         wait_for("who is to stop", lambda: other.readers_of("/emergency_stop"))
-        other.wait_for_match("/emergency_stop", "writer")
+        other.wait_for_match("/emergency_stop", "writer", 2)  # a reader for each kind of writer
         self.wait_for_drive(0.15)
         other.send("/emergency_stop", {"data": False})
         other.send("/emergency_stop", {"data": True}, count=5, hz=5)
@@ -172,7 +178,49 @@ class Commands(CommandCase):
         other.send("/emergency_stop", {"data": False}, count=5, hz=10)  # no release
         self.assert_stands()
         self.assertTrue(self.motors.call("motor.state")["estop"])
+        release(self.motors)
+        self.assert_stands()  # who publishes on and on does not drive when a person lets the robot move again
         peer.close()
+
+    def test_two_nodes(self):
+        """One drives at a time: the other does once the first has paused."""
+        one = self.driver(twist(0.15))
+        self.wait_for_drive(0.15)
+        other = self.driver(twist(-0.15))
+        self.assertGreater(self.moved()[0], 0.25)
+        one.stop("/cmd_vel")
+        self.wait_for_drive(-0.15)
+        other.close()
+        one.close()
+
+    def test_bridge_that_dies(self):
+        domain = free_domain()
+        process, _ = self.ros2(domain, commands=True)
+        peer = self.peer(domain)
+        peer.write("/cmd_vel", TWIST)
+        peer.send("/cmd_vel", twist(0.15), count=0, hz=20)
+        self.wait_for_drive(0.15)
+        process.process.kill()
+        wait_for("standstill", self.robot.stands, 5)
+        self.assert_stands()
+        self.assertFalse(self.motors.call("control.state")["held"])
+
+    def test_bridge_that_hangs(self):
+        """What it was told before it went on is void."""
+        domain = free_domain()
+        process, _ = self.ros2(domain, commands=True)
+        peer = self.peer(domain)
+        peer.write("/cmd_vel", TWIST)
+        peer.send("/cmd_vel", twist(0.15), count=0, hz=20)
+        self.wait_for_drive(0.15)
+        process.process.send_signal(signal.SIGSTOP)
+        try:
+            wait_for("standstill", self.robot.stands, 5)
+            self.assert_stands()
+            peer.kill()
+        finally:
+            process.process.send_signal(signal.SIGCONT)
+        self.assert_stands()
 
     def test_what_is_no_command(self):
         """Numbers that are none, bytes that are missing or too many, and types that do not fit move nothing; what is right then does."""

@@ -8,9 +8,9 @@ import struct
 import time
 import unittest
 
-from ros2_robot import Ros2Case, skip_without_programs
+from ros2_robot import Heard, Ros2Case, skip_without_programs
 from ros2_support import free_domain, ros_cdr, stamp_of, wire_name
-from support import PATIENCE, release, wait_for
+from support import BINARIES, PATIENCE, Process, free_port, release, wait_for
 
 GRAPH, GRAPH_TYPE = "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 LEVELS = {"ok": 0, "warn": 1, "error": 2, "stale": 3}
@@ -46,8 +46,9 @@ class Graph(Ros2Case):
         for peer, is_reliable in ((rviz, True), (nav2, False)):
             for topic, kind in (("/scan", "sensor_msgs/LaserScan"), ("/odom", "nav_msgs/Odometry"), ("/tf", "tf2_msgs/TFMessage")):
                 peer.read(topic, kind, reliable=is_reliable)
+            peer.read("/points", "sensor_msgs/PointCloud2", reliable=is_reliable, depth=1)  # larger than a datagram
         for peer in (rviz, nav2):
-            for topic in ("/scan", "/odom", "/tf"):
+            for topic in ("/scan", "/odom", "/tf", "/points"):
                 peer.wait_for_count(topic, 10)
             self.assertEqual((peer.errors, peer.incompatible), ([], []))
 
@@ -87,12 +88,18 @@ class Graph(Ros2Case):
         (node,) = message["node_entities_info_seq"]
         self.assertEqual(node["node_namespace"], "/")
         self.assertRegex(node["node_name"], "^hermes")
-        listed, prefix = peer.listed(), bytes(message["gid"]["data"])[:12].hex()
-        for side, gids in (("writers", node["writer_gid_seq"]), ("readers", node["reader_gid_seq"])):
-            told = {bytes(gid["data"])[:16].hex() for gid in gids if not any(gid["data"][16:size])}
-            there = {guid for guid, one in listed[side].items() if guid.startswith(prefix) and one["topic"][:3] in ("rt/", "rq/", "rr/")}
-            self.assertEqual(told, there, side)
-        self.assertIn(message["gid"]["data"][:16].hex(), listed["participants"])
+        self.assertIn(message["gid"]["data"][:16].hex(), peer.listed()["participants"])
+
+        def differences():
+            """What is told of readers and writers, and is not there, or the other way round; both grow at the beginning."""
+            message, _ = self.graph_of(peer)
+            (node,), listed, prefix = message["node_entities_info_seq"], peer.listed(), bytes(message["gid"]["data"])[:12].hex()
+            gids = [bytes(gid["data"]) for side in ("writer", "reader") for gid in node[side + "_gid_seq"]]
+            told = {gid[:16].hex() for gid in gids if not any(gid[16:size])}
+            there = {guid: one["topic"] for side in ("writers", "readers") for guid, one in listed[side].items()
+                     if guid.startswith(prefix) and one["topic"][:3] in ("rt/", "rq/", "rr/")}
+            return told ^ there.keys()
+        wait_for("its readers and writers in the graph", lambda: not differences())
 
     def test_graph_as_it_is_set(self):
         for graph, size in (("humble", 24), ("jazzy", 16), ("none", 0)):
@@ -142,10 +149,16 @@ class Graph(Ros2Case):
 
     def test_name_space(self):
         domain = free_domain()
-        process, _ = self.ros2(domain, namespace="robot1")
+        process, _ = self.ros2(domain, namespace="robot1", frame_prefix="robot1/")
         peer = self.peer(domain)
         peer.read("/robot1/scan", "sensor_msgs/LaserScan")
-        peer.wait("/robot1/scan")
+        frames = {peer.wait("/robot1/scan")["header"]["frame_id"]}
+        (topic,) = [writer["topic"][2:] for writer in peer.listed()["writers"].values() if writer["topic"] in ("rt/tf", "rt/robot1/tf")]
+        peer.read(topic, "tf2_msgs/TFMessage", depth=100)
+        peer.wait_for_count(topic, 30)
+        for one in [one for message in peer.messages(topic) for one in message["transforms"]]:
+            frames |= {one["header"]["frame_id"], one["child_frame_id"]}
+        self.assertEqual([frame for frame in frames if not frame.startswith("robot1/")], [])
         topics = {writer["topic"] for writer in peer.listed()["writers"].values() if writer["topic"].startswith("rt/")}
         common = {wire_name(topic) for topic in ("/tf", "/tf_static", "/diagnostics", "/rosout")}  # ROS has them once, whoever writes
         self.assertEqual([topic for topic in topics - common if not topic.startswith("rt/robot1/")], [])
@@ -177,6 +190,24 @@ class Graph(Ros2Case):
         self.robot.start("velodynelogger")
         peer.wait_for_count("/scan", count + 10)
 
+    def test_replay_is_not_told(self):
+        """It says nothing of the robot of now."""
+        lidar = self.robot.daemons["velodynelogger"]
+        lidar.call("record.start", name="drive")
+        wait_for("packets", lambda: lidar.call("record.status")["counts"]["packets"] > 2000)
+        lidar.call("record.stop")
+        peer, heard = self.peer(), Heard(self.robot.ports["velodynelogger"], "scan2d")
+        self.addCleanup(heard.close)
+        peer.read("/scan", "sensor_msgs/LaserScan")
+        peer.wait_for_count("/scan", 3)
+        lidar.call("source.open", recording="drive", loop=True)
+        wait_for("the replay", lambda: [one for one in heard.messages if one["data"]["replayed"]])
+        count = len(peer.samples_of("/scan"))
+        wait_for("20 scans of it", lambda: len([one for one in heard.messages if one["data"]["replayed"]]) > 20)
+        self.assertLessEqual(len(peer.samples_of("/scan")), count + 2)  # those that were on their way
+        lidar.call("source.open", live=True)
+        peer.wait_for_count("/scan", count + 10)
+
     def test_noise_on_its_ports(self):
         """Datagrams that mean nothing end nothing, and fill no log."""
         noise, sender = random.Random(1), socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -193,6 +224,13 @@ class Graph(Ros2Case):
         with open(f"/proc/{self.process.process.pid}/status", encoding="ascii") as status:
             (resident,) = [int(line.split()[1]) for line in status if line.startswith("VmRSS")]
         self.assertLess(resident, 150000)  # kB
+
+    def test_network_that_is_not_there(self):
+        """The end tells which."""
+        process = Process(BINARIES, "ros2", free_port(0), self.robot.folder, {"networks": '["nope0"]', "domain": free_domain()})
+        self.addCleanup(process.stop)
+        self.assertEqual(wait_for("the end", lambda: process.process.poll() is not None and process.process.returncode), 1)
+        self.assertRegex(process.last_words().splitlines()[-1], "^hermes-ros2: .*nope0")
 
     def test_end(self):
         domain = free_domain()

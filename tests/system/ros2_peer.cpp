@@ -3,8 +3,9 @@
 // and answers are lines of JSON (tests/system/ros2_support.py):
 //
 //   {"op": "read", "topic": "rt/scan", "type": "sensor_msgs::msg::dds_::LaserScan_", "reliable": true,
-//    "transient_local": false, "depth": 5, "quiet": false}   each sample is a line; quiet: they are counted
-//   {"op": "write", ..., "user_data": "..."}                 with the same members
+//    "transient_local": false, "depth": 5, "user_data": "", "quiet": false}   each sample is a line; quiet:
+//                                                            they are counted
+//   {"op": "write", ...}                                     with the same members
 //   {"op": "send", "topic": ..., "hex": ..., "count": 1, "hz": 0}   count 0: until stop or close
 //   {"op": "stop", "topic": ...}, {"op": "close", "topic": ...}
 //   {"op": "list"}                                           what was discovered
@@ -17,6 +18,8 @@
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
@@ -31,8 +34,8 @@ namespace {
 
 class Peer {
 public:
-    Peer(std::uint32_t domain, const std::string &own, const std::string &others, const std::string &userData,
-         std::vector<std::string> quiet)
+    Peer(std::uint32_t domain, const std::string &own, const std::string &others, const std::string &keys,
+         const std::string &userData, std::vector<std::string> quiet)
         : quiet_(std::move(quiet)) {
         dds::DomainParticipantQos qos;
         qos.name("ros2_peer");
@@ -50,6 +53,8 @@ public:
         builtin.initialPeersList.push_back(there);             // port 0: those that the domain gives
         builtin.metatrafficUnicastLocatorList.push_back(here); // and none of multicast
         builtin.discovery_config.leaseDuration_announcementperiod = {1, 0};
+        if (!keys.empty())
+            secure(qos.properties(), "file://" + keys + "/");
         participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
             domain, qos, &discovered_, dds::StatusMask::none());
         if (!participant_)
@@ -100,6 +105,22 @@ private:
     dds::Subscriber *subscriber_ = nullptr;
     std::map<std::string, Endpoint> endpoints_; // by topic
 
+    /// With the files of an enclave of SROS2.
+    static void secure(rtps::PropertyPolicy &policy, const std::string &folder) {
+        const std::string authentication = "dds.sec.auth.builtin.PKI-DH.",
+                          access = "dds.sec.access.builtin.Access-Permissions.";
+        for (const auto &[name, value] : std::map<std::string, std::string>{
+                 {"dds.sec.auth.plugin", "builtin.PKI-DH"},
+                 {"dds.sec.access.plugin", "builtin.Access-Permissions"},
+                 {"dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC"},
+                 {authentication + "identity_ca", folder + "identity_ca.cert.pem"},
+                 {authentication + "identity_certificate", folder + "cert.pem"},
+                 {authentication + "private_key", folder + "key.pem"},
+                 {access + "permissions_ca", folder + "permissions_ca.cert.pem"},
+                 {access + "governance", folder + "governance.p7s"},
+                 {access + "permissions", folder + "permissions.p7s"}})
+            policy.properties().emplace_back(name, value);
+    }
     Endpoint &of(const std::string &topic) {
         const auto found = endpoints_.find(topic);
         if (found == endpoints_.end())
@@ -136,8 +157,6 @@ private:
         if (endpoint.writer)
             throw std::runtime_error("topic: \"" + topic + "\" is written already");
         dds::DataWriterQos qos = qosOf(request, dds::DATAWRITER_QOS_DEFAULT);
-        const std::string userData = request.value("user_data", "");
-        qos.user_data().data_vec(Bytes(userData.begin(), userData.end()));
         qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
         endpoint.matches = std::make_unique<Matches>(topic);
         endpoint.writer = publisher_->create_datawriter(endpoint.topic, qos, endpoint.matches.get());
@@ -172,8 +191,11 @@ private:
 
 /// Until the end of the input.
 static int run(const std::vector<std::string> &arguments) {
-    std::map<std::string, std::string> options = {
-        {"--domain", "0"}, {"--own", "127.0.0.1"}, {"--others", "127.0.0.1"}, {"--user-data", "enclave=/;"}};
+    std::map<std::string, std::string> options = {{"--domain", "0"},
+                                                  {"--own", "127.0.0.1"},
+                                                  {"--others", "127.0.0.1"},
+                                                  {"--keys", ""},
+                                                  {"--user-data", "enclave=/;"}};
     std::vector<std::string> quiet;
     for (std::size_t i = 0; i < arguments.size(); i += 2) {
         if (i + 1 == arguments.size())
@@ -184,12 +206,16 @@ static int run(const std::vector<std::string> &arguments) {
             options[arguments[i]] = arguments[i + 1];
         else
             throw std::runtime_error(
-                "expected --domain N, --own ADDRESS, --others ADDRESS, --user-data TEXT or "
+                "expected --domain N, --own ADDRESS, --others ADDRESS, --keys FOLDER, --user-data TEXT or "
                 "--quiet TOPIC, found " +
                 arguments[i]);
     }
+    auto log = std::make_unique<dds::StdoutErrConsumer>(); // standard output is for the answers
+    log->stderr_threshold(dds::Log::Kind::Info);
+    dds::Log::ClearConsumers();
+    dds::Log::RegisterConsumer(std::move(log));
     Peer peer(std::uint32_t(std::stoul(options["--domain"])), options["--own"], options["--others"],
-              options["--user-data"], quiet);
+              options["--keys"], options["--user-data"], quiet);
     tell({{"ready", peer.guid()}});
     for (std::string line; std::getline(std::cin, line);) {
         try {

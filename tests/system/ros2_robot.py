@@ -14,6 +14,7 @@ from support import BINARIES, WORLD, Daemon, Process, fastest_wheel, free_port, 
 
 PROGRAM = os.path.join(BINARIES, "hermes-ros2")
 MOUNT = (0.12, -0.05, 0.05)  # of the lidar, as the scan matcher is told; the simulator's is in the middle
+SECOND_MOUNT = (0.2, 0.1, 0.5)  # of a scanner, if there is one
 SKIPPED = 77
 SMALL = 1e-6
 
@@ -52,10 +53,57 @@ def pose_of(data):
     return data["x"], data["y"], data["theta"]
 
 
+def static_frames(peer):
+    """Of each frame that is fixed: its transform."""
+    peer.read("/tf_static", "tf2_msgs/TFMessage", transient_local=True, depth=1)
+    return {one["child_frame_id"]: one for one in peer.wait("/tf_static", lambda message: message["transforms"])["transforms"]}
+
+
+def place(transform):
+    return plane(transform["transform"]["translation"], transform["transform"]["rotation"])
+
+
+def compare_scans(test, both):
+    """Scans of (ROS, Hermes) have the same directions each time; each has the range of a point, is empty (+inf) where nothing came back, or
+    NaN where nothing is known. Gives their frame."""
+    first = both[0][0]
+    kinds = {(len(ros["ranges"]), ros["angle_min"], ros["angle_max"], ros["angle_increment"], ros["header"]["frame_id"]) for ros, _ in both}
+    test.assertEqual(len(kinds), 1, f"the directions change: {kinds}")
+    test.assertGreater(first["angle_increment"], 0)
+    span = (len(first["ranges"]) - 1) * first["angle_increment"]
+    test.assert_near(first["angle_max"], first["angle_min"] + span, "angle_max", 1e-5)
+    test.assertLess(span, 2 * math.pi)  # no direction is there twice
+    for ros, data in both[:5]:
+        test.assertEqual(ros["time_increment"], 0)
+        test.assertIn(len(ros["intensities"]), (0, len(ros["ranges"])))
+        compare_scan(test, ros, data)
+    return first["header"]["frame_id"]
+
+
+def compare_scan(test, ros, data):
+    bins, step = len(ros["ranges"]), ros["angle_increment"]
+    turn, points = round(2 * math.pi / step), {}
+    for x, y, intensity in zip(data["x"], data["y"], data["intensity"]):
+        points.setdefault(round((math.atan2(y, x) - ros["angle_min"]) / step) % turn, []).append((math.hypot(x, y), intensity))
+    near = lambda i: [point for k in (i - 1, i, i + 1) for point in points.get(k % turn, [])]  # noqa: E731
+    for i, found in enumerate(ros["ranges"]):
+        if math.isfinite(found):
+            test.assertTrue(ros["range_min"] <= found <= ros["range_max"], found)
+            fitting = [point for point in near(i) if abs(point[0] - found) < SMALL]
+            test.assertTrue(fitting, f"direction {i} has {found}, near it are {near(i)}")
+            if ros["intensities"]:
+                test.assertIn(ros["intensities"][i], [intensity for _, intensity in fitting])
+        else:
+            test.assertNotEqual(found, -math.inf)
+    is_known = lambda i: i < bins and math.isfinite(ros["ranges"][i])  # noqa: E731
+    test.assertEqual([i for i in points if not any(is_known(k % turn) for k in (i - 1, i, i + 1))], [], "points that are in no direction")
+    test.assertLess(sum(not is_known(i) for i in points), 0.02 * bins, "directions with a point have no range")
+
+
 class Robot:
     """The daemons of a robot."""
 
-    def __init__(self, folder, world=WORLD):
+    def __init__(self, folder, world=WORLD, scanner=None):
         self.folder = folder
         lidar, position = free_port(0, socket.SOCK_DGRAM), free_port(0, socket.SOCK_DGRAM)
         line, gps = os.path.join(folder, "motors"), os.path.join(folder, "gps")
@@ -63,18 +111,31 @@ class Robot:
         serial = f"serial://{line}?baud=115200"
         self.settings = {
             "simulator": {"world": world, "lidar.port": lidar, "lidar.position_port": position, "motors.link": line, "gps.link": gps},
-            "velodynelogger": {"source.port": lidar, "source.address": "127.0.0.1", "source.position_port": position},
+            "velodynelogger": {"source.port": lidar, "source.address": "127.0.0.1", "source.position_port": position,
+                               "record.folder": os.path.join(folder, "records"), "record.free_floor_bytes": 0},
             "seriallogger": {"ports": json.dumps([{"name": "gps", "url": f"serial://{gps}?baud=9600", "view": "nmea"}])},
             "motorcontrol": {"controllers.1.url": serial, "controllers.2.url": serial},
             "scanmatcher": {"source.address": f"127.0.0.1:{self.ports['velodynelogger']}", "map.folder": folder,
                             "odometry.address": f"127.0.0.1:{self.ports['motorcontrol']}", "sensor.x_m": MOUNT[0],
                             "sensor.y_m": MOUNT[1], "sensor.theta_rad": MOUNT[2]}}
+        if scanner:
+            self.add_scanner(scanner)
         self.processes, self.daemons = {}, {}
         for name in self.settings:
             self.start(name)
         self.motors, self.simulator, self.matcher = (self.daemons[name] for name in ("motorcontrol", "simulator", "scanmatcher"))
         wait_for("poses", lambda: self.matcher.call("matcher.state")["matched"] > 3)
         wait_for("the wheels", lambda: self.motors.call("motor.state")["ready"])
+
+    def add_scanner(self, model):
+        """A second one, of one plane."""
+        x, y, theta = SECOND_MOUNT
+        link, self.ports["scanner"] = os.path.join(self.folder, "scanner"), free_port(0)
+        self.settings["simulator"].update({"scanner.model": model, "scanner.link": link, "scanner.x_m": x, "scanner.y_m": y,
+                                           "scanner.theta_rad": theta})
+        self.settings["scanner"] = {"scanner.model": model, "scanner.url": f"serial://{link}"}
+        self.settings["scanmatcher"].update({"source2.address": f"127.0.0.1:{self.ports['scanner']}", "sensor2.x_m": x, "sensor2.y_m": y,
+                                             "sensor2.theta_rad": theta})
 
     def start(self, name):
         """Also again, after it was killed."""
@@ -143,12 +204,14 @@ class Ros2Case(unittest.TestCase):
 
     SETTINGS = {}
     WORLD = WORLD
+    SCANNER = None
 
     @classmethod
     def setUpClass(cls):
         folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, folder)
-        cls.robot = Robot(folder, cls.WORLD if isinstance(cls.WORLD, str) else put(os.path.join(folder, "world.json"), cls.WORLD))
+        world = cls.WORLD if isinstance(cls.WORLD, str) else put(os.path.join(folder, "world.json"), cls.WORLD)
+        cls.robot = Robot(folder, world, cls.SCANNER)
         cls.addClassCleanup(cls.robot.stop)
         cls.domain = free_domain()
         cls.process, cls.daemon = cls.ros2(cls.domain, **cls.SETTINGS)

@@ -2,6 +2,7 @@
 """`hermesctl session` and the recorder of a whole robot: it records, plays back, and tells what is wrong."""
 import glob
 import json
+import math
 import os
 import pty
 import re
@@ -9,8 +10,10 @@ import signal
 import subprocess
 import unittest
 
-from recorded_robot import RecordedRobot
+from recorded_robot import RecordedRobot, mcap_reader
 from support import HERMESCTL, text_of, wait_for
+
+import ros_cdr  # of tests/support, which recorded_robot has found
 
 
 class Sessions(RecordedRobot):
@@ -76,6 +79,44 @@ class Sessions(RecordedRobot):
         self.assertEqual([one["done"] for one in progress], sorted(one["done"] for one in progress))
         self.assertRegex(self.ctl("session status"), r"run1 +replaying")
         self.assertNotIn("replaying", self.ctl("session live"))
+
+    def test_a_bag_of_ros(self):
+        """What it tells is what was recorded, read by nothing of the project's own."""
+        self.ctl("record start run1")
+        self.wait_for_messages(400)
+        self.ctl("record stop")
+        self.assertIn("expected ros2 with mcap", self.ctl("session export run1 --format csv --profile ros2", status=1))
+        (bag,) = self.ctl("session export run1 --format mcap --profile ros2").splitlines()
+        (plain,) = self.ctl("session export run1 --format mcap").splitlines()
+        told = mcap_reader.Mcap(bag)
+        self.assertEqual(told.profile, "ros2")
+        topics = {}
+        for message in told.messages:
+            channel = told.channels[message.channel]
+            kind = told.schemas[channel.schema].name
+            self.assertEqual((channel.encoding, channel.metadata["topic_type_hash"]), ("cdr", ros_cdr.type_hash(kind.replace("/msg/", "/"))))
+            self.assertIn("durability", channel.metadata["offered_qos_profiles"])
+            topics.setdefault(channel.topic, []).append((message.log_time, ros_cdr.decode(kind.replace("/msg/", "/"), message.data)))
+        self.assertLessEqual({"/scan", "/odom", "/tf", "/tf_static", "/pose", "/map", "/map_walls", "/battery", "/fix", "/joint_states",
+                              "/diagnostics", "/robot_description"}, set(topics))
+        recorded = mcap_reader.Mcap(plain)
+        of = lambda topic: [json.loads(m.data) for m in recorded.messages if recorded.channels[m.channel].topic == topic]  # noqa: E731
+        odometry = of("motorcontrol/odometry")
+        self.assertEqual(len(topics["/odom"]), len(odometry))
+        for (_, ros), hermes in zip(topics["/odom"], odometry):
+            position, turned = ros["pose"]["pose"]["position"], ros["pose"]["pose"]["orientation"]
+            self.assertEqual((position["x"], position["y"]), (hermes["pose"]["x"], hermes["pose"]["y"]))
+            self.assertAlmostEqual(2 * math.atan2(turned["z"], turned["w"]), hermes["pose"]["theta"], 6)
+            self.assertEqual(ros["twist"]["twist"]["linear"]["x"], hermes["twist"]["vx"])
+        scans = of("velodynelogger/scan2d")
+        self.assertLessEqual(len(scans) - len(topics["/scan"]), 1)  # one that is partial may not tell how many rays there are
+        for time, scan in topics["/scan"]:
+            stamp = scan["header"]["stamp"]
+            self.assertAlmostEqual(time * 1e-9, stamp["sec"] + stamp["nanosec"] * 1e-9, 1)
+            self.assertEqual(len(scan["ranges"]), len(topics["/scan"][0][1]["ranges"]))
+        cells = topics["/map"][-1][1]
+        self.assertEqual(len(cells["data"]), cells["info"]["width"] * cells["info"]["height"])
+        self.assertEqual(set(cells["data"]) | {-1, 0, 100}, {-1, 0, 100})
 
     def test_what_is_wrong_is_told(self):
         self.ctl("record start run1")

@@ -150,6 +150,8 @@ Qos qosOf(const Json &request, Qos qos) {
     qos.history().depth = depth;
     qos.resource_limits().max_samples_per_instance = std::max(400, depth);
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+    const std::string userData = request.value("user_data", "");
+    qos.user_data().data_vec(Bytes(userData.begin(), userData.end()));
     qos.data_sharing().off();
     return qos;
 }
