@@ -161,13 +161,13 @@ std::string BagDrive::readScan(const bag::Topic &topic, const bag::Message &mess
 /// The robot's frame for a sensor in that one: the one below the first that moves, where the odometry has not
 /// told it.
 std::string BagDrive::baseOf(const std::string &frame) const {
-    if (!base_.empty())
-        return base_;
     const std::vector<std::string> up = frames_.upFrom(frame);
+    if (std::find(up.begin(), up.end(), base_) != up.end())
+        return base_;
     for (std::size_t i = 0; i + 1 < up.size(); ++i)
         if (frames_.edge(up[i]).moves || lastPart(up[i + 1]) == "odom" || lastPart(up[i + 1]) == "map")
             return up[i];
-    return up.back();
+    return up.size() > 1 || base_.empty() ? up.back() : base_;
 }
 
 /// Frames from the robot's up to one that is called so; none: it is not above the robot.
@@ -185,7 +185,8 @@ std::vector<std::string> BagDrive::wayTo(const char *name) const {
 void BagDrive::placeScanner(BagScanner &scanner) {
     scanner.base = baseOf(scanner.frame);
     const auto place = frames_.between(scanner.frame, scanner.base);
-    if (!place || !scanner.problem.empty())
+    const bool isAlone = frames_.upFrom(scanner.frame).size() == 1 && scanner.frame != base_;
+    if (!place || isAlone || !scanner.problem.empty())
         return;
     const double up = std::clamp(place->linear()(2, 2), -1.0, 1.0);
     scanner.mount = poseOf(*place);

@@ -19,7 +19,12 @@ namespace hermes::vector {
 inline std::vector<std::string> fieldNames(const std::string &definition) {
     std::vector<std::string> names;
     std::istringstream lines(definition);
-    for (std::string line; std::getline(lines, line) && line.rfind("====", 0) != 0;) {
+    for (std::string line; std::getline(lines, line);) {
+        const bool isRule = line.rfind("====", 0) == 0;
+        if (isRule && !names.empty())
+            break;
+        if (isRule || line.rfind("MSG:", 0) == 0) // some writers begin so
+            continue;
         std::istringstream words(line.substr(0, line.find('#')));
         std::string type, name;
         if (words >> type >> name && line.substr(0, line.find('#')).find('=') == std::string::npos)

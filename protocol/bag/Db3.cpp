@@ -155,6 +155,7 @@ void Db3::readDefinitions() {
         return;
     const Statement rows =
         prepare("SELECT topic_type, encoded_message_definition FROM message_definitions WHERE "
+                "encoding = 'ros2msg' AND "
                 "length(encoded_message_definition) < " +
                 std::to_string(largestText) + " LIMIT " + std::to_string(mostTopics));
     std::size_t bytes = 0;

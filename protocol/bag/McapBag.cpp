@@ -8,6 +8,11 @@ namespace hermes::bag {
 
 namespace {
 
+/// Whether its text is that of .msg files, and not another form of ROS or of others.
+bool isMsg(const mcap::Schema &schema) {
+    return schema.encoding == "ros1msg" || schema.encoding == "ros2msg";
+}
+
 class McapBag : public Reader {
 public:
     explicit McapBag(mcap::Reader reader);
@@ -39,8 +44,8 @@ McapBag::McapBag(mcap::Reader reader)
         const bool isTold = schema != reader_.schemas().end();
         const auto count = reader_.counts().find(id);
         places_[id] = topics_.add({channel.topic, isTold ? plainType(schema->second.name) : "",
-                                   isTold ? schema->second.data : "", channel.encoding,
-                                   count == reader_.counts().end() ? 0 : count->second});
+                                   isTold && isMsg(schema->second) ? schema->second.data : "",
+                                   channel.encoding, count == reader_.counts().end() ? 0 : count->second});
     }
 }
 

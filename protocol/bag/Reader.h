@@ -18,7 +18,7 @@ using mcap::Outcome;
 struct Topic {
     std::string name;
     std::string type;           ///< as sensor_msgs/LaserScan, without the msg/ of ROS 2
-    std::string definition;     ///< text of the type and of those in it; empty: the bag has none
+    std::string definition;     ///< text of the .msg and of those in it; empty: the bag has none
     std::string serialization;  ///< "ros1", "cdr", "json" or another by its name
     std::uint64_t messages = 0; ///< as the bag tells, or as they were counted
 };

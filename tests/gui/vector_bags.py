@@ -71,7 +71,7 @@ LEVEL = MOUNT[2]
 HANGING = (math.cos(MOUNT[2] / 2), math.sin(MOUNT[2] / 2), 0, 0)
 
 
-def messages(form="ros1", slash="", scan=None, odometry="topic", turn=LEVEL, mount=True, big=False):
+def messages(form="ros1", slash="", scan=None, odometry="topic", turn=LEVEL, mount=True, big=False, child="base_link"):
     """The drive as messages of a bag. scan: makes the message of a scanner of bytes, stamp and ranges."""
     def out():
         return bags.Bytes(form, big)
@@ -82,7 +82,7 @@ def messages(form="ros1", slash="", scan=None, odometry="topic", turn=LEVEL, mou
         found.append(("/tf_static", FRAMES, at[0], bags.transforms(out(), at)))
     for t, robot, ranges in DRIVE.scans:
         if odometry == "topic":
-            found.append(("/odom", ODOMETRY, t + 0.001, bags.odometry(out(), t, robot, child=slash + "base_link")))
+            found.append(("/odom", ODOMETRY, t + 0.001, bags.odometry(out(), t, robot, child=slash + child if child else "")))
         elif odometry == "tf":
             foot = (t, slash + "odom", slash + "base_footprint", (*robot[:2], 0), robot[2])
             found.append(("/tf", FRAMES, t + 0.001, bags.transforms(out(), (t, "elsewhere", "thing", (1, 2, 3), t), foot)))
@@ -305,10 +305,25 @@ class VectorBags(unittest.TestCase):
         self.assertEqual(self.told, "")
         self.trajectory("untold.db3")
         self.assertIn("where laser is on the robot is not told", self.told)
+        bags.write_db3(self.path("nameless.db3"), messages("cdr", mount=False, child=""))
+        self.trajectory("nameless.db3")
+        self.assertIn("where laser is on the robot is not told", self.told)
+        for child in ("", "base_footprint"):  # which tf does not have
+            bags.write_db3(self.path(f"{child}.db3"), messages("cdr", child=child))
+            self.expect_the_drive(f"{child}.db3")
+            self.assertEqual(self.told, "")
         bags.write_db3(self.path("none.db3"), messages("cdr", odometry="none"))
         self.trajectory("none.db3")
         self.assertIn("there is no odometry", self.told)
         self.assertEqual(self.summary["by_odometry"], 0)
+
+    def test_definitions(self):
+        bags.write_mcap(self.path("rule.mcap"), messages("cdr"), definition_of=lambda kind: f"{bags.RULE}MSG: {kind}\n{bags.definition(kind)}")
+        self.expect_the_drive("rule.mcap")
+        bags.write_mcap(self.path("idl.mcap"), messages("cdr"), encoding="ros2idl", definition_of=lambda kind: "module sensor_msgs {\n")
+        self.expect_the_drive("idl.mcap")
+        bags.write_mcap(self.path("fields.mcap"), messages("cdr"), definition_of=lambda kind: "Header header\nfloat32 angle\n")
+        self.refused("fields.mcap", "other fields")
 
     def test_several_scanners(self):
         two = messages("cdr") + [("/back/scan", LASER, t, bags.laser_scan(bags.Bytes("cdr"), t, ranges, "back")) for t, _, ranges in DRIVE.scans[:7]]
@@ -341,12 +356,6 @@ class VectorBags(unittest.TestCase):
         self.refused("other.db3", "topic ?[2Jevil")
         bags.write_db3(self.path("empty.db3"), [m for m in messages("cdr") if m[0] == "/odom"])
         self.refused("empty.db3", "no topic of a scanner")
-        text, bags.TYPES[LASER] = bags.TYPES[LASER], (bags.TYPES[LASER][0], "Header header\nfloat32 angle\n", {})
-        try:
-            bags.write_mcap(self.path("fields.mcap"), messages("cdr"))
-        finally:
-            bags.TYPES[LASER] = text
-        self.refused("fields.mcap", "other fields")
         for name, content, word in (("zero.bag", b"", "an empty file"), ("old.bag", b"#ROSBAG V1.2\nabc", "found #ROSBAG V1.2"),
                                     ("text.db3", b"hello", "another file"), ("none.mcap", b"\x89MCAP0\r\n", "no topic")):
             with open(self.path(name), "wb") as file:

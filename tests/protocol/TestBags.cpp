@@ -128,6 +128,9 @@ d.execute("PRAGMA page_size=512")
 d.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format, offered_qos_profiles)")
 d.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data)")
 d.execute("CREATE INDEX timestamp_idx ON messages(timestamp)")
+d.execute("CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type, encoding, encoded_message_definition)")
+d.execute("INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition) VALUES "
+          "('std_msgs/msg/String', 'ros2msg', 'string data'), ('pkg/msg/Other', 'ros2idl', 'module pkg {')")
 d.execute("INSERT INTO topics VALUES (7, '/a', 'std_msgs/msg/String', 'cdr', ''), (9, 'b', 'pkg/msg/Other', 'cdr', '')")
 for id, topic, ms, data in (1, 7, 1000, b"one"), (2, 9, 3000, b"three"), (3, 7, 2000, b"two" * 300):
     d.execute("INSERT INTO messages VALUES (?, ?, ?, ?)", (id, topic, ms * 1000000, data))
@@ -258,6 +261,8 @@ private Q_SLOTS:
         Reader &reader = **made;
         QCOMPARE(reader.topics()[1].type, std::string("pkg/Other"));
         QCOMPARE(reader.topics()[0].messages, std::uint64_t(2));
+        QCOMPARE(reader.topics()[0].definition, std::string("string data"));
+        QCOMPARE(reader.topics()[1].definition, std::string());
         QCOMPARE(reader.end_ns(), std::uint64_t(3000000000));
         const QByteArrayList lines{"/a 1000 one", "/a 2000 " + QByteArray("two").repeated(300),
                                    "b 3000 three"};

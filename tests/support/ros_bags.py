@@ -168,7 +168,8 @@ def write_metadata(folder, files, mode="", compression=""):
         text.write(f"  compression_format: \"{compression}\"\n  compression_mode: \"{mode}\"\n")
 
 
-def write_mcap(path, messages, ros1=False, pack=None, compression="", chunk_messages=20, with_end=True, with_chunks=True):
+def write_mcap(path, messages, ros1=False, pack=None, compression="", chunk_messages=20, with_end=True, with_chunks=True,
+               encoding="", definition_of=definition):
     """messages: topic, type, time in seconds, bytes. pack: of the records of a chunk."""
     file = io.BytesIO()
 
@@ -187,8 +188,8 @@ def write_mcap(path, messages, ros1=False, pack=None, compression="", chunk_mess
         for number, (topic, kind, time, data) in enumerate(part):
             if topic not in ids:
                 ids[topic] = len(ids) + 1
-                out += record(3, struct.pack("<H", ids[topic]) + text(kind if ros1 else ros2_type(kind)) + text("ros1msg" if ros1 else "ros2msg") +
-                              text(definition(kind)))
+                out += record(3, struct.pack("<H", ids[topic]) + text(kind if ros1 else ros2_type(kind)) + text(encoding or ("ros1msg" if ros1 else "ros2msg")) +
+                              text(definition_of(kind)))
                 out += record(4, struct.pack("<HH", ids[topic], ids[topic]) + text(topic) + text("ros1" if ros1 else "cdr") + text(b""))
             nanoseconds = round(time * 1e9)
             out += record(5, struct.pack("<HIQQ", ids[topic], number, nanoseconds, nanoseconds) + data)
