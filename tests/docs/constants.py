@@ -40,7 +40,6 @@ LEFT_OUT = (
     ("vectorization/BlockSearchAvx2.h", "lanes", "width of SIMD"),
     ("places/PlaceIndex.h", "lengthBins", "size of an index"),
     ("relations/RelationSet.h", "most|distanceBins", "size of an index"),
-    ("motorcontrol/Wheels.h", "wheelCount", "how many there are"),
     ("motorcontrol/DeviceModels.h", "controllerCount", "how many there are"),
     ("motorcontrol/MotorController.h", "taskCount", "how many there are"),
     ("motorcontrol/LatchFile.cpp", r"longest\w+", "lengths of texts"),
