@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """hermes-web beside a whole robot: an independent client of Foxglove's protocol validates every channel (HERMES_SECONDS, 5), hostile
 ones change nothing for others, and a teleop panel that ends stops the robot. Skipped without hermes-web or python3-websockets."""
 import json

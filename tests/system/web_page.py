@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The page of hermes-web in a real browser shows pose, battery and health of a robot that drives, its STOP stops the robot, and what is
 old is said to be old. Skipped where there is no chromium, hermes-web or python3-websockets."""
 import asyncio
