@@ -13,7 +13,9 @@ hermes_package_packages=("${hermes_optional_packages[@]}" debhelper dpkg-dev fak
 hermes_site_packages=(mkdocs mkdocs-material mkdocstrings mkdocstrings-python-handlers doxygen help2man mandoc)
 hermes_long_test_packages=("${hermes_package_packages[@]}" "${hermes_site_packages[@]}" lintian debootstrap systemd-container umockdev
     g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine64)
-hermes_test_packages=("${hermes_optional_packages[@]}" libfastrtps-dev python3-rosbag python3-websockets codespell iproute2 libpcap-dev python3-jsonschema clang-format tshark python3-matplotlib zsh xvfb openbox xdotool)
+# What only some tests need, which are skipped without it; not every Debian has all of it.
+hermes_peer_packages=("${hermes_optional_packages[@]}" libfastrtps-dev python3-rosbag python3-websockets)
+hermes_test_packages=(codespell iproute2 libpcap-dev python3-jsonschema clang-format tshark python3-matplotlib zsh xvfb openbox xdotool)
 hermes_fuzz_packages=(clang libclang-rt-dev)
 hermes_bench_packages=(libbenchmark-dev)
 
@@ -35,6 +37,20 @@ install_missing() {
     echo "Installing missing Debian packages: ${missing[*]}"
     "${sudo[@]}" apt-get update -qq &&
         "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# install_wanted PACKAGE...: as install_missing, but does without those that this Debian does not have, and says which.
+install_wanted() {
+    local known=() package
+    for package in "$@"; do
+        if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+            apt-cache show "$package" >/dev/null 2>&1; then
+            known+=("$package")
+        else
+            echo "This Debian has no package $package: what needs it is left out"
+        fi
+    done
+    install_missing "${known[@]}" || echo "Left out is what needs these packages"
 }
 
 # build_preset PRESET [TARGET...]: configures and builds; everything when no target is named.
