@@ -117,6 +117,15 @@ void Transforms::takePose(const PoseMessage &pose, const Told &told) {
 
 /// The wheel's own turn is about its axis, y.
 void Transforms::takeWheels(const WheelsMessage &wheels, const Told &told) {
+    constexpr double pause_s = 1; // while they stand: for who comes later
+    std::array<double, WheelsMessage::count> angles{};
+    for (std::size_t i = 0; i < angles.size(); ++i)
+        if (const std::optional<WheelMessage> &wheel = wheels.*WheelsMessage::wheels()[i])
+            angles[i] = wheel->angle;
+    const double since_s = told.stamp - wheelsAt_;
+    if (std::exchange(wheelAngles_, angles) == angles && since_s >= 0 && since_s < pause_s)
+        return;
+    wheelsAt_ = told.stamp;
     for (const WheelPlace &place : told.robot.wheels())
         for (std::size_t i = 0; i < WheelsMessage::count; ++i) {
             const std::optional<WheelMessage> &wheel = wheels.*WheelsMessage::wheels()[i];

@@ -42,6 +42,8 @@ private:
     std::optional<Pose2D> odometryInMap_;
     double poseAt_ = 0; ///< stamp of the last one
     QString poseFrom_;  ///< the daemon
+    std::array<double, WheelsMessage::count> wheelAngles_{};
+    double wheelsAt_ = 0; ///< stamp with which they were told last
     TfMessage out_;
 };
 
