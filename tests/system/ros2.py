@@ -100,9 +100,11 @@ class Messages(Ros2Case):
 
     def test_frames_form_a_tree(self):
         """map, odom, base_link, sensors (REP 105); what they lead to is where the matcher says that the sensor is."""
-        heard, peer = Heard(self.robot.ports["scanmatcher"], "pose"), self.peer()
-        self.addCleanup(heard.close)
+        peer = self.peer()
         peer.read("/tf", "tf2_msgs/TFMessage", depth=100)
+        peer.wait("/tf")  # what is written before the endpoints have found each other is lost
+        heard = Heard(self.robot.ports["scanmatcher"], "pose")
+        self.addCleanup(heard.close)
         last = lambda parent, child: max(map(stamp_of, moves(parent, child)(peer.messages("/tf"))), default=0)  # noqa: E731
         wait_for("20 poses", lambda: len(heard.messages) > 20)
         until = heard.messages[20]["stamp"]
